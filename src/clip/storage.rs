@@ -1,0 +1,303 @@
+use crate::math::Planar;
+use crate::skeleton::{Pose, Skeleton, WorldPose, world_pose_into};
+use glam::{Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The axis of a file that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum UpAxis {
+    /// +Y is up, as inside Segue.
+    #[default]
+    Y,
+    /// +Z is up; turned by -90° about X on import.
+    Z,
+}
+
+/// How the file that a clip came from measures: what an exporter needs to write it back the same way.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Provenance {
+    /// Metres per unit of length in the file.
+    pub metres_per_unit: f64,
+    /// The file's up axis.
+    pub up: UpAxis,
+}
+
+impl Default for Provenance {
+    /// Centimetres and Y up, what most BVH files use.
+    fn default() -> Self {
+        Self { metres_per_unit: 0.01, up: UpAxis::Y }
+    }
+}
+
+/// Translations of one joint that moves against its parent: one per frame, metres, in the parent's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointTranslations {
+    /// The joint's index; not 0, the root has its own.
+    pub joint: usize,
+    /// One translation per frame.
+    pub values: Vec<Vec3>,
+}
+
+/// Why numbers make no clip.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ClipError {
+    /// The frame rate is no rate.
+    #[error("a frame rate of {0} frames per second cannot be played: give a number above 0")]
+    FrameRate(f64),
+    /// Arrays of different length.
+    #[error("{what}: found {found} values, expected {expected}")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that frames × joints call for.
+        expected: usize,
+    },
+    /// A frame that the clip does not have.
+    #[error("frames {start} to {end} are not inside this clip of {frames} frames")]
+    OutOfRange {
+        /// First frame asked for.
+        start: usize,
+        /// One past the last frame asked for.
+        end: usize,
+        /// Frames that there are.
+        frames: usize,
+    },
+    /// Translations for a joint that the skeleton does not have, for the root, or not in the order of joints.
+    #[error("translations of joint {0} do not fit this skeleton")]
+    Translations(usize),
+}
+
+/// A motion: `frames × joints` local rotations at a fixed frame rate, and the root's way through the world.
+///
+/// Rotations are unit quaternions (`parent_from_joint`), frame-major and contiguous. Lengths are metres, Y is up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    name: String,
+    skeleton: Arc<Skeleton>,
+    fps: f64,
+    rotations: Vec<Quat>,
+    root_translations: Vec<Vec3>,
+    translations: Vec<JointTranslations>,
+    provenance: Provenance,
+}
+
+impl Clip {
+    /// A clip from its parts: `rotations` is frame-major, frames × joints long; `root_translations` has one value per frame.
+    ///
+    /// # Errors
+    /// [`ClipError`] when the frame rate is not a positive number or the lengths do not fit each other.
+    pub fn new(
+        name: impl Into<String>,
+        skeleton: Arc<Skeleton>,
+        fps: f64,
+        rotations: Vec<Quat>,
+        root_translations: Vec<Vec3>,
+    ) -> Result<Self, ClipError> {
+        if !(fps.is_finite() && fps > 0.0) {
+            return Err(ClipError::FrameRate(fps));
+        }
+        let expected = root_translations.len() * skeleton.len();
+        if rotations.len() != expected {
+            return Err(ClipError::Length { what: "rotations", found: rotations.len(), expected });
+        }
+        Ok(Self {
+            name: name.into(),
+            skeleton,
+            fps,
+            rotations,
+            root_translations,
+            translations: Vec::new(),
+            provenance: Provenance::default(),
+        })
+    }
+
+    /// The same clip with translations of joints other than the root, sorted by joint.
+    ///
+    /// # Errors
+    /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is not the number of frames.
+    pub fn with_translations(mut self, translations: Vec<JointTranslations>) -> Result<Self, ClipError> {
+        let mut previous = 0;
+        for track in &translations {
+            if track.joint <= previous || track.joint >= self.skeleton.len() {
+                return Err(ClipError::Translations(track.joint));
+            }
+            if track.values.len() != self.frames() {
+                return Err(ClipError::Length { what: "translations", found: track.values.len(), expected: self.frames() });
+            }
+            previous = track.joint;
+        }
+        self.translations = translations;
+        Ok(self)
+    }
+
+    /// The same clip with a note of how its file measures.
+    #[must_use]
+    pub fn with_provenance(mut self, provenance: Provenance) -> Self {
+        self.provenance = provenance;
+        self
+    }
+
+    /// The same clip under another name.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// What a person calls it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The skeleton, shared between clips of one rig.
+    #[must_use]
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
+    }
+
+    /// Frames per second.
+    #[must_use]
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// Seconds from one frame to the next.
+    #[must_use]
+    pub fn dt_secs(&self) -> f32 {
+        self.fps.recip() as f32
+    }
+
+    /// The number of frames; may be 0 (a skeleton alone).
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.root_translations.len()
+    }
+
+    /// Seconds from the first frame to the last: `(frames - 1) / fps`.
+    #[must_use]
+    pub fn duration_secs(&self) -> f64 {
+        self.frames().saturating_sub(1) as f64 / self.fps
+    }
+
+    /// The time of a frame, seconds.
+    #[must_use]
+    pub fn time_of(&self, frame: usize) -> f64 {
+        frame as f64 / self.fps
+    }
+
+    /// How the source file measures.
+    #[must_use]
+    pub fn provenance(&self) -> Provenance {
+        self.provenance
+    }
+
+    /// Local rotations of all joints in `frame`.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    #[must_use]
+    pub fn rotations(&self, frame: usize) -> &[Quat] {
+        let joints = self.skeleton.len();
+        &self.rotations[frame * joints..(frame + 1) * joints]
+    }
+
+    /// World translation of the root joint, one per frame, metres.
+    #[must_use]
+    pub fn root_translations(&self) -> &[Vec3] {
+        &self.root_translations
+    }
+
+    /// Translations of the joints that move against their parent, sorted by joint.
+    #[must_use]
+    pub fn translations(&self) -> &[JointTranslations] {
+        &self.translations
+    }
+
+    /// One frame as a pose.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    #[must_use]
+    pub fn pose(&self, frame: usize) -> Pose {
+        Pose {
+            root_translation: self.root_translations[frame],
+            rotations: self.rotations(frame).to_vec(),
+            translations: self.translations.iter().map(|track| (track.joint, track.values[frame])).collect(),
+        }
+    }
+
+    /// Forward kinematics of one frame into a buffer that is used again.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    pub fn world_pose_into(&self, frame: usize, world: &mut WorldPose) {
+        let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
+        world_pose_into(&self.skeleton, self.root_translations[frame], self.rotations(frame), moved, world);
+    }
+
+    /// Forward kinematics of one frame.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    #[must_use]
+    pub fn world_pose(&self, frame: usize) -> WorldPose {
+        let mut world = WorldPose::default();
+        self.world_pose_into(frame, &mut world);
+        world
+    }
+
+    /// World positions of all joints over a range of frames: frame-major, `range.len() × joints` long, metres. The range is clamped to the clip.
+    #[must_use]
+    pub fn world_positions(&self, range: Range<usize>) -> Vec<Vec3> {
+        let end = range.end.min(self.frames());
+        let start = range.start.min(end);
+        let mut positions = Vec::with_capacity((end - start) * self.skeleton.len());
+        let mut world = WorldPose::default();
+        for frame in start..end {
+            self.world_pose_into(frame, &mut world);
+            positions.extend_from_slice(&world.positions);
+        }
+        positions
+    }
+
+    /// The frames of `range` as a clip of their own.
+    ///
+    /// # Errors
+    /// [`ClipError::OutOfRange`] when the range is not inside the clip.
+    pub fn crop(&self, range: Range<usize>) -> Result<Self, ClipError> {
+        if range.start > range.end || range.end > self.frames() {
+            return Err(ClipError::OutOfRange { start: range.start, end: range.end, frames: self.frames() });
+        }
+        let joints = self.skeleton.len();
+        Ok(Self {
+            name: self.name.clone(),
+            skeleton: Arc::clone(&self.skeleton),
+            fps: self.fps,
+            rotations: self.rotations[range.start * joints..range.end * joints].to_vec(),
+            root_translations: self.root_translations[range.clone()].to_vec(),
+            translations: (self.translations.iter())
+                .map(|track| JointTranslations { joint: track.joint, values: track.values[range.clone()].to_vec() })
+                .collect(),
+            provenance: self.provenance,
+        })
+    }
+
+    /// The whole clip turned and moved over the ground, rigidly: the distance between any two joints of any two frames stays, and so do heights.
+    /// (`transform` of section B; the turn is applied to *every* frame about +Y.)
+    #[must_use]
+    pub fn transformed(&self, world_from_clip: &Planar) -> Self {
+        let mut moved = self.clone();
+        let turn = world_from_clip.rotation();
+        for translation in &mut moved.root_translations {
+            *translation = world_from_clip.apply(*translation);
+        }
+        for rotation in moved.rotations.iter_mut().step_by(self.skeleton.len()) {
+            *rotation = crate::math::quat::renormalize(turn * *rotation);
+        }
+        moved
+    }
+}

@@ -1,0 +1,114 @@
+//! Unit quaternions as rotations: logarithm, exponential, hemispheres, angular velocity.
+
+use glam::{Quat, Vec3};
+
+/// `q` or `-q`, whichever lies in the hemisphere of `reference`: the shorter way from one to the other.
+#[must_use]
+pub fn in_hemisphere_of(q: Quat, reference: Quat) -> Quat {
+    if q.dot(reference) < 0.0 { -q } else { q }
+}
+
+/// `q` or `-q`, whichever has a scalar part that is not negative: the rotation by at most half a turn ("abs" in Holden's notes).
+#[must_use]
+pub fn shorter_way(q: Quat) -> Quat {
+    if q.w < 0.0 { -q } else { q }
+}
+
+/// The rotation vector (axis × angle, radians, at most π long) of a unit quaternion, by the shorter way.
+///
+/// Exact near the identity, where `acos(w)` loses half of the digits.
+#[must_use]
+pub fn log(q: Quat) -> Vec3 {
+    let q = shorter_way(q);
+    let v = Vec3::new(q.x, q.y, q.z);
+    let sine = v.length();
+    if sine < 1e-9 {
+        return v * 2.0;
+    }
+    v * (2.0 * sine.atan2(q.w) / sine)
+}
+
+/// The unit quaternion that turns by `rotation_vector` (axis × angle, radians).
+#[must_use]
+pub fn exp(rotation_vector: Vec3) -> Quat {
+    let angle = rotation_vector.length();
+    // sin(angle/2)/angle with its series at 0, where the quotient is 0/0.
+    let (scale, w) = if angle < 1e-4 {
+        (0.5 - angle * angle / 48.0, 1.0 - angle * angle / 8.0)
+    } else {
+        ((angle * 0.5).sin() / angle, (angle * 0.5).cos())
+    };
+    let v = rotation_vector * scale;
+    renormalize(Quat::from_xyzw(v.x, v.y, v.z, w))
+}
+
+/// Spherical interpolation by the shorter way, `t` from 0 (`a`) to 1 (`b`).
+#[must_use]
+pub fn slerp(a: Quat, b: Quat, t: f32) -> Quat {
+    renormalize(a.slerp(in_hemisphere_of(b, a), t))
+}
+
+/// The angle between two rotations, radians in `[0, π]`.
+#[must_use]
+pub fn angle_between(a: Quat, b: Quat) -> f32 {
+    log(b * a.conjugate()).length()
+}
+
+/// The world-frame angular velocity (radians per second) that takes `from` to `to` in `dt_secs`.
+///
+/// `log(to · from⁻¹)/dt` by the shorter way (Holden, "Joint limits, quaternions and angular velocity").
+#[must_use]
+pub fn angular_velocity(from: Quat, to: Quat, dt_secs: f32) -> Vec3 {
+    log(to * from.conjugate()) / dt_secs
+}
+
+/// `q` scaled back to unit length after a chain of products; the identity when there is no direction left in it.
+#[must_use]
+pub fn renormalize(q: Quat) -> Quat {
+    let length_squared = q.length_squared();
+    if length_squared > 1e-12 && length_squared.is_finite() { q * length_squared.sqrt().recip() } else { Quat::IDENTITY }
+}
+
+/// The shortest rotation that takes the direction `from` to the direction `to`; the identity where either is too short to have one.
+#[must_use]
+pub fn between_directions(from: Vec3, to: Vec3) -> Quat {
+    match (from.try_normalize(), to.try_normalize()) {
+        (Some(from), Some(to)) => Quat::from_rotation_arc(from, to),
+        _ => Quat::IDENTITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn exp_undoes_log(x in -1.8f32..1.8, y in -1.8f32..1.8, z in -1.8f32..1.8) {
+            let v = Vec3::new(x, y, z);
+            prop_assume!(v.length() < 3.1);
+            prop_assert!((log(exp(v)) - v).length() < 2e-5, "{v}");
+        }
+
+        #[test]
+        fn both_signs_are_one_rotation(x in -3.0f32..3.0, y in -3.0f32..3.0, z in -3.0f32..3.0, t in 0.0f32..1.0) {
+            let (a, b) = (exp(Vec3::new(x, y, z)), exp(Vec3::new(z, x, y)));
+            prop_assume!(a.dot(b).abs() > 1e-3);
+            prop_assert!(angle_between(slerp(a, b, t), slerp(a, -b, t)) < 1e-3);
+        }
+    }
+
+    #[test]
+    fn small_rotations_keep_their_digits() {
+        let v = Vec3::new(3e-6, -2e-6, 1e-6);
+        assert!((log(exp(v)) - v).length() < 1e-11);
+    }
+
+    #[test]
+    fn angular_velocity_is_per_second() {
+        let dt = 1.0 / 120.0;
+        let to = Quat::from_rotation_y(3.0 * dt);
+        assert!((angular_velocity(Quat::IDENTITY, -to, dt) - Vec3::Y * 3.0).length() < 1e-4);
+    }
+}

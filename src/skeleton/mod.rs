@@ -1,0 +1,9 @@
+//! Skeletons, poses, forward kinematics, and what a joint is for.
+
+mod kinematics;
+mod pose;
+mod tree;
+
+pub use kinematics::{WorldPose, world_pose, world_pose_into};
+pub use pose::Pose;
+pub use tree::{Channel, Joint, Skeleton, SkeletonError};

@@ -1,0 +1,143 @@
+use glam::Vec3;
+
+/// One number per frame that a file gives for a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[expect(missing_docs, reason = "the names are the BVH keywords")]
+pub enum Channel {
+    XPosition,
+    YPosition,
+    ZPosition,
+    XRotation,
+    YRotation,
+    ZRotation,
+}
+
+/// A joint: the end of the bone from its parent, and the pivot of everything below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// The name, as written in the file. Names need not be unique: joints are keyed by index.
+    pub name: String,
+    /// The index of the parent; smaller than the joint's own. `None` for the root.
+    pub parent: Option<usize>,
+    /// Rest translation from the parent, in the parent's frame, metres.
+    pub offset: Vec3,
+    /// Where the bone ends, in the joint's frame, metres: the tip of a toe, a finger or the head.
+    pub end_site: Option<Vec3>,
+    /// The channels that the source file has for this joint, in its order. Empty where it has none.
+    pub channels: Vec<Channel>,
+}
+
+/// Why a list of joints is no skeleton.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SkeletonError {
+    /// There is no joint at all.
+    #[error("a skeleton needs at least one joint")]
+    Empty,
+    /// Joint 0 has a parent, or another joint has none.
+    #[error("joint {index} (`{name}`): only the first joint may be, and must be, without a parent")]
+    NotOneRoot {
+        /// The joint's index.
+        index: usize,
+        /// The joint's name.
+        name: String,
+    },
+    /// A joint stands before its parent.
+    #[error("joint {index} (`{name}`) stands before its parent, joint {parent}")]
+    ParentAfterChild {
+        /// The joint's index.
+        index: usize,
+        /// The joint's name.
+        name: String,
+        /// The parent's index.
+        parent: usize,
+    },
+}
+
+/// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's rotation is the identity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    joints: Vec<Joint>,
+}
+
+impl Skeleton {
+    /// Checks that `joints` is a tree with its root first and every parent before its children.
+    ///
+    /// # Errors
+    /// [`SkeletonError`] names the joint that breaks the rule.
+    pub fn new(joints: Vec<Joint>) -> Result<Self, SkeletonError> {
+        if joints.is_empty() {
+            return Err(SkeletonError::Empty);
+        }
+        for (index, joint) in joints.iter().enumerate() {
+            match joint.parent {
+                Some(parent) if index > 0 && parent >= index => {
+                    return Err(SkeletonError::ParentAfterChild { index, name: joint.name.clone(), parent });
+                }
+                Some(_) if index > 0 => {}
+                None if index == 0 => {}
+                _ => return Err(SkeletonError::NotOneRoot { index, name: joint.name.clone() }),
+            }
+        }
+        Ok(Self { joints })
+    }
+
+    /// All joints, parents first.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The number of joints; at least 1.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "a skeleton is never empty")]
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The index of the parent of `joint`.
+    #[must_use]
+    pub fn parent(&self, joint: usize) -> Option<usize> {
+        self.joints.get(joint).and_then(|j| j.parent)
+    }
+
+    /// The children of `joint`, in order.
+    pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        (joint + 1..self.joints.len()).filter(move |&child| self.joints[child].parent == Some(joint))
+    }
+
+    /// The first joint of that name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.name == name)
+    }
+
+    /// The joints' positions at rest with the root's offset left out: the root stands at the origin. Metres.
+    #[must_use]
+    pub fn rest_positions(&self) -> Vec<Vec3> {
+        let mut positions: Vec<Vec3> = Vec::with_capacity(self.joints.len());
+        for joint in &self.joints {
+            positions.push(joint.parent.map_or(Vec3::ZERO, |parent| positions[parent] + joint.offset));
+        }
+        positions
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joint(parent: Option<usize>) -> Joint {
+        Joint { name: "j".into(), parent, offset: Vec3::Y, end_site: None, channels: vec![] }
+    }
+
+    #[test]
+    fn only_trees_with_the_root_first_are_skeletons() {
+        assert_eq!(Skeleton::new(vec![]), Err(SkeletonError::Empty));
+        assert!(matches!(Skeleton::new(vec![joint(Some(0))]), Err(SkeletonError::NotOneRoot { index: 0, .. })));
+        assert!(matches!(Skeleton::new(vec![joint(None), joint(None)]), Err(SkeletonError::NotOneRoot { index: 1, .. })));
+        assert!(matches!(Skeleton::new(vec![joint(None), joint(Some(1))]), Err(SkeletonError::ParentAfterChild { index: 1, .. })));
+        let skeleton = Skeleton::new(vec![joint(None), joint(Some(0)), joint(Some(0)), joint(Some(1))]).unwrap();
+        assert_eq!(skeleton.children(0).collect::<Vec<_>>(), [1, 2]);
+        assert_eq!(skeleton.rest_positions()[3], Vec3::Y * 2.0);
+    }
+}
