@@ -1,1 +1,5 @@
-//! session
+//! The document.
+pub mod compare;
+pub mod link;
+pub mod params;
+pub mod transport;

@@ -1,0 +1,88 @@
+use super::params::{Key, Kind, Value, ValueError, format_number};
+use std::fmt;
+
+/// Two to four values of one numeric parameter, each in a pane of its own: `blend_window:30,15,10`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    /// The parameter in which the panes differ.
+    pub key: Key,
+    /// Its value in each pane, in order.
+    pub values: Vec<f64>,
+}
+
+/// How many panes fit side by side.
+pub const MAX_PANES: usize = 4;
+
+impl Compare {
+    /// Reads `key:value,value,…`.
+    ///
+    /// # Errors
+    /// [`ValueError`] when the key cannot be compared, a value does not fit it, or there are not two to four values.
+    pub fn parse(text: &str) -> Result<Self, ValueError> {
+        let refuse = |expected: String| ValueError::NotAComparison { found: text.to_owned(), expected };
+        let (name, list) = text.split_once(':').ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
+        let key = Key::from_name(name.trim())
+            .filter(|key| key.param().is_comparable())
+            .ok_or_else(|| refuse(format!("a numeric parameter of a lab before the colon, not `{name}`")))?;
+        let values = list
+            .split(',')
+            .map(|value| match key.param().parse(value.trim())? {
+                Value::Number(number) => Ok(number),
+                _ => Err(refuse(format!("a number for each pane, not `{value}`"))),
+            })
+            .collect::<Result<Vec<f64>, ValueError>>()?;
+        if !(2..=MAX_PANES).contains(&values.len()) {
+            return Err(refuse(format!("2 to {MAX_PANES} values, not {}", values.len())));
+        }
+        Ok(Self { key, values })
+    }
+
+    /// The experiment of the course: the full value, half of it and a third, each brought into the parameter's range.
+    /// `None` for a parameter that cannot be compared.
+    #[must_use]
+    pub fn full_half_third(key: Key, full: f64) -> Option<Self> {
+        let Kind::Number { min, max, .. } = key.param().kind else { return None };
+        let values = [1.0, 2.0, 3.0].map(|share| match key.param().check(Value::Number((full / share).clamp(min, max))) {
+            Ok(Value::Number(number)) => number,
+            _ => full,
+        });
+        key.param().is_comparable().then(|| Self { key, values: values.to_vec() })
+    }
+}
+
+impl fmt::Display for Compare {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let param = self.key.param();
+        let Kind::Number { step, .. } = param.kind else { return f.write_str(param.name) };
+        let values: Vec<String> = self.values.iter().map(|&value| format_number(value, step)).collect();
+        write!(f, "{}:{}", param.name, values.join(","))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_what_it_writes() {
+        let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
+        assert_eq!(compare.to_string(), "blend_window:30,15,10");
+        assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0), Some(compare));
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        for (text, part) in [
+            ("blend_window", "key:value"),
+            ("align:1,2", "not `align`"),
+            ("speed:1,2", "not `speed`"),
+            ("blend_window:30", "2 to 4 values, not 1"),
+            ("blend_window:1,2,3,4,5", "not 5"),
+            ("leave_a:auto,1", "not `auto`"),
+            ("blend_window:0,3", "1 to 240 frames"),
+        ] {
+            let message = Compare::parse(text).unwrap_err().to_string();
+            assert!(message.contains(part), "{text}: {message}");
+        }
+    }
+}

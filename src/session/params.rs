@@ -1,0 +1,544 @@
+//! The one table of parameters. Sliders, the link, the page's API, compare, undo and the README table are made from it.
+
+use super::compare::Compare;
+use serde_json::Value as Json;
+use std::fmt;
+
+/// What a parameter belongs to: the lab whose panel shows it, or the part of the page that does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Group {
+    Page,
+    Transport,
+    Stage,
+    View,
+    Make,
+    Blend,
+}
+
+impl Group {
+    /// The name in the API and in the README.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Page => "page",
+            Self::Transport => "transport",
+            Self::Stage => "stage",
+            Self::View => "view",
+            Self::Make => "make",
+            Self::Blend => "blend",
+        }
+    }
+
+    /// Whether a change of one of these parameters is a step that undo takes back. Looking around and playing are not.
+    #[must_use]
+    pub const fn is_undoable(self) -> bool {
+        !matches!(self, Self::Transport)
+    }
+}
+
+/// One of the choices of a [`Kind::Choice`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The word in the link.
+    pub key: &'static str,
+    /// The word on screen.
+    pub label: &'static str,
+}
+
+const fn choice(key: &'static str, label: &'static str) -> Choice {
+    Choice { key, label }
+}
+
+/// What values a parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number in `[min, max]`, snapped to multiples of `step`.
+    Number {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Distance between neighbouring values; 1 for whole numbers.
+        step: f64,
+        /// Whether the value may be left to Segue (`auto`).
+        auto: bool,
+        /// Whether a slider shows it on a logarithmic scale.
+        logarithmic: bool,
+    },
+    /// `on` or `off`.
+    Switch,
+    /// One of a few words.
+    Choice(&'static [Choice]),
+    /// The id of a clip in the library.
+    Clip,
+    /// Free text.
+    Text,
+    /// A comparable parameter and two to four values of it; see [`Compare`].
+    Compare,
+}
+
+impl Kind {
+    /// The name in the API.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Number { step, .. } => {
+                if *step == 1.0 {
+                    "integer"
+                } else {
+                    "number"
+                }
+            }
+            Self::Switch => "switch",
+            Self::Choice(_) => "choice",
+            Self::Clip => "clip",
+            Self::Text => "text",
+            Self::Compare => "compare",
+        }
+    }
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Left to Segue.
+    Auto,
+    /// A number.
+    Number(f64),
+    /// A switch.
+    Switch(bool),
+    /// The key of a choice.
+    Choice(&'static str),
+    /// A clip's id or free text.
+    Text(String),
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Which parameter.
+    pub key: Key,
+    /// The key in the link and in the API.
+    pub name: &'static str,
+    /// The label on screen.
+    pub label: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// The unit of a number, as shown behind it; empty where there is none.
+    pub unit: &'static str,
+    /// Where it belongs.
+    pub group: Group,
+    /// One sentence of help.
+    pub help: &'static str,
+    default: Start,
+}
+
+/// A [`Value`] that can stand in a constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Start {
+    Auto,
+    Number(f64),
+    Switch(bool),
+    Word(&'static str),
+}
+
+macro_rules! parameters {
+    ($($key:ident $name:literal $label:literal $group:ident $kind:expr, $default:expr, $unit:literal, $help:literal;)*) => {
+        /// The name of a parameter inside the program; its row is [`Key::param`].
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[expect(missing_docs, reason = "the help sentence of the row says it")]
+        pub enum Key { $($key),* }
+
+        /// Every parameter, in the order in which links and panels show them.
+        pub static PARAMS: &[Param] = &[$(Param {
+            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group, help: $help, default: $default,
+        }),*];
+    };
+}
+
+const fn number(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: false, logarithmic: false }
+}
+const fn auto(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: true, logarithmic: false }
+}
+const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: false, logarithmic: true }
+}
+
+const LABS: &[Choice] = &[choice("view", "View"), choice("make", "Make"), choice("blend", "Blend")];
+const WEIGHT_LAWS: &[Choice] = &[choice("smooth", "smooth"), choice("linear", "linear"), choice("smoother", "smoother")];
+const GAITS: &[Choice] = &[
+    choice("walk", "walk"),
+    choice("run", "run"),
+    choice("idle", "idle"),
+    choice("start", "start"),
+    choice("stop", "stop"),
+    choice("spin", "spin"),
+    choice("jump", "jump"),
+];
+const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
+const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
+const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
+const CURVES: &[Choice] = &[choice("speed", "speed"), choice("height", "height"), choice("turn", "turn rate")];
+const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
+
+parameters! {
+    Lab "lab" "Lab" Page Kind::Choice(LABS), Start::Word("blend"), "", "Which experiment is open.";
+    A "a" "A" Page Kind::Clip, Start::Word("walk"), "", "The clip that plays first.";
+    B "b" "B" Page Kind::Clip, Start::Word("run"), "", "The clip that follows.";
+
+    BlendWindow "blend_window" "Blend window" Blend number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
+    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the blend window begins in A.";
+    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the blend window begins in B.";
+    WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
+    Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
+    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that feet slide less.";
+
+    Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
+    GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
+    TurnRate "turn_rate" "Turn rate" Make number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "How fast the path turns; positive is left.";
+    BodyHeight "body_height" "Body height" Make number(1.0, 2.2, 0.01), Start::Number(1.75), "m", "Longer legs take longer and slower strides.";
+    ArmSwing "arm_swing" "Arm swing" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the arms swing; 1 is natural.";
+    Bounce "bounce" "Bounce" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the hips rise and fall; 1 is natural.";
+    Lean "lean" "Lean" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the trunk leans forward and into turns; 1 is natural.";
+    MakeSeconds "make_seconds" "Length" Make number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
+    Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
+
+    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "Body, bones, or both.";
+    Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
+    Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
+    Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";
+    GhostStep "ghost_step" "Onion skin step" Stage number(0.05, 1.0, 0.05), Start::Number(0.25), "s", "Time from one onion-skin pose to the next.";
+    Trail "trail" "Ground path" Stage Kind::Switch, Start::Switch(true), "", "The way of the hips, drawn on the ground.";
+    JointTrail "joint_trail" "Joint trail" Stage Kind::Switch, Start::Switch(false), "", "The way of the chosen joint through the air.";
+    Joint "joint" "Joint" Stage Kind::Text, Start::Word("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
+    Curve "curve" "Curve" Stage Kind::Choice(CURVES), Start::Word("speed"), "", "What of the chosen joint is plotted.";
+    Contacts "contacts" "Foot contacts" Stage Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
+    Follow "follow" "Follow" Stage Kind::Choice(FOLLOW), Start::Word("result"), "", "Which character the camera stays with.";
+    FollowJoint "follow_joint" "Follow joint" Stage Kind::Text, Start::Word("hips"), "", "The joint that the camera stays with.";
+    FollowHalfLife "follow_half_life" "Camera half-life" Stage logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
+    Camera "camera" "Camera" Stage Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";
+    CameraYaw "camera_yaw" "Camera direction" Stage number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
+    CameraPitch "camera_pitch" "Camera pitch" Stage number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
+    CameraDistance "camera_distance" "Camera distance" Stage logarithmic(0.5, 60.0, 0.05), Start::Number(4.2), "m", "How far away the camera stands.";
+
+    Play "play" "Play" Transport Kind::Switch, Start::Switch(true), "", "Whether time runs.";
+    Speed "speed" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
+    Loop "loop" "Loop" Transport Kind::Switch, Start::Switch(true), "", "Starts again at the end.";
+    Time "t" "Time" Transport number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused.";
+    In "in" "In mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";
+    Out "out" "Out mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing ends.";
+
+    Compare "compare" "Compare" Page Kind::Compare, Start::Word(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10.";
+    Theme "theme" "Theme" Page Kind::Choice(THEMES), Start::Word("auto"), "", "Dark, light, or as the system has it.";
+    Projector "projector" "Projector" Page Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
+    Embed "embed" "Embed" Page Kind::Switch, Start::Switch(false), "", "The stage and the parameters that the link names, without the rest.";
+    Src "src" "Source" Page Kind::Text, Start::Word(""), "", "Addresses of motion files to load, separated by spaces.";
+}
+
+impl Key {
+    /// The row of this parameter.
+    #[must_use]
+    pub fn param(self) -> &'static Param {
+        &PARAMS[self as usize]
+    }
+
+    /// The parameter of that name in the link.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        PARAMS.iter().find(|param| param.name == name).map(|param| param.key)
+    }
+}
+
+/// Why a value does not fit its parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ValueError {
+    /// Not a number.
+    #[error("{key}: found `{found}`, expected a number{}{}", of_unit(.unit), if *.auto { " or `auto`" } else { "" })]
+    NotANumber {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: String,
+        /// Its unit.
+        unit: &'static str,
+        /// Whether `auto` would do.
+        auto: bool,
+    },
+    /// A number outside of the range.
+    #[error("{key}: found {found}, expected {min} to {max}{}", unit_suffix(.unit))]
+    OutOfRange {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A word that is none of the choices.
+    #[error("{key}: found `{found}`, expected {expected}")]
+    NotAChoice {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: String,
+        /// The words that there are.
+        expected: String,
+    },
+    /// Not a comparison.
+    #[error("compare: found `{found}`, expected {expected}")]
+    NotAComparison {
+        /// What was there.
+        found: String,
+        /// What would do.
+        expected: String,
+    },
+}
+
+fn of_unit(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" of {unit}") }
+}
+
+fn unit_suffix(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+impl Param {
+    /// The value when nobody has said anything.
+    #[must_use]
+    pub fn default_value(&self) -> Value {
+        match (self.default, self.kind) {
+            (Start::Auto, _) => Value::Auto,
+            (Start::Number(number), _) => Value::Number(number),
+            (Start::Switch(on), _) => Value::Switch(on),
+            (Start::Word(word), Kind::Choice(_)) => Value::Choice(word),
+            (Start::Word(word), _) => Value::Text(word.to_owned()),
+        }
+    }
+
+    /// Checks a value and brings it into its normal form: numbers are snapped to the step.
+    ///
+    /// # Errors
+    /// [`ValueError`] names the key, what was found and what would do.
+    pub fn check(&self, value: Value) -> Result<Value, ValueError> {
+        match (self.kind, value) {
+            (Kind::Number { min, max, step, .. }, Value::Number(number)) => {
+                let snapped = snap(number, step);
+                if snapped.is_finite() && snapped >= min && snapped <= max {
+                    Ok(Value::Number(snapped))
+                } else {
+                    Err(ValueError::OutOfRange { key: self.name, found: number, min, max, unit: self.unit })
+                }
+            }
+            // Everything else has one normal form, the one that a link reads.
+            (_, value) => self.parse(&self.format(&value)),
+        }
+    }
+
+    fn not_a_choice(&self, found: &str, choices: &[Choice]) -> ValueError {
+        let expected = choices.iter().map(|c| c.key).collect::<Vec<_>>().join(", ");
+        ValueError::NotAChoice { key: self.name, found: found.to_owned(), expected }
+    }
+
+    /// Reads the value from a link.
+    ///
+    /// # Errors
+    /// [`ValueError`] names the key, what was found and what would do.
+    pub fn parse(&self, text: &str) -> Result<Value, ValueError> {
+        match self.kind {
+            Kind::Number { auto: true, .. } if text == "auto" => Ok(Value::Auto),
+            Kind::Number { auto, .. } => match text.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => self.check(Value::Number(number)),
+                _ => Err(ValueError::NotANumber { key: self.name, found: text.to_owned(), unit: self.unit, auto }),
+            },
+            Kind::Switch => match text {
+                "on" | "1" | "true" | "yes" => Ok(Value::Switch(true)),
+                "off" | "0" | "false" | "no" => Ok(Value::Switch(false)),
+                _ => Err(ValueError::NotAChoice { key: self.name, found: text.to_owned(), expected: "on or off".into() }),
+            },
+            Kind::Choice(choices) => match choices.iter().find(|c| c.key == text) {
+                Some(found) => Ok(Value::Choice(found.key)),
+                None => Err(self.not_a_choice(text, choices)),
+            },
+            Kind::Clip | Kind::Text => Ok(Value::Text(text.to_owned())),
+            Kind::Compare if text.is_empty() => Ok(Value::Text(String::new())),
+            Kind::Compare => Ok(Value::Text(Compare::parse(text)?.to_string())),
+        }
+    }
+
+    /// Writes the value as [`Param::parse`] reads it, as short as it goes.
+    #[must_use]
+    pub fn format(&self, value: &Value) -> String {
+        match (value, self.kind) {
+            (Value::Number(number), Kind::Number { step, .. }) => format_number(*number, step),
+            (Value::Auto, _) => "auto".to_owned(),
+            (Value::Number(number), _) => number.to_string(),
+            (Value::Switch(on), _) => if *on { "on" } else { "off" }.to_owned(),
+            (Value::Choice(word), _) => (*word).to_owned(),
+            (Value::Text(text), _) => text.clone(),
+        }
+    }
+
+    /// The value as JSON for the API: numbers, booleans and strings; `"auto"` where it is left to Segue.
+    #[must_use]
+    pub fn to_json(&self, value: &Value) -> Json {
+        match value {
+            Value::Number(number) => Json::from(*number),
+            Value::Switch(on) => Json::from(*on),
+            other => Json::from(self.format(other)),
+        }
+    }
+
+    /// Reads a value that the API was given.
+    ///
+    /// # Errors
+    /// As [`Param::parse`].
+    pub fn from_json(&self, json: &Json) -> Result<Value, ValueError> {
+        match json {
+            Json::Number(number) => self.check(Value::Number(number.as_f64().unwrap_or(f64::NAN))),
+            Json::Bool(on) => self.parse(if *on { "on" } else { "off" }),
+            Json::String(text) => self.parse(text),
+            other => self.parse(&other.to_string()),
+        }
+    }
+
+    /// Whether compare can make panes of it: a number that changes the result.
+    #[must_use]
+    pub fn is_comparable(&self) -> bool {
+        matches!(self.kind, Kind::Number { .. }) && matches!(self.group, Group::View | Group::Make | Group::Blend)
+    }
+}
+
+fn snap(number: f64, step: f64) -> f64 {
+    // Multiplying by 0.01 leaves 0.30000000000000004; dividing by 100 does not.
+    let per_unit = (1.0 / step).round();
+    if per_unit >= 1.0 && (per_unit * step - 1.0).abs() < 1e-9 { (number * per_unit).round() / per_unit } else { (number / step).round() * step }
+}
+
+/// `number` with the decimals that `step` calls for, trailing zeros dropped.
+#[must_use]
+pub fn format_number(number: f64, step: f64) -> String {
+    let decimals = decimals_of(step);
+    let text = format!("{number:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
+    if text == "-0" { "0".to_owned() } else { text }
+}
+
+/// How many decimals values of that step have.
+#[must_use]
+pub fn decimals_of(step: f64) -> usize {
+    (0..6).find(|&decimals| ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9).unwrap_or(6) as usize
+}
+
+/// The current value of every parameter.
+#[derive(Clone, PartialEq)]
+pub struct Params(Vec<Value>);
+
+impl Default for Params {
+    fn default() -> Self {
+        Self(PARAMS.iter().map(Param::default_value).collect())
+    }
+}
+
+impl fmt::Debug for Params {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.changed().map(|(param, value)| (param.name, param.format(value)))).finish()
+    }
+}
+
+impl Params {
+    /// The value of a parameter.
+    #[must_use]
+    pub fn get(&self, key: Key) -> &Value {
+        &self.0[key as usize]
+    }
+
+    /// Sets a value after checking it; says whether it was another before.
+    ///
+    /// # Errors
+    /// [`ValueError`]; nothing is changed then.
+    pub fn set(&mut self, key: Key, value: Value) -> Result<bool, ValueError> {
+        let value = key.param().check(value)?;
+        let slot = &mut self.0[key as usize];
+        let changed = *slot != value;
+        *slot = value;
+        Ok(changed)
+    }
+
+    /// A number; `None` where it is left to Segue.
+    #[must_use]
+    pub fn optional(&self, key: Key) -> Option<f64> {
+        if let Value::Number(number) = self.get(key) { Some(*number) } else { None }
+    }
+
+    /// A number that is never `auto`. 0 for a parameter that is no number.
+    #[must_use]
+    pub fn number(&self, key: Key) -> f64 {
+        self.optional(key).unwrap_or_default()
+    }
+
+    /// A switch. `false` for a parameter that is none.
+    #[must_use]
+    pub fn is_on(&self, key: Key) -> bool {
+        *self.get(key) == Value::Switch(true)
+    }
+
+    /// A word, a clip's id or a text. Empty for a parameter that has none.
+    #[must_use]
+    pub fn text(&self, key: Key) -> &str {
+        match self.get(key) {
+            Value::Choice(word) => word,
+            Value::Text(text) => text,
+            _ => "",
+        }
+    }
+
+    /// The parameters that differ from their default, in the order of the table.
+    pub fn changed(&self) -> impl Iterator<Item = (&'static Param, &Value)> {
+        PARAMS.iter().zip(&self.0).filter(|(param, value)| **value != param.default_value())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_table_is_sound() {
+        for (index, param) in PARAMS.iter().enumerate() {
+            assert_eq!(param.key as usize, index);
+            assert_eq!(Key::from_name(param.name), Some(param.key), "{} is there twice", param.name);
+            assert_eq!(param.check(param.default_value()).as_ref(), Ok(&param.default_value()), "{}", param.name);
+            assert!(param.help.ends_with('.') && !param.label.is_empty(), "{}", param.name);
+            assert!(param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'), "{}", param.name);
+        }
+    }
+
+    #[test]
+    fn bad_values_are_named() {
+        let window = Key::BlendWindow.param();
+        assert_eq!(window.parse("many").unwrap_err().to_string(), "blend_window: found `many`, expected a number of frames");
+        assert_eq!(window.parse("0").unwrap_err().to_string(), "blend_window: found 0, expected 1 to 240 frames");
+        assert_eq!(Key::LeaveA.param().parse("auto"), Ok(Value::Auto));
+        assert!(Key::Lab.param().parse("cook").unwrap_err().to_string().contains("view, make, blend"));
+        assert!(window.parse("inf").is_err() && window.parse("NaN").is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_read_back_as_written(row in 0..PARAMS.len(), part in 0.0f64..=1.0) {
+            let param = &PARAMS[row];
+            if let Kind::Number { min, max, .. } = param.kind {
+                let value = param.check(Value::Number(min + (max - min) * part)).unwrap();
+                prop_assert_eq!(param.parse(&param.format(&value)), Ok(value));
+            }
+        }
+    }
+}

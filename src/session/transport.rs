@@ -1,0 +1,62 @@
+//! Where the playhead stands and how it moves.
+
+/// The part of a result that plays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Where playing begins, seconds.
+    pub start: f64,
+    /// Where it ends, seconds; not before `start`.
+    pub end: f64,
+}
+
+impl Span {
+    /// The part of `[0, duration]` between two marks; a mark that is missing or outside is the end of the result, and marks in the wrong order
+    /// are taken the other way round.
+    #[must_use]
+    pub fn between(in_mark: Option<f64>, out_mark: Option<f64>, duration: f64) -> Self {
+        let start = in_mark.unwrap_or(0.0).clamp(0.0, duration);
+        let end = out_mark.unwrap_or(duration).clamp(0.0, duration);
+        Self { start: start.min(end), end: start.max(end) }
+    }
+
+    /// The playhead after `dt_secs` of playing at `speed`, and whether it still moves.
+    ///
+    /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops at the end.
+    #[must_use]
+    pub fn advance(&self, now: f64, dt_secs: f64, speed: f64, repeat: bool) -> (f64, bool) {
+        let length = self.end - self.start;
+        if length <= 0.0 {
+            return (self.start, false);
+        }
+        let now = if (self.start..=self.end).contains(&now) { now } else { self.start };
+        let next = now + dt_secs * speed;
+        if next <= self.end {
+            (next, true)
+        } else if repeat {
+            (self.start + (next - self.start).rem_euclid(length), true)
+        } else {
+            (self.end, false)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goes_round_or_stops() {
+        let span = Span::between(Some(1.0), None, 3.0);
+        assert_eq!(span.advance(0.0, 0.1, 1.0, true), (1.1, true));
+        assert_eq!(span.advance(2.5, 1.0, 1.0, true), (1.5, true));
+        assert_eq!(span.advance(2.5, 1.0, 1.0, false), (3.0, false));
+        assert_eq!(span.advance(2.0, 0.5, 0.5, false), (2.25, true));
+        assert_eq!(Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true), (0.0, false));
+    }
+
+    #[test]
+    fn marks_in_the_wrong_order_are_taken_the_other_way_round() {
+        assert_eq!(Span::between(Some(2.0), Some(1.0), 3.0), Span { start: 1.0, end: 2.0 });
+        assert_eq!(Span::between(Some(9.0), None, 3.0), Span { start: 3.0, end: 3.0 });
+    }
+}
