@@ -30,20 +30,28 @@ impl Clip {
         // `part > 0` means that there is a next frame.
         let (before, next, after) = (frame.saturating_sub(1), frame + 1, (frame + 2).min(last));
         let position = |of: &dyn Fn(usize) -> Vec3| match interpolation {
-            Interpolation::Cubic => curve::catmull_rom(of(before), of(frame), of(next), of(after), part),
+            Interpolation::Cubic => {
+                curve::catmull_rom(of(before), of(frame), of(next), of(after), part)
+            }
             _ => of(frame).lerp(of(next), part),
         };
         let rotation = |joint: usize| {
             let of = |f: usize| self.rotations(f)[joint];
             match interpolation {
-                Interpolation::Cubic => cubic_rotation(of(before), of(frame), of(next), of(after), part),
+                Interpolation::Cubic => {
+                    cubic_rotation(of(before), of(frame), of(next), of(after), part)
+                }
                 _ => quat::slerp(of(frame), of(next), part),
             }
         };
         Some(Pose {
             root_translation: position(&|f| self.root_translations()[f]),
             rotations: (0..self.skeleton().len()).map(rotation).collect(),
-            translations: self.translations().iter().map(|track| (track.joint, position(&|f| track.values[f]))).collect(),
+            translations: self
+                .translations()
+                .iter()
+                .map(|track| (track.joint, position(&|f| track.values[f])))
+                .collect(),
         })
     }
 }

@@ -5,7 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The axis of a file that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum UpAxis {
     /// +Y is up, as inside Segue.
     #[default]
@@ -26,7 +28,10 @@ pub struct Provenance {
 impl Default for Provenance {
     /// Centimetres and Y up, what most BVH files use.
     fn default() -> Self {
-        Self { metres_per_unit: 0.01, up: UpAxis::Y }
+        Self {
+            metres_per_unit: 0.01,
+            up: UpAxis::Y,
+        }
     }
 }
 
@@ -101,7 +106,11 @@ impl Clip {
         }
         let expected = root_translations.len() * skeleton.len();
         if rotations.len() != expected {
-            return Err(ClipError::Length { what: "rotations", found: rotations.len(), expected });
+            return Err(ClipError::Length {
+                what: "rotations",
+                found: rotations.len(),
+                expected,
+            });
         }
         Ok(Self {
             name: name.into(),
@@ -118,14 +127,21 @@ impl Clip {
     ///
     /// # Errors
     /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is not the number of frames.
-    pub fn with_translations(mut self, translations: Vec<JointTranslations>) -> Result<Self, ClipError> {
+    pub fn with_translations(
+        mut self,
+        translations: Vec<JointTranslations>,
+    ) -> Result<Self, ClipError> {
         let mut previous = 0;
         for track in &translations {
             if track.joint <= previous || track.joint >= self.skeleton.len() {
                 return Err(ClipError::Translations(track.joint));
             }
             if track.values.len() != self.frames() {
-                return Err(ClipError::Length { what: "translations", found: track.values.len(), expected: self.frames() });
+                return Err(ClipError::Length {
+                    what: "translations",
+                    found: track.values.len(),
+                    expected: self.frames(),
+                });
             }
             previous = track.joint;
         }
@@ -226,7 +242,11 @@ impl Clip {
         Pose {
             root_translation: self.root_translations[frame],
             rotations: self.rotations(frame).to_vec(),
-            translations: self.translations.iter().map(|track| (track.joint, track.values[frame])).collect(),
+            translations: self
+                .translations
+                .iter()
+                .map(|track| (track.joint, track.values[frame]))
+                .collect(),
         }
     }
 
@@ -235,8 +255,17 @@ impl Clip {
     /// # Panics
     /// When there is no such frame.
     pub fn world_pose_into(&self, frame: usize, world: &mut WorldPose) {
-        let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
-        world_pose_into(&self.skeleton, self.root_translations[frame], self.rotations(frame), moved, world);
+        let moved = self
+            .translations
+            .iter()
+            .map(|track| (track.joint, track.values[frame]));
+        world_pose_into(
+            &self.skeleton,
+            self.root_translations[frame],
+            self.rotations(frame),
+            moved,
+            world,
+        );
     }
 
     /// Forward kinematics of one frame.
@@ -270,7 +299,11 @@ impl Clip {
     /// [`ClipError::OutOfRange`] when the range is not inside the clip.
     pub fn crop(&self, range: Range<usize>) -> Result<Self, ClipError> {
         if range.start > range.end || range.end > self.frames() {
-            return Err(ClipError::OutOfRange { start: range.start, end: range.end, frames: self.frames() });
+            return Err(ClipError::OutOfRange {
+                start: range.start,
+                end: range.end,
+                frames: self.frames(),
+            });
         }
         let joints = self.skeleton.len();
         Ok(Self {
@@ -280,7 +313,10 @@ impl Clip {
             rotations: self.rotations[range.start * joints..range.end * joints].to_vec(),
             root_translations: self.root_translations[range.clone()].to_vec(),
             translations: (self.translations.iter())
-                .map(|track| JointTranslations { joint: track.joint, values: track.values[range.clone()].to_vec() })
+                .map(|track| JointTranslations {
+                    joint: track.joint,
+                    values: track.values[range.clone()].to_vec(),
+                })
                 .collect(),
             provenance: self.provenance,
         })

@@ -15,18 +15,28 @@ pub struct Planar {
 
 impl Planar {
     /// Leaves everything where it is.
-    pub const IDENTITY: Self = Self { yaw: 0.0, shift: DVec2::ZERO };
+    pub const IDENTITY: Self = Self {
+        yaw: 0.0,
+        shift: DVec2::ZERO,
+    };
 
     /// A turn of `yaw` radians about +Y followed by a shift of `(x, z)` metres.
     #[must_use]
     pub const fn new(yaw: f64, x: f64, z: f64) -> Self {
-        Self { yaw, shift: DVec2::new(x, z) }
+        Self {
+            yaw,
+            shift: DVec2::new(x, z),
+        }
     }
 
     /// The frame of a character that stands at `position` (its height is ignored) and faces the ground projection of `facing`.
     #[must_use]
     pub fn standing_at(position: Vec3, facing: Vec3) -> Self {
-        Self::new(f64::from(facing.x).atan2(f64::from(facing.z)), f64::from(position.x), f64::from(position.z))
+        Self::new(
+            f64::from(facing.x).atan2(f64::from(facing.z)),
+            f64::from(position.x),
+            f64::from(position.z),
+        )
     }
 
     /// The turn as a quaternion.
@@ -69,14 +79,23 @@ impl Planar {
     /// `self` after `first`: `a.after(b).apply(p) == a.apply(b.apply(p))`. The yaw is wrapped into `[-π, π)`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
-        Self { yaw: wrap_angle(self.yaw + first.yaw), shift: self.turned(first.shift) + self.shift }
+        Self {
+            yaw: wrap_angle(self.yaw + first.yaw),
+            shift: self.turned(first.shift) + self.shift,
+        }
     }
 
     /// The transform that undoes this one.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        let back = Self { yaw: -self.yaw, shift: DVec2::ZERO };
-        Self { yaw: wrap_angle(-self.yaw), shift: -back.turned(self.shift) }
+        let back = Self {
+            yaw: -self.yaw,
+            shift: DVec2::ZERO,
+        };
+        Self {
+            yaw: wrap_angle(-self.yaw),
+            shift: -back.turned(self.shift),
+        }
     }
 }
 

@@ -66,7 +66,11 @@ pub fn angular_velocity(from: Quat, to: Quat, dt_secs: f32) -> Vec3 {
 #[must_use]
 pub fn renormalize(q: Quat) -> Quat {
     let length_squared = q.length_squared();
-    if length_squared > 1e-12 && length_squared.is_finite() { q * length_squared.sqrt().recip() } else { Quat::IDENTITY }
+    if length_squared > 1e-12 && length_squared.is_finite() {
+        q * length_squared.sqrt().recip()
+    } else {
+        Quat::IDENTITY
+    }
 }
 
 /// The shortest rotation that takes the direction `from` to the direction `to`; the identity where either is too short to have one.

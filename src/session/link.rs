@@ -4,7 +4,17 @@ use super::params::{Key, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 
 /// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every browser takes them as they are.
-const ESCAPED: &AsciiSet = &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'>').add(b'=').add(b'`');
+const ESCAPED: &AsciiSet = &CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b'&')
+    .add(b'+')
+    .add(b'<')
+    .add(b'>')
+    .add(b'=')
+    .add(b'`');
 
 /// What a link says, and what of it could not be used.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,7 +39,9 @@ pub fn read(query: &str) -> Link {
                 Err(error) => link.problems.push(error.to_string()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => link.problems.push(format!("`{name}` is not a parameter of this version")),
+            None => link
+                .problems
+                .push(format!("`{name}` is not a parameter of this version")),
         }
     }
     link
@@ -66,15 +78,33 @@ mod tests {
         match param.kind {
             Kind::Number { min, max, auto, .. } => (any::<bool>(), min..=max)
                 .prop_map(move |(left_to_segue, number)| {
-                    (key, if auto && left_to_segue { Value::Auto } else { key.param().check(Value::Number(number)).unwrap() })
+                    (
+                        key,
+                        if auto && left_to_segue {
+                            Value::Auto
+                        } else {
+                            key.param().check(Value::Number(number)).unwrap()
+                        },
+                    )
                 })
                 .boxed(),
-            Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
-            Kind::Choice(choices) => (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed(),
-            Kind::Clip | Kind::Text => "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed(),
-            Kind::Compare => {
-                (1.0f64..120.0, 1.0f64..120.0).prop_map(move |(x, y)| (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap())).boxed()
-            }
+            Kind::Switch => any::<bool>()
+                .prop_map(move |on| (key, Value::Switch(on)))
+                .boxed(),
+            Kind::Choice(choices) => (0..choices.len())
+                .prop_map(move |i| (key, Value::Choice(choices[i].key)))
+                .boxed(),
+            Kind::Clip | Kind::Text => "[^\\pC]{0,12}"
+                .prop_map(move |text| (key, Value::Text(text)))
+                .boxed(),
+            Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
+                .prop_map(move |(x, y)| {
+                    (
+                        key,
+                        key.param().parse(&format!("blend_window:{x},{y}")).unwrap(),
+                    )
+                })
+                .boxed(),
         }
     }
 
@@ -106,15 +136,34 @@ mod tests {
         let mut params = Params::default();
         assert_eq!(write(&params), "");
         params.set(Key::BlendWindow, Value::Number(24.0)).unwrap();
-        params.set(Key::Compare, Value::Text("blend_window:30,15,10".into())).unwrap();
-        params.set(Key::A, Value::Text("01_01~3fa9c1d2".into())).unwrap();
-        assert_eq!(write(&params), "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10");
+        params
+            .set(Key::Compare, Value::Text("blend_window:30,15,10".into()))
+            .unwrap();
+        params
+            .set(Key::A, Value::Text("01_01~3fa9c1d2".into()))
+            .unwrap();
+        assert_eq!(
+            write(&params),
+            "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10"
+        );
     }
 
     #[test]
     fn what_cannot_be_used_is_named_and_the_rest_is_used() {
         let link = read("?blend_window=24&colour=red&weight_law=steep&align=off");
-        assert_eq!(link.values, [(Key::BlendWindow, Value::Number(24.0)), (Key::Align, Value::Switch(false))]);
-        assert_eq!(link.problems, ["`colour` is not a parameter of this version", "weight_law: found `steep`, expected smooth, linear, smoother"]);
+        assert_eq!(
+            link.values,
+            [
+                (Key::BlendWindow, Value::Number(24.0)),
+                (Key::Align, Value::Switch(false))
+            ]
+        );
+        assert_eq!(
+            link.problems,
+            [
+                "`colour` is not a parameter of this version",
+                "weight_law: found `steep`, expected smooth, linear, smoother"
+            ]
+        );
     }
 }

@@ -1,5 +1,31 @@
-//! The document.
-pub mod compare;
+//! The document: the library, the parameters, what is made from them, and everything that can be done to it.
+//!
+//! One direction: a link, a slider or the page's API gives a [`Command`]; [`Session::apply`] changes the document and recomputes what
+//! depends on the change; the scene and the panels are drawn from what then stands here. Nothing here knows a screen, a file system or a clock.
+
+mod command;
+mod compare;
+mod document;
+mod library;
 pub mod link;
-pub mod params;
+mod motion;
+mod notice;
+mod params;
+mod recipe;
+mod saved;
 pub mod transport;
+mod undo;
+
+pub use command::{Command, CommandError, Request};
+pub use compare::{Compare, MAX_PANES};
+pub use document::{ClipInfo, Loaded, Pane, Session};
+pub use library::{
+    Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference,
+};
+pub use motion::Motion;
+pub use notice::{Level, Notice, Notices};
+pub use params::{
+    Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,
+};
+pub use recipe::{Outcome, Slot, Source, Transition};
+pub use saved::{Saved, SavedEntry};

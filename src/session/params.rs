@@ -10,6 +10,7 @@ use std::fmt;
 pub enum Group {
     Page,
     Transport,
+    Camera,
     Stage,
     View,
     Make,
@@ -23,6 +24,7 @@ impl Group {
         match self {
             Self::Page => "page",
             Self::Transport => "transport",
+            Self::Camera => "camera",
             Self::Stage => "stage",
             Self::View => "view",
             Self::Make => "make",
@@ -33,7 +35,7 @@ impl Group {
     /// Whether a change of one of these parameters is a step that undo takes back. Looking around and playing are not.
     #[must_use]
     pub const fn is_undoable(self) -> bool {
-        !matches!(self, Self::Transport)
+        !matches!(self, Self::Transport | Self::Camera)
     }
 }
 
@@ -158,17 +160,43 @@ macro_rules! parameters {
 }
 
 const fn number(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: false, logarithmic: false }
+    Kind::Number {
+        min,
+        max,
+        step,
+        auto: false,
+        logarithmic: false,
+    }
 }
 const fn auto(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: true, logarithmic: false }
+    Kind::Number {
+        min,
+        max,
+        step,
+        auto: true,
+        logarithmic: false,
+    }
 }
 const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: false, logarithmic: true }
+    Kind::Number {
+        min,
+        max,
+        step,
+        auto: false,
+        logarithmic: true,
+    }
 }
 
-const LABS: &[Choice] = &[choice("view", "View"), choice("make", "Make"), choice("blend", "Blend")];
-const WEIGHT_LAWS: &[Choice] = &[choice("smooth", "smooth"), choice("linear", "linear"), choice("smoother", "smoother")];
+const LABS: &[Choice] = &[
+    choice("view", "View"),
+    choice("make", "Make"),
+    choice("blend", "Blend"),
+];
+const WEIGHT_LAWS: &[Choice] = &[
+    choice("smooth", "smooth"),
+    choice("linear", "linear"),
+    choice("smoother", "smoother"),
+];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -178,11 +206,28 @@ const GAITS: &[Choice] = &[
     choice("spin", "spin"),
     choice("jump", "jump"),
 ];
-const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
-const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
+const LOOKS: &[Choice] = &[
+    choice("body", "body"),
+    choice("bones", "bones"),
+    choice("both", "both"),
+];
+const FOLLOW: &[Choice] = &[
+    choice("off", "off"),
+    choice("result", "result"),
+    choice("a", "A"),
+    choice("b", "B"),
+];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
-const CURVES: &[Choice] = &[choice("speed", "speed"), choice("height", "height"), choice("turn", "turn rate")];
-const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
+const CURVES: &[Choice] = &[
+    choice("speed", "speed"),
+    choice("height", "height"),
+    choice("turn", "turn rate"),
+];
+const THEMES: &[Choice] = &[
+    choice("auto", "auto"),
+    choice("dark", "dark"),
+    choice("light", "light"),
+];
 
 parameters! {
     Lab "lab" "Lab" Page Kind::Choice(LABS), Start::Word("blend"), "", "Which experiment is open.";
@@ -216,13 +261,13 @@ parameters! {
     Joint "joint" "Joint" Stage Kind::Text, Start::Word("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
     Curve "curve" "Curve" Stage Kind::Choice(CURVES), Start::Word("speed"), "", "What of the chosen joint is plotted.";
     Contacts "contacts" "Foot contacts" Stage Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
-    Follow "follow" "Follow" Stage Kind::Choice(FOLLOW), Start::Word("result"), "", "Which character the camera stays with.";
-    FollowJoint "follow_joint" "Follow joint" Stage Kind::Text, Start::Word("hips"), "", "The joint that the camera stays with.";
-    FollowHalfLife "follow_half_life" "Camera half-life" Stage logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
-    Camera "camera" "Camera" Stage Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";
-    CameraYaw "camera_yaw" "Camera direction" Stage number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
-    CameraPitch "camera_pitch" "Camera pitch" Stage number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
-    CameraDistance "camera_distance" "Camera distance" Stage logarithmic(0.5, 60.0, 0.05), Start::Number(4.2), "m", "How far away the camera stands.";
+    Follow "follow" "Follow" Camera Kind::Choice(FOLLOW), Start::Word("result"), "", "Which character the camera stays with.";
+    FollowJoint "follow_joint" "Follow joint" Camera Kind::Text, Start::Word("hips"), "", "The joint that the camera stays with.";
+    FollowHalfLife "follow_half_life" "Camera half-life" Camera logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
+    Camera "camera" "Camera" Camera Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";
+    CameraYaw "camera_yaw" "Camera direction" Camera number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
+    CameraPitch "camera_pitch" "Camera pitch" Camera number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
+    CameraDistance "camera_distance" "Camera distance" Camera logarithmic(0.5, 60.0, 0.05), Start::Number(4.2), "m", "How far away the camera stands.";
 
     Play "play" "Play" Transport Kind::Switch, Start::Switch(true), "", "Whether time runs.";
     Speed "speed" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
@@ -248,7 +293,10 @@ impl Key {
     /// The parameter of that name in the link.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        PARAMS.iter().find(|param| param.name == name).map(|param| param.key)
+        PARAMS
+            .iter()
+            .find(|param| param.name == name)
+            .map(|param| param.key)
     }
 }
 
@@ -302,11 +350,19 @@ pub enum ValueError {
 }
 
 fn of_unit(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" of {unit}") }
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" of {unit}")
+    }
 }
 
 fn unit_suffix(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
 }
 
 impl Param {
@@ -333,7 +389,13 @@ impl Param {
                 if snapped.is_finite() && snapped >= min && snapped <= max {
                     Ok(Value::Number(snapped))
                 } else {
-                    Err(ValueError::OutOfRange { key: self.name, found: number, min, max, unit: self.unit })
+                    Err(ValueError::OutOfRange {
+                        key: self.name,
+                        found: number,
+                        min,
+                        max,
+                        unit: self.unit,
+                    })
                 }
             }
             // Everything else has one normal form, the one that a link reads.
@@ -343,7 +405,11 @@ impl Param {
 
     fn not_a_choice(&self, found: &str, choices: &[Choice]) -> ValueError {
         let expected = choices.iter().map(|c| c.key).collect::<Vec<_>>().join(", ");
-        ValueError::NotAChoice { key: self.name, found: found.to_owned(), expected }
+        ValueError::NotAChoice {
+            key: self.name,
+            found: found.to_owned(),
+            expected,
+        }
     }
 
     /// Reads the value from a link.
@@ -355,12 +421,21 @@ impl Param {
             Kind::Number { auto: true, .. } if text == "auto" => Ok(Value::Auto),
             Kind::Number { auto, .. } => match text.trim().parse::<f64>() {
                 Ok(number) if number.is_finite() => self.check(Value::Number(number)),
-                _ => Err(ValueError::NotANumber { key: self.name, found: text.to_owned(), unit: self.unit, auto }),
+                _ => Err(ValueError::NotANumber {
+                    key: self.name,
+                    found: text.to_owned(),
+                    unit: self.unit,
+                    auto,
+                }),
             },
             Kind::Switch => match text {
                 "on" | "1" | "true" | "yes" => Ok(Value::Switch(true)),
                 "off" | "0" | "false" | "no" => Ok(Value::Switch(false)),
-                _ => Err(ValueError::NotAChoice { key: self.name, found: text.to_owned(), expected: "on or off".into() }),
+                _ => Err(ValueError::NotAChoice {
+                    key: self.name,
+                    found: text.to_owned(),
+                    expected: "on or off".into(),
+                }),
             },
             Kind::Choice(choices) => match choices.iter().find(|c| c.key == text) {
                 Some(found) => Ok(Value::Choice(found.key)),
@@ -411,14 +486,19 @@ impl Param {
     /// Whether compare can make panes of it: a number that changes the result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. }) && matches!(self.group, Group::View | Group::Make | Group::Blend)
+        matches!(self.kind, Kind::Number { .. })
+            && matches!(self.group, Group::View | Group::Make | Group::Blend)
     }
 }
 
 fn snap(number: f64, step: f64) -> f64 {
     // Multiplying by 0.01 leaves 0.30000000000000004; dividing by 100 does not.
     let per_unit = (1.0 / step).round();
-    if per_unit >= 1.0 && (per_unit * step - 1.0).abs() < 1e-9 { (number * per_unit).round() / per_unit } else { (number / step).round() * step }
+    if per_unit >= 1.0 && (per_unit * step - 1.0).abs() < 1e-9 {
+        (number * per_unit).round() / per_unit
+    } else {
+        (number / step).round() * step
+    }
 }
 
 /// `number` with the decimals that `step` calls for, trailing zeros dropped.
@@ -426,14 +506,22 @@ fn snap(number: f64, step: f64) -> f64 {
 pub fn format_number(number: f64, step: f64) -> String {
     let decimals = decimals_of(step);
     let text = format!("{number:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    };
     if text == "-0" { "0".to_owned() } else { text }
 }
 
 /// How many decimals values of that step have.
 #[must_use]
 pub fn decimals_of(step: f64) -> usize {
-    (0..6).find(|&decimals| ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9).unwrap_or(6) as usize
+    (0..6)
+        .find(|&decimals| {
+            ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9
+        })
+        .unwrap_or(6) as usize
 }
 
 /// The current value of every parameter.
@@ -448,7 +536,12 @@ impl Default for Params {
 
 impl fmt::Debug for Params {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_map().entries(self.changed().map(|(param, value)| (param.name, param.format(value)))).finish()
+        f.debug_map()
+            .entries(
+                self.changed()
+                    .map(|(param, value)| (param.name, param.format(value))),
+            )
+            .finish()
     }
 }
 
@@ -471,10 +564,19 @@ impl Params {
         Ok(changed)
     }
 
+    /// Takes one value over from another set.
+    pub(super) fn copy_from(&mut self, other: &Self, key: Key) {
+        self.0[key as usize] = other.0[key as usize].clone();
+    }
+
     /// A number; `None` where it is left to Segue.
     #[must_use]
     pub fn optional(&self, key: Key) -> Option<f64> {
-        if let Value::Number(number) = self.get(key) { Some(*number) } else { None }
+        if let Value::Number(number) = self.get(key) {
+            Some(*number)
+        } else {
+            None
+        }
     }
 
     /// A number that is never `auto`. 0 for a parameter that is no number.
@@ -501,7 +603,10 @@ impl Params {
 
     /// The parameters that differ from their default, in the order of the table.
     pub fn changed(&self) -> impl Iterator<Item = (&'static Param, &Value)> {
-        PARAMS.iter().zip(&self.0).filter(|(param, value)| **value != param.default_value())
+        PARAMS
+            .iter()
+            .zip(&self.0)
+            .filter(|(param, value)| **value != param.default_value())
     }
 }
 
@@ -514,20 +619,54 @@ mod tests {
     fn the_table_is_sound() {
         for (index, param) in PARAMS.iter().enumerate() {
             assert_eq!(param.key as usize, index);
-            assert_eq!(Key::from_name(param.name), Some(param.key), "{} is there twice", param.name);
-            assert_eq!(param.check(param.default_value()).as_ref(), Ok(&param.default_value()), "{}", param.name);
-            assert!(param.help.ends_with('.') && !param.label.is_empty(), "{}", param.name);
-            assert!(param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'), "{}", param.name);
+            assert_eq!(
+                Key::from_name(param.name),
+                Some(param.key),
+                "{} is there twice",
+                param.name
+            );
+            assert_eq!(
+                param.check(param.default_value()).as_ref(),
+                Ok(&param.default_value()),
+                "{}",
+                param.name
+            );
+            assert!(
+                param.help.ends_with('.') && !param.label.is_empty(),
+                "{}",
+                param.name
+            );
+            assert!(
+                param
+                    .name
+                    .bytes()
+                    .all(|b| b.is_ascii_lowercase() || b == b'_'),
+                "{}",
+                param.name
+            );
         }
     }
 
     #[test]
     fn bad_values_are_named() {
         let window = Key::BlendWindow.param();
-        assert_eq!(window.parse("many").unwrap_err().to_string(), "blend_window: found `many`, expected a number of frames");
-        assert_eq!(window.parse("0").unwrap_err().to_string(), "blend_window: found 0, expected 1 to 240 frames");
+        assert_eq!(
+            window.parse("many").unwrap_err().to_string(),
+            "blend_window: found `many`, expected a number of frames"
+        );
+        assert_eq!(
+            window.parse("0").unwrap_err().to_string(),
+            "blend_window: found 0, expected 1 to 240 frames"
+        );
         assert_eq!(Key::LeaveA.param().parse("auto"), Ok(Value::Auto));
-        assert!(Key::Lab.param().parse("cook").unwrap_err().to_string().contains("view, make, blend"));
+        assert!(
+            Key::Lab
+                .param()
+                .parse("cook")
+                .unwrap_err()
+                .to_string()
+                .contains("view, make, blend")
+        );
         assert!(window.parse("inf").is_err() && window.parse("NaN").is_err());
     }
 

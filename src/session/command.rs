@@ -1,0 +1,72 @@
+use super::library::{Sample, SourceFile};
+use super::params::{Key, Value, ValueError};
+use super::recipe::Slot;
+use crate::formats::{ImportError, ImportOptions};
+use crate::skeleton::Role;
+
+/// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all end here.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Sets parameters, all or none.
+    Set(Vec<(Key, Value)>),
+    /// Brings one parameter back to its default.
+    Reset(Key),
+    /// Ends a gesture: what a slider did since it was taken is one step for undo.
+    Settle,
+    /// Takes over what a query string says; what it does not name goes back to its default.
+    OpenLink(String),
+    /// Puts a clip into a slot.
+    Assign(Slot, String),
+    /// Takes a clip out of the library.
+    Remove(String),
+    /// Gives a clip another name.
+    Rename(String, String),
+    /// Says by hand which joint of a clip has a role.
+    CorrectRole(String, Role, Option<usize>),
+    /// Reads a clip's file again with other options.
+    Reimport(String, ImportOptions),
+    /// Keeps the clip of the Make lab in the library.
+    KeepMade,
+    /// Moves the playhead, seconds.
+    Seek(f64),
+    /// Moves the playhead by whole frames and pauses.
+    Step(i64),
+    /// Plays or pauses.
+    TogglePlay,
+    /// Opens "full, half, third" of a parameter in three panes.
+    CompareThirds(Key),
+    /// Takes the last step back.
+    Undo,
+    /// Does it again.
+    Redo,
+    /// Takes a message away.
+    Dismiss(u64),
+}
+
+/// Why a command could not be carried out. Nothing is changed then.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CommandError {
+    /// A value that does not fit.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// A file that cannot be read.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// A clip that is not there.
+    #[error("there is no clip `{0}` in the library")]
+    NoClip(String),
+    /// Not possible with this clip.
+    #[error("{0}")]
+    NotPossible(&'static str),
+}
+
+/// What the document needs from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`].
+    Sample(&'static Sample),
+    /// A file at an address; hand its bytes to [`super::Session::load`].
+    Fetch(String),
+    /// A file is no longer needed in storage.
+    Forget(SourceFile),
+}

@@ -1,0 +1,251 @@
+//! The clips that there are: built in, dropped, or made here.
+
+use super::motion::Motion;
+use crate::formats::ImportOptions;
+use crate::skeleton::Roles;
+use std::sync::Arc;
+
+/// Where a clip comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin {
+    /// The synthesiser, by a preset's id.
+    Preset,
+    /// A take that is bundled with the app and loaded when asked for.
+    Sample(&'static Sample),
+    /// A file that was dropped, opened or fetched.
+    File(SourceFile),
+    /// Made in the Make lab; its id says from what.
+    Made,
+}
+
+/// A file as it came, kept so that it can be read again with other options and stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceFile {
+    /// The file's name.
+    pub name: String,
+    /// SHA-256 of its bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// Its bytes.
+    pub bytes: Arc<[u8]>,
+    /// Which of the clips in the file this is, from 0.
+    pub index: usize,
+    /// What the user says about unit, up axis and frame rate.
+    pub options: ImportOptions,
+}
+
+/// A bundled take.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Its id in the library and in links.
+    pub id: &'static str,
+    /// Its name on screen.
+    pub label: &'static str,
+    /// Its file, packed with gzip, in the folder of samples.
+    pub file: &'static str,
+}
+
+/// The credit that goes with the bundled takes.
+pub const SAMPLES_CREDIT: &str = "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
+
+/// A clip in the library.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What links call it; unique.
+    pub id: String,
+    /// What a person calls it.
+    pub name: String,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The motion; `None` for a sample that was not loaded yet and a preset that was not needed yet.
+    pub motion: Option<Arc<Motion>>,
+    /// What was odd in the file, one sentence each.
+    pub warnings: Vec<String>,
+    /// Whether the roles were corrected by hand.
+    pub roles_by_hand: Option<Roles>,
+}
+
+impl Entry {
+    /// The format in the API.
+    #[must_use]
+    pub fn format(&self) -> &'static str {
+        match self.origin {
+            Origin::Preset | Origin::Made => "synth",
+            Origin::Sample(_) | Origin::File(_) => "bvh",
+        }
+    }
+
+    /// The whole SHA-256 of the file it came from, hexadecimal.
+    #[must_use]
+    pub fn sha256(&self) -> Option<&str> {
+        if let Origin::File(file) = &self.origin {
+            Some(&file.sha256)
+        } else {
+            None
+        }
+    }
+}
+
+/// The list of clips, in the order on screen.
+#[derive(Clone, Debug, Default)]
+pub struct Library {
+    entries: Vec<Arc<Entry>>,
+}
+
+/// How many hexadecimal digits of the SHA-256 stand in a link.
+const SHA_DIGITS: usize = 8;
+
+impl Library {
+    /// All clips in order.
+    #[must_use]
+    pub fn entries(&self) -> &[Arc<Entry>] {
+        &self.entries
+    }
+
+    /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name when only one has it.
+    #[must_use]
+    pub fn find(&self, reference: &str) -> Option<&Arc<Entry>> {
+        if let Some(entry) = self.entries.iter().find(|entry| entry.id == reference) {
+            return Some(entry);
+        }
+        let (name, sha, index) = split_reference(reference);
+        let mut matching = self.entries.iter().filter(|entry| match &entry.origin {
+            Origin::File(file) if !sha.is_empty() => {
+                file.sha256.starts_with(sha) && file.index == index
+            }
+            Origin::File(file) => file_stem(&file.name) == file_stem(name) && file.index == index,
+            _ => false,
+        });
+        let found = matching.next();
+        // Two files of one name are not told apart by it.
+        if sha.is_empty() && matching.next().is_some() {
+            None
+        } else {
+            found
+        }
+    }
+
+    /// Adds a clip at the end, or puts it in the place of the one with the same id.
+    pub fn put(&mut self, entry: Entry) {
+        let entry = Arc::new(entry);
+        match self.entries.iter_mut().find(|old| old.id == entry.id) {
+            Some(old) => *old = entry,
+            None => self.entries.push(entry),
+        }
+    }
+
+    /// Takes a clip out; says whether it was there.
+    pub fn remove(&mut self, id: &str) -> bool {
+        let before = self.entries.len();
+        self.entries.retain(|entry| entry.id != id);
+        self.entries.len() < before
+    }
+
+    /// Changes a clip in place, when it is there.
+    pub fn change(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> bool {
+        let Some(slot) = self.entries.iter_mut().find(|entry| entry.id == id) else {
+            return false;
+        };
+        change(Arc::make_mut(slot));
+        true
+    }
+}
+
+/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second character in it.
+#[must_use]
+pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
+    let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
+    let suffix = if index == 0 {
+        String::new()
+    } else {
+        format!(".{}", index + 1)
+    };
+    format!("{}~{sha}{suffix}", file_stem(name))
+}
+
+/// Name, SHA-256 prefix (empty where there is none) and index of a reference.
+#[must_use]
+pub fn split_reference(reference: &str) -> (&str, &str, usize) {
+    let Some((name, rest)) = reference.rsplit_once('~') else {
+        return (reference, "", 0);
+    };
+    match rest.split_once('.') {
+        Some((sha, number)) => (
+            name,
+            sha,
+            number.parse::<usize>().map_or(0, |n| n.saturating_sub(1)),
+        ),
+        None => (name, rest, 0),
+    }
+}
+
+/// A file's name without folders and ending.
+#[must_use]
+pub fn file_stem(name: &str) -> &str {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match name.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem,
+        _ => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dropped(name: &str, sha256: &str) -> Entry {
+        let file = SourceFile {
+            name: name.into(),
+            sha256: sha256.into(),
+            bytes: Arc::from([]),
+            index: 0,
+            options: ImportOptions::default(),
+        };
+        Entry {
+            id: file_id(name, sha256, 0),
+            name: name.into(),
+            origin: Origin::File(file),
+            motion: None,
+            warnings: vec![],
+            roles_by_hand: None,
+        }
+    }
+
+    #[test]
+    fn a_reference_finds_the_file_by_id_sha_or_name() {
+        let mut library = Library::default();
+        library.put(dropped("a/01_01.bvh", "3fa9c1d2aa"));
+        library.put(dropped("walk.bvh", "11111111aa"));
+        library.put(dropped("walk.bvh", "22222222aa"));
+        assert_eq!(library.entries()[0].id, "01_01~3fa9c1d2");
+        for reference in [
+            "01_01~3fa9c1d2",
+            "renamed~3fa9c1d2",
+            "x~3fa9",
+            "01_01",
+            "01_01.bvh",
+        ] {
+            assert_eq!(
+                library.find(reference).map(|e| e.name.as_str()),
+                Some("a/01_01.bvh"),
+                "{reference}"
+            );
+        }
+        assert_eq!(
+            library.find("walk").map(|e| &e.id),
+            None,
+            "two files have that name"
+        );
+        assert_eq!(
+            library.find("walk~2222").map(|e| e.id.as_str()),
+            Some("walk~22222222")
+        );
+        assert!(library.find("01_01~3fa9c1d2.2").is_none());
+    }
+
+    #[test]
+    fn references_come_apart() {
+        assert_eq!(split_reference("a~b~12.3"), ("a~b", "12", 2));
+        assert_eq!(split_reference("walk"), ("walk", "", 0));
+        assert_eq!(file_stem("x/y.z/.hidden"), ".hidden");
+    }
+}

@@ -1,0 +1,235 @@
+use super::{Outcome, Slot, Source, Transition};
+use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
+use crate::clip::{Interpolation, resample};
+use crate::math::Planar;
+use crate::metrics::TransitionMetrics;
+use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
+use crate::session::motion::Motion;
+use crate::session::params::{Key, Params};
+use crate::skeleton::retarget;
+use std::sync::Arc;
+
+/// What a blend depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(in crate::session) struct BlendInputs {
+    pair: Arc<Pair>,
+    place: Place,
+    options: DissolveOptions,
+}
+
+impl PartialEq for BlendInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && self.place == other.place
+            && self.options == other.options
+    }
+}
+
+/// Where A is left and B entered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    leave: usize,
+    enter: usize,
+    distance_cm: f32,
+}
+
+/// Two clips made ready for each other.
+#[derive(Debug)]
+struct Pair {
+    a: Arc<Motion>,
+    b: Arc<Motion>,
+    /// B on the skeleton and at the frame rate of A.
+    incoming: Arc<Motion>,
+}
+
+impl Pair {
+    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
+        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton())
+            || a.clip.skeleton() == b.clip.skeleton();
+        let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
+        let incoming = if same_skeleton && same_rate {
+            Arc::clone(b)
+        } else {
+            let mut clip = (*b.clip).clone();
+            if !same_skeleton {
+                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles)
+                    .map_err(|error| error.to_string())?;
+            }
+            if !same_rate {
+                clip = resample(&clip, a.clip.fps(), Interpolation::Linear)
+                    .map_err(|error| error.to_string())?;
+            }
+            let roles = if same_skeleton {
+                b.roles.clone()
+            } else {
+                a.roles.clone()
+            };
+            Arc::new(Motion::analyze(clip, Some(roles)))
+        };
+        Ok(Self {
+            a: Arc::clone(a),
+            b: Arc::clone(b),
+            incoming,
+        })
+    }
+}
+
+/// Makes blends, and keeps what does not change from one to the next: the pair of clips and the distances between their frames.
+#[derive(Debug, Default)]
+pub(in crate::session) struct Blender {
+    pair: Option<Arc<Pair>>,
+    search: Option<TransitionSearch>,
+    progress: f32,
+}
+
+/// Rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
+const ROWS_PER_SLICE: usize = 16;
+/// Rows that are compared at once when the clips change: a few seconds of motion need no second slice.
+const ROWS_AT_ONCE: usize = 160;
+
+impl Blender {
+    /// Brings everything to the point where the blend itself is a pure function: finds the place, makes the clips fit each other.
+    pub(in crate::session) fn inputs(
+        &mut self,
+        a: &Arc<Motion>,
+        b: &Arc<Motion>,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<BlendInputs, String> {
+        let pair = self.pair(a, b)?;
+        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        let window = (params.number(Key::BlendWindow) as usize)
+            .min(frames_a)
+            .min(frames_b);
+        let fps = pair.a.clip.fps();
+        let frame = |key, frames: usize| {
+            params
+                .optional(key)
+                .map(|secs| ((secs * fps).round() as usize).min(frames.saturating_sub(window)))
+        };
+        let match_window = match_window.min(frames_a).min(frames_b);
+        let place = self.place(
+            &pair,
+            match_window,
+            frame(Key::LeaveA, frames_a),
+            frame(Key::EnterB, frames_b),
+        )?;
+        let law = match params.text(Key::WeightLaw) {
+            "linear" => WeightLaw::Linear,
+            "smoother" => WeightLaw::Smoother,
+            _ => WeightLaw::Smooth,
+        };
+        let root = if params.is_on(Key::RootBlend) {
+            RootBlend::Velocity
+        } else {
+            RootBlend::World
+        };
+        Ok(BlendInputs {
+            pair,
+            place,
+            options: DissolveOptions {
+                window,
+                law,
+                align: params.is_on(Key::Align),
+                root,
+            },
+        })
+    }
+
+    fn pair(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, String> {
+        if let Some(pair) = &self.pair
+            && Arc::ptr_eq(&pair.a, a)
+            && Arc::ptr_eq(&pair.b, b)
+        {
+            return Ok(Arc::clone(pair));
+        }
+        let pair = Arc::new(Pair::new(a, b)?);
+        let weights = limb_weights(pair.a.clip.skeleton());
+        let search = TransitionSearch::new(
+            Arc::clone(&pair.a.clip),
+            Arc::clone(&pair.incoming.clip),
+            &weights,
+        );
+        self.search = Some(search.map_err(|error| error.to_string())?);
+        self.pair = Some(Arc::clone(&pair));
+        self.compare_rows(ROWS_AT_ONCE);
+        Ok(pair)
+    }
+
+    fn compare_rows(&mut self, rows: usize) {
+        if let Some(search) = &mut self.search {
+            let progress = search.advance(rows);
+            self.progress = if progress.is_complete() {
+                1.0
+            } else {
+                progress.done as f32 / progress.total.max(1) as f32
+            };
+        }
+    }
+
+    /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
+    fn place(
+        &self,
+        pair: &Pair,
+        window: usize,
+        leave: Option<usize>,
+        enter: Option<usize>,
+    ) -> Result<Place, String> {
+        let search = self.search.as_ref().ok_or("there are no clips to match")?;
+        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        let mut options = SearchOptions::new(window);
+        if let Some(frame) = leave {
+            options.leave = Region::frame(frame, frames_a);
+        }
+        if let Some(frame) = enter {
+            options.enter = Region::frame(frame, frames_b);
+        }
+        if self.is_searching() {
+            let place = Place {
+                leave: leave.unwrap_or((frames_a * 3 / 4).min(frames_a.saturating_sub(window))),
+                enter: enter.unwrap_or(0),
+                distance_cm: f32::NAN,
+            };
+            return Ok(place);
+        }
+        let best = search.best(&options).map_err(|error| error.to_string())?;
+        Ok(Place {
+            leave: leave.unwrap_or(best.leave),
+            enter: enter.unwrap_or(best.enter),
+            distance_cm: best.rms_cm as f32,
+        })
+    }
+
+    /// One slice of comparing frames. `false` when there was nothing to do.
+    pub(in crate::session) fn work(&mut self) -> bool {
+        let searching = self.is_searching();
+        if searching {
+            self.compare_rows(ROWS_PER_SLICE);
+        }
+        searching
+    }
+
+    /// Whether the distances between the clips' frames are still being computed.
+    pub(in crate::session) fn is_searching(&self) -> bool {
+        self.search.is_some() && self.progress < 1.0
+    }
+
+    /// How much of the comparison is done, 0 to 1; `None` when there is none under way.
+    pub(in crate::session) fn progress(&self) -> Option<f32> {
+        self.is_searching().then_some(self.progress)
+    }
+}
+
+impl BlendInputs {
+    /// The blend.
+    pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
+        let Self {
+            pair,
+            place,
+            options,
+        } = self;
+        let (a, b) = (&pair.a, &pair.incoming);
+        let _ = (a, b, place, options);
+        todo!()
+    }
+}

@@ -1,0 +1,107 @@
+use crate::session::motion::Motion;
+use crate::session::params::{Group, Key, Params};
+use crate::synth::{self, Action};
+
+/// The action that the Make lab is set to.
+pub(in crate::session) fn synth_action(params: &Params) -> Action {
+    match params.text(Key::Gait) {
+        "run" => Action::Run,
+        "idle" => Action::Idle,
+        "start" => Action::Start,
+        "stop" => Action::Stop,
+        "spin" => Action::Spin,
+        "jump" => Action::Jump,
+        _ => Action::Walk,
+    }
+}
+
+fn synth_params(params: &Params) -> synth::Params {
+    let of = |key| params.number(key) as f32;
+    let natural = synth::Params::new(synth_action(params));
+    synth::Params {
+        speed_mps: params
+            .optional(Key::GaitSpeed)
+            .map_or(natural.speed_mps, |speed| speed as f32),
+        turn_rate_dps: of(Key::TurnRate),
+        height_m: of(Key::BodyHeight),
+        style: synth::Style {
+            bounce: of(Key::Bounce),
+            arm_swing: of(Key::ArmSwing),
+            lean: of(Key::Lean),
+            ..natural.style
+        },
+        seed: of(Key::Seed) as u32,
+        duration_secs: of(Key::MakeSeconds),
+        ..natural
+    }
+}
+
+/// The motion that the Make lab is set to.
+pub(in crate::session) fn made_motion(params: &Params) -> Result<Motion, String> {
+    let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
+    Ok(Motion::analyze(made.clip.with_name(made_id(params)), None))
+}
+
+/// A built-in motion by its id.
+pub(in crate::session) fn preset_motion(id: &str) -> Result<Motion, String> {
+    let preset = synth::presets()
+        .into_iter()
+        .find(|preset| preset.id == id)
+        .ok_or_else(|| format!("`{id}` is no built-in motion."))?;
+    let made = synth::synthesize(&preset.params).map_err(|error| error.to_string())?;
+    Ok(Motion::analyze(made.clip.with_name(preset.title), None))
+}
+
+/// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`. It is all that is needed to make it again.
+pub(in crate::session) fn made_id(params: &Params) -> String {
+    let changed = params
+        .changed()
+        .filter(|(param, _)| param.group == Group::Make && param.key != Key::Gait);
+    let list: Vec<String> = changed
+        .map(|(param, value)| format!("{}:{}", param.name, param.format(value)))
+        .collect();
+    format!("{}({})", params.text(Key::Gait), list.join(","))
+}
+
+/// The parameters that an id made by [`made_id`] stands for.
+pub(in crate::session) fn made_params(id: &str) -> Option<Params> {
+    let (gait, list) = id.strip_suffix(')')?.split_once('(')?;
+    let mut params = Params::default();
+    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
+    set(Key::Gait, gait)?;
+    for pair in list.split(',').filter(|pair| !pair.is_empty()) {
+        let (name, value) = pair.split_once(':')?;
+        set(
+            Key::from_name(name).filter(|key| key.param().group == Group::Make)?,
+            value,
+        )?;
+    }
+    Some(params)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::params::Value;
+
+    #[test]
+    fn an_id_is_all_that_is_needed_to_make_a_clip_again() {
+        let mut params = Params::default();
+        params.set(Key::Gait, Value::Choice("run")).unwrap();
+        params.set(Key::TurnRate, Value::Number(-20.0)).unwrap();
+        params.set(Key::GaitSpeed, Value::Number(3.05)).unwrap();
+        let id = made_id(&params);
+        assert_eq!(id, "run(gait_speed:3.05,turn_rate:-20)");
+        assert_eq!(made_params(&id), Some(params));
+        for id in [
+            "walk",
+            "walk)",
+            "fly()",
+            "walk(blend_window:3)",
+            "walk(turn_rate:900)",
+            "walk(turn_rate)",
+        ] {
+            assert_eq!(made_params(id), None, "{id}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+use super::library::Library;
+use super::params::{Key, PARAMS, Params};
+
+/// What undo brings back.
+#[derive(Clone, Debug)]
+struct State {
+    params: Params,
+    library: Library,
+}
+
+/// The steps that can be taken back, and those that were.
+#[derive(Clone, Debug, Default)]
+pub(super) struct History {
+    past: Vec<State>,
+    future: Vec<State>,
+    /// The parameter that the last step changed, while its slider is still held: more of the same joins that step.
+    open: Option<Key>,
+}
+
+/// A lesson's worth of steps. A state is small: clips are shared.
+const MOST_STEPS: usize = 200;
+
+impl History {
+    /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are one step.
+    pub(super) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
+        if key.is_some() && self.open == key {
+            return;
+        }
+        self.open = key;
+        self.future.clear();
+        if self.past.len() >= MOST_STEPS {
+            self.past.remove(0);
+        }
+        self.past.push(State {
+            params: params.clone(),
+            library: library.clone(),
+        });
+    }
+
+    /// Ends a gesture: the next change is a step of its own.
+    pub(super) fn settle(&mut self) {
+        self.open = None;
+    }
+
+    pub(super) fn can_undo(&self) -> bool {
+        !self.past.is_empty()
+    }
+
+    pub(super) fn can_redo(&self) -> bool {
+        !self.future.is_empty()
+    }
+
+    /// Swaps the present for the state before the last step; says whether there was one.
+    pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+        Self::swap(
+            &mut self.past,
+            &mut self.future,
+            &mut self.open,
+            params,
+            library,
+        )
+    }
+
+    /// Swaps the present for the state that was last taken back.
+    pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+        Self::swap(
+            &mut self.future,
+            &mut self.past,
+            &mut self.open,
+            params,
+            library,
+        )
+    }
+
+    fn swap(
+        from: &mut Vec<State>,
+        to: &mut Vec<State>,
+        open: &mut Option<Key>,
+        params: &mut Params,
+        library: &mut Library,
+    ) -> bool {
+        let Some(state) = from.pop() else {
+            return false;
+        };
+        to.push(State {
+            params: params.clone(),
+            library: library.clone(),
+        });
+        *open = None;
+        *library = state.library;
+        for param in PARAMS.iter().filter(|param| param.group.is_undoable()) {
+            params.copy_from(&state.params, param.key);
+        }
+        true
+    }
+}
