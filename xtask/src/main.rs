@@ -1,1 +1,86 @@
-fn main() {}
+//! Segue's developer commands: `cargo xtask help` lists them.
+
+mod check;
+mod dist;
+mod server;
+mod shell;
+mod tools;
+
+use std::process::ExitCode;
+
+use shell::{Result, fail};
+
+const HELP: &str = "\
+cargo xtask serve [--port N] [--dev] [--no-build]
+    Installs what is missing, builds Segue in release mode and serves it on 127.0.0.1 (port 8080 unless told; 0 picks a free one).
+    --dev       build without optimising (for a rebuild on every save use `trunk serve`)
+    --no-build  serve dist/ as it is
+
+cargo xtask serve --dist
+    Only writes the deployable folder dist/, each file precompressed beside itself (.br and .gz).
+
+cargo xtask test [PART …]
+    Everything that must pass. Parts: lint core app web browser; all of them unless some are named.
+    lint        rustfmt, clippy for the core alone, for the whole app and for the web
+    core        the tests of the motion core, built without any UI
+    app         all native tests: core, app, pictures of the UI, documentation examples
+    web         the release build that `serve` makes
+    browser     that build in Chromium, on WebGL2 and on WebGPU
+
+cargo xtask help
+";
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let outcome = match args.split_first() {
+        Some((&"serve", rest)) => serve(rest),
+        Some((&"test", rest)) => check::run(rest),
+        None | Some((&("help" | "--help" | "-h"), _)) => {
+            print!("{HELP}");
+            Ok(())
+        }
+        Some((other, _)) => fail(format!("there is no command `{other}`\n\n{HELP}")),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn serve(args: &[&str]) -> Result<()> {
+    let mut port = 8080;
+    let mut profile = dist::Profile::Release;
+    let (mut build, mut only_dist) = (true, false);
+    let mut args = args.iter();
+    while let Some(&arg) = args.next() {
+        match arg {
+            "--port" => {
+                port = match args.next().map(|number| number.parse()) {
+                    Some(Ok(number)) => number,
+                    _ => return fail("--port is followed by a number from 0 to 65535"),
+                }
+            }
+            "--dev" => profile = dist::Profile::Dev,
+            "--no-build" => build = false,
+            "--dist" => only_dist = true,
+            "--help" | "-h" => {
+                print!("{HELP}");
+                return Ok(());
+            }
+            other => return fail(format!("`serve` does not know `{other}`\n\n{HELP}")),
+        }
+    }
+    if build {
+        dist::build(profile)?;
+    }
+    if only_dist {
+        return dist::precompress();
+    }
+    let server = server::Server::bind(port, dist::folder())?;
+    println!("Segue is served at {} (Ctrl-C ends it)", server.address());
+    server.run()
+}

@@ -1,0 +1,170 @@
+// Segue in a real Chromium: what harness.mjs makes tests of and shot.mjs takes pictures of.
+
+import { execFileSync, spawn } from "node:child_process";
+import { Buffer } from "node:buffer";
+import { once } from "node:events";
+import process from "node:process";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { decodePng } from "./png.mjs";
+
+export const BACKENDS = ["webgl2", "webgpu"];
+
+/** Long enough for software rendering on a machine that is busy with something else. */
+const START_TIMEOUT_MS = 60_000;
+
+const COMMON_FLAGS = [
+  "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+];
+const BACKEND_FLAGS = {
+  webgl2: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-features=WebGPU"],
+  // The last three, too: unless Vulkan composes the page, what WebGPU draws is missing in pictures of it.
+  webgpu: [
+    "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=vulkan",
+  ],
+};
+
+/**
+ * Opens the page and waits for `window.segueReady`.
+ * @param options.viewport [width, height]
+ * @param options.scale device pixels per CSS pixel
+ * @param options.theme "dark" or "light"
+ * @param options.wait false: return at once, ready or not
+ * @param options.prepare called with the page before it goes anywhere: routes, init scripts
+ */
+export async function openSegue(backend, query = "", { viewport = [1280, 800], scale = 1, theme = "dark", wait = true, prepare } = {}) {
+  const browser = await launch(backend);
+  const [width, height] = viewport;
+  const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, colorScheme: theme });
+  const page = await context.newPage();
+  const log = [];
+  /** Uncaught errors, which fail the test. Empty it (`problems.length = 0`) where one is the point. */
+  const problems = [];
+  page.on("console", (message) => log.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => problems.push(String(error.stack ?? error)));
+  await prepare?.(page);
+  await page.goto(`${await address()}${query ? `?${query}` : ""}`, { waitUntil: "commit" });
+
+  const opened = {
+    page,
+    log,
+    problems,
+    /** Resolves when the page is ready, rejects with the page's own reason. */
+    ready: async () => {
+      await page.waitForFunction(() => "segueReady" in window);
+      return page.evaluate(() => window.segueReady.then(() => true));
+    },
+    /** Calls the page's API: `segue("set", { lab: "blend" })`; a property by its name alone: `segue("version")`. */
+    segue: (member, ...args) => call(page, member, args),
+    /** Loads a file through the API. */
+    load: (name, bytes) => load(page, name, bytes),
+    dropFile: (name, bytes, at) => dropFile(page, name, bytes, at),
+    drag: (from, to, steps) => drag(page, from, to, steps),
+    /** The page's picture as PNG bytes. */
+    screenshot: () => page.screenshot({ type: "png" }),
+    /** The same, decoded: `{ width, height, at(x, y), colours(), … }`. */
+    pixels: async () => decodePng(await page.screenshot({ type: "png" })),
+  };
+  if (wait) await withTimeout(opened.ready(), START_TIMEOUT_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
+  return opened;
+}
+
+/** Drops a file on the canvas with the events that a browser sends for a real one. */
+export async function dropFile(page, name, bytes, [x, y] = [400, 300]) {
+  await page.evaluate(async ([name, base64, x, y]) => {
+    const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([bytes], name));
+    const canvas = document.getElementById("segue");
+    for (const type of ["dragenter", "dragover", "dragover", "drop"]) {
+      canvas.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, composed: true, clientX: x, clientY: y, dataTransfer }));
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+  }, [name, Buffer.from(bytes).toString("base64"), x, y]);
+}
+
+/** Drags the real mouse with its first button down. */
+export async function drag(page, from, to, steps = 12) {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps });
+  await page.mouse.up();
+}
+
+function call(page, member, args) {
+  return page.evaluate(async ([member, args]) => {
+    const segue = await window.segueReady;
+    const value = segue[member];
+    const result = typeof value === "function" ? await value(...args) : value;
+    return result instanceof Uint8Array ? { base64: btoa(Array.from(result, (byte) => String.fromCharCode(byte)).join("")) } : result;
+  }, [member, args]).then((result) => (result?.base64 === undefined ? result : Buffer.from(result.base64, "base64")));
+}
+
+function load(page, name, bytes) {
+  return page.evaluate(async ([name, base64]) => {
+    const segue = await window.segueReady;
+    return segue.load(name, Uint8Array.from(atob(base64), (char) => char.charCodeAt(0)));
+  }, [name, Buffer.from(bytes).toString("base64")]);
+}
+
+// One browser per backend and test file, started when first asked for.
+const browsers = new Map();
+
+function launch(backend) {
+  if (!BACKENDS.includes(backend)) throw new Error(`there is no backend "${backend}", only ${BACKENDS.join(", ")}`);
+  if (!browsers.has(backend)) {
+    browsers.set(backend, chromium.launch({ executablePath: chromiumPath(), args: [...COMMON_FLAGS, ...BACKEND_FLAGS[backend]] }));
+  }
+  return browsers.get(backend);
+}
+
+function chromiumPath() {
+  const names = [process.env.CHROMIUM, "chromium", "chromium-browser", "google-chrome-stable", "google-chrome"].filter(Boolean);
+  for (const name of names) {
+    try {
+      return execFileSync("sh", ["-c", 'command -v "$1"', "sh", name], { encoding: "utf8" }).trim();
+    } catch {
+      // the next name
+    }
+  }
+  throw new Error("no Chromium on the path: install one, or name it in the variable CHROMIUM");
+}
+
+// The server: the one that `cargo xtask test` has started, or one of our own over dist/.
+let server;
+let addressPromise;
+
+function address() {
+  addressPromise ??= process.env.SEGUE_URL ? Promise.resolve(process.env.SEGUE_URL) : serve();
+  return addressPromise;
+}
+
+async function serve() {
+  const root = fileURLToPath(new URL("../..", import.meta.url));
+  server = spawn("cargo", ["xtask", "serve", "--no-build", "--port", "0"], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
+  for await (const line of createInterface(server.stdout)) {
+    const found = /http:\/\/\S+/.exec(line);
+    if (found) return found[0];
+  }
+  throw new Error("the server did not start");
+}
+
+/** Ends the browsers and the server. */
+export async function close() {
+  for (const browser of browsers.values()) await (await browser).close();
+  browsers.clear();
+  if (server && server.exitCode === null) {
+    const ended = once(server, "exit");
+    server.kill();
+    await ended;
+  }
+}
+
+function withTimeout(promise, ms, message) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`${message()}\n(after ${ms / 1000} s)`)), ms);
+  });
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+}

@@ -1,0 +1,209 @@
+// Starts the app: downloads and compiles the WebAssembly, hands it the canvas, and settles `window.segueReady`.
+//
+// What this expects of the app (the wasm-bindgen module): a class `SegueHandle` with
+//   static start(canvas) -> Promise<SegueHandle>   the app runs on this canvas
+//   firstFrame() -> Promise                        its first frame is on screen
+//   restart(canvas) -> Promise                     the graphics context was lost: go on, on this fresh canvas
+//   hasPanicked(), panicSummary()                  callable at any time, also in the middle of another call
+//   setListener((event, detail) => …)              "change", "error", "progress" for the public API, and "lost" when
+//                                                  the app itself learns that its graphics device is gone
+// and what api.js calls. Every method borrows the handle shared: after a panic inside an exclusive one, wasm-bindgen
+// would refuse all others, panicSummary among them.
+
+import { makeApi } from "./api.js";
+import { answerParent } from "./embed.js";
+import { showDownloadFailed, showLost, showPanic, showStartFailed, showUnsupported } from "./panels.js";
+
+const PANIC_POLL_MS = 500;
+
+export async function boot(jsUrl, wasmUrl) {
+  try {
+    window.segueSettle.resolve(await start(jsUrl, wasmUrl));
+  } catch (reason) {
+    window.segueSettle.reject(reason);
+    console.error(reason);
+  }
+}
+
+async function start(jsUrl, wasmUrl) {
+  // Only what costs nothing is asked before the start; a real look at the graphics waits until the start has failed.
+  if (!navigator.gpu && !window.WebGL2RenderingContext) {
+    showUnsupported();
+    throw new Error("Neither WebGPU nor WebGL2 is available");
+  }
+
+  let bindings;
+  try {
+    const module = import(jsUrl);
+    const response = download(wasmUrl);
+    bindings = await module;
+    await bindings.default({ module_or_path: response });
+    await response; // a download that failed must not pass for anything else
+  } catch (reason) {
+    showDownloadFailed(String(reason?.message ?? reason));
+    throw new Error(`Segue could not be downloaded: ${reason?.message ?? reason}`, { cause: reason });
+  }
+
+  const { SegueHandle } = bindings;
+  if (!SegueHandle?.start) {
+    loaded();
+    throw new Error("The WebAssembly module exports no SegueHandle");
+  }
+
+  const life = new Life();
+  try {
+    life.handle = await Promise.race([SegueHandle.start(canvas()), life.trapped]);
+    life.watch();
+    await Promise.race([life.handle.firstFrame(), life.trapped]);
+  } catch (reason) {
+    const text = life.handle ? life.panicText(reason) : String(reason?.message ?? reason);
+    if (reason instanceof WebAssembly.RuntimeError) {
+      showPanic(text, life.facts());
+    } else if (!(await hasGraphics())) {
+      showUnsupported();
+    } else {
+      showStartFailed(text, life.facts());
+    }
+    throw new Error(`Segue could not start: ${text}`, { cause: reason });
+  }
+
+  loaded();
+  const api = makeApi(life.handle, { stopped: () => life.stopped, onLost: () => life.rebuild() });
+  window.segue = api;
+  answerParent(api);
+  return api;
+}
+
+/** Fetches the module and moves the bar as its bytes arrive. */
+async function download(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url} answered ${response.status}`);
+  // The length is that of what travels, the bytes read are unpacked; these are how far this module packs.
+  const packed = { br: 3.6, gzip: 2.9 }[response.headers.get("content-encoding")] ?? 1;
+  const total = Number(response.headers.get("content-length")) * packed || 8e6;
+  // A clone is read for the count, for the browser keeps compiled code only of a response that it got itself.
+  followBytes(response.clone().body, total).catch(() => {});
+  return response;
+}
+
+async function followBytes(stream, total) {
+  const bar = document.getElementById("progress");
+  const reader = stream.getReader();
+  for (let read = 0; ; ) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    read += value.byteLength;
+    bar.style.transform = `scaleX(${Math.min(read / total, 0.97)})`;
+  }
+  bar.style.transform = "scaleX(1)";
+  bar.classList.add("starting");
+}
+
+const canvas = () => document.getElementById("segue");
+
+function loaded() {
+  document.getElementById("loading")?.remove();
+  canvas().focus();
+}
+
+async function hasGraphics() {
+  if (await navigator.gpu?.requestAdapter().catch(() => null)) return true;
+  return Boolean(document.createElement("canvas").getContext("webgl2"));
+}
+
+/** One life of the app, from its start to its panic. */
+class Life {
+  handle = undefined;
+  /** Why it no longer runs, if it does not. */
+  stopped = undefined;
+  #restarting = false;
+
+  constructor() {
+    // A panic in a callback surfaces only here: as a trap, outside of any call of ours.
+    this.trapped = new Promise((_, reject) => {
+      window.addEventListener("error", ({ error }) => {
+        if (!(error instanceof WebAssembly.RuntimeError)) return;
+        reject(error);
+        this.#check(error);
+      });
+      window.addEventListener("unhandledrejection", ({ reason }) => {
+        if (!(reason instanceof WebAssembly.RuntimeError)) return;
+        reject(reason);
+        this.#check(reason);
+      });
+    });
+    this.trapped.catch(() => {});
+    this.#guard(canvas());
+  }
+
+  /** From here on the handle exists: look after it. */
+  watch() {
+    const timer = setInterval(() => {
+      this.#check();
+      if (this.stopped) clearInterval(timer);
+    }, PANIC_POLL_MS);
+  }
+
+  panicText(fallback) {
+    try {
+      const summary = this.handle.panicSummary();
+      if (summary) return String(summary);
+    } catch {
+      // what trapped can be past answering
+    }
+    return String(fallback?.message ?? fallback ?? "The app stopped without a word.");
+  }
+
+  facts() {
+    const ask = (question) => {
+      try {
+        return question();
+      } catch {
+        return undefined;
+      }
+    };
+    return {
+      version: ask(() => this.handle?.version()),
+      backend: ask(() => this.handle?.stats()?.backend),
+    };
+  }
+
+  #check(trap) {
+    if (this.stopped || !this.handle) return;
+    let panicked = Boolean(trap);
+    try {
+      panicked ||= this.handle.hasPanicked();
+    } catch {
+      panicked = true;
+    }
+    if (!panicked) return;
+    this.stopped = this.panicText(trap);
+    showPanic(this.stopped, this.facts());
+  }
+
+  #guard(element) {
+    element.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.rebuild();
+    });
+  }
+
+  /** The graphics context is gone. A canvas keeps the kind of context it once had, so the app moves to a new one. */
+  async rebuild() {
+    if (this.#restarting || this.stopped || !this.handle) return;
+    this.#restarting = true;
+    try {
+      const old = canvas();
+      const fresh = old.cloneNode(false);
+      old.replaceWith(fresh);
+      this.#guard(fresh);
+      await this.handle.restart(fresh);
+      fresh.focus();
+    } catch (reason) {
+      console.error(reason);
+      showLost(String(reason?.message ?? reason), this.facts());
+    } finally {
+      this.#restarting = false;
+    }
+  }
+}

@@ -1,0 +1,35 @@
+// The API for whoever frames the page with `embed=1`: the same calls and events, through postMessage.
+//
+//   to the frame      { segue: 1, id, call: "set", args: [{ half_life: 0.2 }] }      any method of the API but `on`; `args` may be left out
+//   back              { segue: 1, id, result }   or   { segue: 1, id, error: "text" }
+//   from the frame    { segue: 1, event: "ready", detail: { version } }              once; calls made before it wait for it
+//                     { segue: 1, event, detail }                                    "change", "error", "progress"
+//
+// Only the framing window is listened to. Whoever may frame the page is for its host to say (frame-ancestors).
+
+const EVENTS = ["change", "error", "progress"];
+
+const embedded = window.parent !== window && new URLSearchParams(window.location.search).get("embed") === "1";
+if (embedded) window.addEventListener("message", receive);
+
+function receive({ source, origin, data }) {
+  if (source !== window.parent || data?.segue !== 1 || typeof data.call !== "string") return;
+  const { id, call, args = [] } = data;
+  const answer = (message) => source.postMessage({ segue: 1, id, ...message }, origin === "null" ? "*" : origin);
+  window.segueReady
+    .then(async (api) => {
+      if (call === "on" || !Object.hasOwn(api, call)) throw new Error(`There is no call "${call}"`);
+      const member = api[call];
+      return typeof member === "function" ? await member(...args) : member;
+    })
+    .then((result) => answer({ result }))
+    .catch((error) => answer({ error: error.message ?? String(error) }));
+}
+
+/** Starts to tell the framing window of events. */
+export function answerParent(api) {
+  if (!embedded) return;
+  const tell = (event, detail) => window.parent.postMessage({ segue: 1, event, detail }, "*");
+  for (const event of EVENTS) api.on(event, (detail) => tell(event, detail));
+  tell("ready", { version: api.version });
+}

@@ -1,0 +1,116 @@
+//! `cargo xtask test`: everything that must pass, part by part.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::shell::{self, Result, cargo, command, fail, root};
+use crate::{dist, server, tools};
+
+/// The parts, in an order that fails early and lets each reuse what the one before has built.
+const PARTS: [(&str, fn(&mut Report)); 5] = [("lint", lint), ("core", core), ("app", app), ("web", web), ("browser", browser)];
+
+pub fn run(names: &[&str]) -> Result<()> {
+    if let Some(unknown) = names.iter().find(|name| PARTS.iter().all(|(part, _)| part != *name)) {
+        let known = PARTS.map(|(part, _)| part).join(", ");
+        return fail(format!("there is no part `{unknown}`, only {known}"));
+    }
+    let mut report = Report::default();
+    for (name, part) in PARTS {
+        if names.is_empty() || names.contains(&name) {
+            part(&mut report);
+        }
+    }
+    report.close()
+}
+
+fn lint(report: &mut Report) {
+    report.run("rustfmt", cargo(&["fmt", "--all", "--check"]));
+    report.run("clippy, core alone", clippy(&["--lib", "--tests", "--no-default-features"]));
+    report.run("clippy, whole app", clippy(&["--workspace", "--all-targets"]));
+    report.step("clippy, web", || {
+        tools::ensure_wasm_target()?;
+        shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--lib"]))
+    });
+}
+
+fn clippy(what: &[&str]) -> Command {
+    cargo(&[&["clippy", "--quiet", "--locked"], what, &["--", "-D", "warnings"]].concat())
+}
+
+fn core(report: &mut Report) {
+    report.run("tests, core alone", cargo(&["test", "--locked", "--no-default-features"]));
+}
+
+fn app(report: &mut Report) {
+    report.step("tests, whole app", || {
+        tools::software_vulkan()?;
+        shell::run(&mut cargo(&["test", "--locked", "--workspace"]))
+    });
+}
+
+fn web(report: &mut Report) {
+    report.step("web build", || dist::build(dist::Profile::Release));
+}
+
+fn browser(report: &mut Report) {
+    report.step("browser tests", || {
+        let chromium = tools::chromium()?;
+        tools::browser_packages()?;
+        let server = server::Server::bind(0, dist::folder())?;
+        let address = server.address();
+        std::thread::spawn(move || server.run());
+        // One file after the other: each starts browsers that draw in software, and those take all the cores there are.
+        let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
+        node.current_dir(root().join("tests/browser"))
+            .env("SEGUE_URL", address)
+            .env("CHROMIUM", chromium);
+        shell::run(&mut node)
+    });
+}
+
+/// What ran, how it ended, how long it took.
+#[derive(Default)]
+struct Report {
+    rows: Vec<(&'static str, Result<()>, Duration)>,
+}
+
+impl Report {
+    fn run(&mut self, name: &'static str, mut command: Command) {
+        self.step(name, || shell::run(&mut command));
+    }
+
+    /// Does one step. A failure is kept for the end, so that one run tells all there is to mend.
+    fn step(&mut self, name: &'static str, work: impl FnOnce() -> Result<()>) {
+        println!("\n══ {name}");
+        let start = Instant::now();
+        let outcome = work();
+        let time = start.elapsed();
+        match &outcome {
+            Ok(()) => println!("── {name}: {:.1} s", time.as_secs_f64()),
+            Err(error) => println!("── {name}: FAILED after {:.1} s: {error}", time.as_secs_f64()),
+        }
+        self.rows.push((name, outcome, time));
+    }
+
+    fn close(self) -> Result<()> {
+        println!("\n══ summary");
+        for (name, outcome, time) in &self.rows {
+            println!(
+                "{:<8}{:>8.1} s  {name}",
+                if outcome.is_ok() { "ok" } else { "FAILED" },
+                time.as_secs_f64()
+            );
+        }
+        let failed: Vec<_> = self
+            .rows
+            .iter()
+            .filter(|(_, outcome, _)| outcome.is_err())
+            .map(|(name, ..)| *name)
+            .collect();
+        if failed.is_empty() {
+            Ok(())
+        } else {
+            fail(format!("failed: {}", failed.join(", ")))
+        }
+    }
+}
