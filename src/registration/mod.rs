@@ -1,1 +1,93 @@
-//! registration
+//! Laying one motion on another: point clouds, their best rigid alignment on the ground, distances between windows of two clips, and the
+//! best place to go from one clip to the other.
+//!
+//! # Windows
+//!
+//! One convention holds for search, blending and pictures. A transition from clip A to clip B *leaves* A at frame `i`, *enters* B at frame
+//! `j` and overlaps `k` frames: the source window runs forward from `i`, `A[i..i + k)`; the target window runs forward from `j`,
+//! `B[j..j + k)`. The result is `A[..i]`, the dissolve of the `k` overlapped frames, `B[j + k..]`. A window never crosses the end of its clip.
+//!
+//! # Units
+//!
+//! Distances are root-mean-square distances per point. As numbers for people they are scaled to a body of [`REFERENCE_HEIGHT_M`] and given in
+//! centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
+
+mod align;
+#[cfg(test)]
+pub(crate) mod fixtures;
+mod grid;
+mod points;
+mod transition;
+
+pub use align::{Alignment, align};
+pub use grid::{DistanceGrid, PairSums, Progress};
+pub use points::{REFERENCE_HEIGHT_M, body_height, limb_weights, rms_cm, uniform_weights};
+pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
+
+/// Why two motions cannot be laid on each other.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RegistrationError {
+    /// The clouds do not have the same points.
+    #[error(
+        "two clouds of {source_points} and {target_points} points cannot be laid on each other point by point: use the same joints and frames for both"
+    )]
+    Points {
+        /// Points of the source cloud.
+        source_points: usize,
+        /// Points of the target cloud.
+        target_points: usize,
+    },
+    /// The weights do not fit the points, or weigh nothing.
+    #[error("{found} weights for {expected} joints: give one weight per joint, none negative, and at least one above 0")]
+    Weights {
+        /// Weights given.
+        found: usize,
+        /// Joints (or points) to be weighed.
+        expected: usize,
+    },
+    /// A position is not a number.
+    #[error("a joint position is not a finite number: repair or crop the clip first")]
+    NotFinite,
+    /// The clips' skeletons differ.
+    #[error("the clips move different skeletons ({source_joints} and {target_joints} joints): retarget one onto the other first")]
+    Skeletons {
+        /// Joints of the source clip's skeleton.
+        source_joints: usize,
+        /// Joints of the target clip's skeleton.
+        target_joints: usize,
+    },
+    /// The clips' frame rates differ.
+    #[error("the clips run at {source_fps} and {target_fps} frames per second: resample one to the other's rate first")]
+    FrameRates {
+        /// Frame rate of the source clip.
+        source_fps: f64,
+        /// Frame rate of the target clip.
+        target_fps: f64,
+    },
+    /// A clip is shorter than the window.
+    #[error(
+        "a window of {window} frames does not fit into the {which} clip of {frames} frames: lower the window to {frames} or use a longer clip"
+    )]
+    TooShort {
+        /// "outgoing" or "incoming".
+        which: &'static str,
+        /// Frames of that clip.
+        frames: usize,
+        /// Frames of the window.
+        window: usize,
+    },
+    /// A clip without frames.
+    #[error("the {which} clip has no frames: there is nothing to compare")]
+    Empty {
+        /// "outgoing" or "incoming".
+        which: &'static str,
+    },
+    /// The sums have not been computed yet.
+    #[error("{done} of {total} rows are compared: advance the search to the end first")]
+    Unfinished {
+        /// Rows done.
+        done: usize,
+        /// Rows in all.
+        total: usize,
+    },
+}

@@ -1,0 +1,132 @@
+use super::RegistrationError;
+use crate::skeleton::Skeleton;
+
+/// The body height that distances are scaled to, metres.
+pub const REFERENCE_HEIGHT_M: f64 = 1.75;
+
+/// The root-mean-square distance per point, centimetres on a body of [`REFERENCE_HEIGHT_M`].
+///
+/// `distance` is a weighted sum of squared distances (m²) over points that weigh `weight` in all (section A's D and W), measured on a body
+/// `body_height` metres tall: `100 · √(D / W) · 1.75 / height`. A height or weight that is not above 0 leaves nothing to scale by; the
+/// result is then NaN.
+#[must_use]
+pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
+    if !(weight > 0.0 && body_height > 0.0) {
+        return f64::NAN;
+    }
+    100.0 * (distance.max(0.0) / weight).sqrt() * REFERENCE_HEIGHT_M / body_height
+}
+
+/// How tall a body is, metres: the largest extent of its rest pose along any axis, end sites included.
+///
+/// Rest poses stand upright, lie along another axis, or spread their arms; an adult's arm span is close to the height, so that the largest
+/// extent serves for all of them. `None` for a skeleton without extent.
+#[must_use]
+pub fn body_height(skeleton: &Skeleton) -> Option<f64> {
+    let rest = skeleton.rest_positions();
+    let tips = skeleton
+        .joints()
+        .iter()
+        .zip(&rest)
+        .filter_map(|(joint, &at)| joint.end_site.map(|end| at + end));
+    let (mut low, mut high) = (rest.first().copied()?, rest.first().copied()?);
+    for point in rest.iter().copied().chain(tips) {
+        (low, high) = (low.min(point), high.max(point));
+    }
+    let extent = f64::from((high - low).max_element());
+    (extent.is_finite() && extent > 1e-6).then_some(extent)
+}
+
+/// The same weight for every joint; they add up to 1.
+#[must_use]
+pub fn uniform_weights(skeleton: &Skeleton) -> Vec<f64> {
+    vec![1.0 / skeleton.len() as f64; skeleton.len()]
+}
+
+/// Weights by limb length; they add up to 1.
+///
+/// Every joint gets half of each bone that meets in it, so that the weighted sum is the integral over the limbs by the trapezoid rule.
+/// Thirty finger joints then weigh what the hands' length weighs, not what thirty joints weigh. Uniform for a skeleton without lengths.
+#[must_use]
+pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
+    let mut weights = vec![0.0; skeleton.len()];
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            let half = f64::from(joint.offset.length()) / 2.0;
+            weights[index] += half;
+            weights[parent] += half;
+        }
+        if let Some(end) = joint.end_site {
+            weights[index] += f64::from(end.length()) / 2.0;
+        }
+    }
+    let total: f64 = weights.iter().sum();
+    if !(total.is_finite() && total > 0.0) {
+        return uniform_weights(skeleton);
+    }
+    weights.iter_mut().for_each(|weight| *weight /= total);
+    weights
+}
+
+/// The sum of the weights.
+///
+/// # Errors
+/// [`RegistrationError::Weights`] unless there are `expected` of them, none negative or not finite, and at least one above 0.
+pub(super) fn checked_sum(weights: &[f64], expected: usize) -> Result<f64, RegistrationError> {
+    let sum: f64 = weights.iter().sum();
+    if weights.len() == expected && weights.iter().all(|&w| w >= 0.0) && sum > 0.0 && sum.is_finite() {
+        Ok(sum)
+    } else {
+        Err(RegistrationError::Weights {
+            found: weights.len(),
+            expected,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::Joint;
+    use glam::Vec3;
+
+    fn joint(parent: Option<usize>, offset: Vec3, end_site: Option<Vec3>) -> Joint {
+        Joint {
+            name: "j".into(),
+            parent,
+            offset,
+            end_site,
+            channels: vec![],
+        }
+    }
+
+    #[test]
+    fn long_limbs_weigh_more() {
+        let skeleton = Skeleton::new(vec![
+            joint(None, Vec3::ZERO, None),
+            joint(Some(0), Vec3::Y * 0.6, None),
+            joint(Some(1), Vec3::Y * 0.2, Some(Vec3::Y * 0.2)),
+        ])
+        .unwrap();
+        let weights = limb_weights(&skeleton);
+        // Halves: 0.3 | 0.3 + 0.1 | 0.1 + 0.1, of 0.9 (the outer half of the end site belongs to no joint).
+        for (weight, expected) in weights.iter().zip([3.0 / 9.0, 4.0 / 9.0, 2.0 / 9.0]) {
+            assert!((weight - expected).abs() < 1e-6);
+        }
+        assert!((body_height(&skeleton).unwrap() - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_skeleton_without_lengths_has_uniform_weights_and_no_height() {
+        let skeleton = Skeleton::new(vec![joint(None, Vec3::ZERO, None), joint(Some(0), Vec3::ZERO, None)]).unwrap();
+        assert_eq!(limb_weights(&skeleton), [0.5, 0.5]);
+        assert_eq!(body_height(&skeleton), None);
+    }
+
+    #[test]
+    fn distances_are_in_centimetres_of_the_reference_body() {
+        // Every point 3 cm off on a body of 0.875 m is 6 cm off on one of 1.75 m.
+        assert!((rms_cm(0.03 * 0.03 * 8.0, 8.0, 0.875) - 6.0).abs() < 1e-12);
+        assert!(rms_cm(1.0, 0.0, 1.75).is_nan());
+    }
+}

@@ -1,0 +1,218 @@
+use super::{Alignment, PairSums, Progress, RegistrationError, body_height, rms_cm};
+use crate::clip::Clip;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The part of a clip in which a window may start, as shares of its frames: 0 is the first, 1 the end.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Region {
+    /// Where it starts, 0 to 1.
+    pub from: f64,
+    /// Where it ends, 0 to 1.
+    pub to: f64,
+}
+
+impl Region {
+    /// The whole clip.
+    pub const ALL: Self = Self { from: 0.0, to: 1.0 };
+    /// The first half.
+    pub const FIRST_HALF: Self = Self { from: 0.0, to: 0.5 };
+    /// The second half.
+    pub const SECOND_HALF: Self = Self { from: 0.5, to: 1.0 };
+
+    /// The frames at which a window of `window` frames may start, and whether the region had to grow to the whole clip because no window that
+    /// starts in it ends before the clip does. `None` when the window is longer than the clip.
+    fn starts(self, frames: usize, window: usize) -> Option<(Range<usize>, bool)> {
+        let end = (frames + 1).checked_sub(window.max(1)).filter(|&end| end > 0)?;
+        // `as usize` takes NaN and negative numbers to 0.
+        let frame = |share: f64| (share.clamp(0.0, 1.0) * frames as f64).ceil() as usize;
+        let region = frame(self.from)..frame(self.to).max(frame(self.from) + 1).min(end);
+        Some(if region.is_empty() { (0..end, true) } else { (region, false) })
+    }
+}
+
+/// Where to look for a transition.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SearchOptions {
+    /// Frames of both windows; 0 counts as 1.
+    pub window: usize,
+    /// Where the outgoing clip may be left.
+    pub leave: Region,
+    /// Where the incoming clip may be entered.
+    pub enter: Region,
+}
+
+impl SearchOptions {
+    /// Leave in the second half, enter in the first half.
+    #[must_use]
+    pub fn new(window: usize) -> Self {
+        Self {
+            window,
+            leave: Region::SECOND_HALF,
+            enter: Region::FIRST_HALF,
+        }
+    }
+}
+
+/// A place to go from one clip to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition {
+    /// The frame at which the outgoing clip is left: its window is `leave..leave + window`.
+    pub leave: usize,
+    /// The frame at which the incoming clip is entered: its window is `enter..enter + window`.
+    pub enter: usize,
+    /// How the incoming window lies best on the outgoing one (`outgoing_from_incoming`), and what distance is left.
+    pub alignment: Alignment,
+    /// The root-mean-square distance per point, centimetres on the reference body (NaN for a skeleton without extent).
+    pub rms_cm: f64,
+    /// A clip was too short for the region asked for, and all of it was searched.
+    pub grown: bool,
+}
+
+/// How many minima of the coarse grid are looked at closely.
+const CANDIDATES: usize = 6;
+
+/// The search for the best transition between two clips, with everything cached that does not depend on the window.
+///
+/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)` frames; the six lowest minima of that
+/// grid are searched again at the full frame rate, within one stride. The answer's root-mean-square distance is within 5 % or 0.2 cm of the
+/// smallest over *all* pairs of frames (tested against them); an answer that is refined is exact for the pair it names.
+#[derive(Clone, Debug)]
+pub struct TransitionSearch {
+    outgoing: Arc<Clip>,
+    incoming: Arc<Clip>,
+    weights: Vec<f64>,
+    sums: PairSums,
+}
+
+impl TransitionSearch {
+    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]).
+    ///
+    /// # Errors
+    /// [`RegistrationError`] when a clip is empty, the skeletons or frame rates differ, or the weights do not fit.
+    pub fn new(outgoing: Arc<Clip>, incoming: Arc<Clip>, weights: &[f64]) -> Result<Self, RegistrationError> {
+        let (source_fps, target_fps) = (outgoing.fps(), incoming.fps());
+        if (source_fps - target_fps).abs() > 1e-4 * source_fps {
+            return Err(RegistrationError::FrameRates { source_fps, target_fps });
+        }
+        let longest = outgoing.frames().max(incoming.frames());
+        let stride = ((source_fps / 30.0).ceil() as usize).max(longest.div_ceil(400)).max(1);
+        let sums = PairSums::new(&outgoing, 0..outgoing.frames(), &incoming, 0..incoming.frames(), weights, stride)?;
+        Ok(Self {
+            outgoing,
+            incoming,
+            weights: weights.to_vec(),
+            sums,
+        })
+    }
+
+    /// Compares up to `rows` more rows of the coarse grid; there are at most about 400.
+    pub fn advance(&mut self, rows: usize) -> Progress {
+        self.sums.advance(rows)
+    }
+
+    /// The coarse sums, for a picture of all distances.
+    #[must_use]
+    pub fn sums(&self) -> &PairSums {
+        &self.sums
+    }
+
+    /// The best transition for these options.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Unfinished`] before the comparison is complete, [`RegistrationError::TooShort`] when the window does not fit.
+    pub fn best(&self, options: &SearchOptions) -> Result<Transition, RegistrationError> {
+        let window = options.window.max(1);
+        let starts = |region: Region, which: &'static str, frames: usize| {
+            region
+                .starts(frames, window)
+                .ok_or(RegistrationError::TooShort { which, frames, window })
+        };
+        let (leave, leave_grew) = starts(options.leave, "outgoing", self.outgoing.frames())?;
+        let (enter, enter_grew) = starts(options.enter, "incoming", self.incoming.frames())?;
+        let grid = self.sums.distances(window, &leave, &enter)?;
+        let mut candidates: Vec<(usize, usize)> = (grid.local_minima().into_iter().take(CANDIDATES))
+            .map(|(r, c)| grid.frames(r, c))
+            .collect();
+        if candidates.is_empty() {
+            // The region lies between two samples of the grid.
+            candidates.push((leave.start, enter.start));
+        }
+        let mut best: Option<(f32, usize, usize)> = None;
+        for (i, j) in candidates {
+            let found = self.refined(i, j, self.sums.stride(), window, &leave, &enter)?;
+            if best.is_none_or(|best| found.0 < best.0) {
+                best = Some(found);
+            }
+        }
+        let Some((_, i, j)) = best else {
+            return Err(RegistrationError::Empty { which: "outgoing" });
+        };
+        let alignment = exact(&self.outgoing, i, &self.incoming, j, window, &self.weights)?;
+        let height = body_height(self.outgoing.skeleton()).unwrap_or(f64::NAN);
+        Ok(Transition {
+            leave: i,
+            enter: j,
+            alignment,
+            rms_cm: rms_cm(alignment.distance, alignment.weight, height),
+            grown: leave_grew || enter_grew,
+        })
+    }
+
+    /// The best pair within `radius` frames of (i, j). In two passes where the radius is large: 17 × 17 pairs each.
+    fn refined(
+        &self,
+        i: usize,
+        j: usize,
+        radius: usize,
+        window: usize,
+        leave: &Range<usize>,
+        enter: &Range<usize>,
+    ) -> Result<(f32, usize, usize), RegistrationError> {
+        let around = |at: usize, region: &Range<usize>| at.saturating_sub(radius).max(region.start)..(at + radius + 1).min(region.end);
+        let (rows, columns) = (around(i, leave), around(j, enter));
+        let stride = radius.div_ceil(8).max(1);
+        let band = rows.len().max(columns.len()).div_ceil(stride);
+        let with_window = |starts: &Range<usize>| starts.start..starts.end + window - 1;
+        let mut sums = PairSums::banded(
+            &self.outgoing,
+            with_window(&rows),
+            &self.incoming,
+            with_window(&columns),
+            &self.weights,
+            stride,
+            band,
+        )?;
+        sums.finish();
+        let grid = sums.distances(window, &rows, &columns)?;
+        let (row, column) = grid.minimum().unwrap_or_default();
+        let (i, j) = grid.frames(row, column);
+        if stride > 1 {
+            return self.refined(i, j, stride, window, leave, enter);
+        }
+        Ok((grid.get(row, column).unwrap_or(f32::INFINITY), i, j))
+    }
+}
+
+/// The alignment of two windows at the full frame rate.
+fn exact(a: &Clip, i: usize, b: &Clip, j: usize, window: usize, weights: &[f64]) -> Result<Alignment, RegistrationError> {
+    super::align(&a.world_positions(i..i + window), &b.world_positions(j..j + window), weights, 0.0)
+}
+
+/// The best transition in one call; see [`TransitionSearch`].
+///
+/// # Errors
+/// [`RegistrationError`] when the clips cannot be compared or the window does not fit.
+pub fn best_transition(
+    outgoing: &Arc<Clip>,
+    incoming: &Arc<Clip>,
+    weights: &[f64],
+    options: &SearchOptions,
+) -> Result<Transition, RegistrationError> {
+    let mut search = TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights)?;
+    search.sums.finish();
+    search.best(options)
+}
+
+#[cfg(test)]
+mod tests;
