@@ -22,7 +22,7 @@ pub use document::{ClipInfo, Loaded, Pane, Session};
 pub use library::{
     Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference,
 };
-pub use motion::Motion;
+pub use motion::{Motion, frame_at, joint_of};
 pub use notice::{Level, Notice, Notices};
 pub use params::{
     Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,

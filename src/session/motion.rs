@@ -1,6 +1,6 @@
 use crate::clip::{Clip, ContactOptions, Contacts, character_frames, detect_contacts};
 use crate::math::Planar;
-use crate::skeleton::Roles;
+use crate::skeleton::{Role, Roles};
 use std::sync::Arc;
 
 /// A clip with what is derived from it once and used everywhere.
@@ -30,4 +30,20 @@ impl Motion {
             ground_frames,
         }
     }
+}
+
+/// The joint that a user names: a body part ("right foot") or a joint's name, whatever the case.
+#[must_use]
+pub fn joint_of(motion: &Motion, name: &str) -> Option<usize> {
+    let role = Role::ALL.into_iter().find(|role| role.name().eq_ignore_ascii_case(name));
+    let by_role = role.and_then(|role| motion.roles.get(role));
+    by_role.or_else(|| motion.clip.skeleton().joints().iter().position(|joint| joint.name.eq_ignore_ascii_case(name)))
+}
+
+/// The frame that is nearest to a time. 0 for a clip without frames.
+#[must_use]
+pub fn frame_at(motion: &Motion, secs: f64) -> usize {
+    let last = motion.clip.frames().saturating_sub(1) as f64;
+    // The clamp turns a negative time into frame 0, and NaN too: `max` returns the other operand.
+    (secs * motion.clip.fps()).round().max(0.0).min(last) as usize
 }

@@ -1,0 +1,302 @@
+use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
+use crate::clip::Interpolation;
+use crate::math::Planar;
+use crate::session::{self, Key, Motion, Outcome, Params, Session, Slot, joint_of};
+use crate::skeleton::{Role, Side, Skeleton, WorldPose, world_pose};
+use glam::Vec3;
+use std::sync::{Arc, Weak};
+
+/// The colours of what is made from A, from B, and from both, in the theme of the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Colors {
+    /// A's ghost and path.
+    pub a: Color,
+    /// B's ghost and path.
+    pub b: Color,
+    /// The result's path, and the ring of a planted foot.
+    pub result: Color,
+    /// The ring of a foot that slides.
+    pub bad: Color,
+    /// How much a ghost covers, 0 to 1.
+    pub ghost_alpha: f32,
+}
+
+/// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their way, and the bodies of skeletons.
+#[derive(Debug, Default)]
+pub struct Director {
+    stage: Stage,
+    rigs: Vec<CameraRig>,
+    bodies: Vec<(Weak<Skeleton>, u64, Arc<Body>)>,
+}
+
+/// A ghost fades in before the transition and out behind it, over this long.
+const GHOST_FADE_SECS: f64 = 0.3;
+/// A planted foot that moves faster than this slides.
+const SLIDE_MPS: f32 = 0.08;
+/// Points of a path, at most. A path is as long as its clip, and no screen shows more.
+const PATH_POINTS: usize = 600;
+/// A camera that nothing is followed with comes to a new view this fast.
+const VIEW_HALF_LIFE_SECS: f32 = 0.06;
+/// A followed character that jumped farther than this (a loop began again) is not chased but cut to.
+const CUT_METRES: f32 = 1.5;
+
+impl Director {
+    /// Everything that is to be seen now, in panes at `viewports` (physical pixels). `dt_secs` moves the cameras on.
+    pub fn stage(
+        &mut self,
+        session: &Session,
+        viewports: &[Viewport],
+        pixels_per_point: f32,
+        look: Look,
+        colors: &Colors,
+        dt_secs: f32,
+    ) -> &Stage {
+        let params = session.params();
+        let now = session.now_secs();
+        self.stage.look = look;
+        self.stage.pixels_per_point = pixels_per_point;
+        self.stage.panes.resize_with(viewports.len(), Pane::default);
+        self.rigs.resize_with(viewports.len(), CameraRig::default);
+        self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
+        let mut panes = std::mem::take(&mut self.stage.panes);
+        for (index, (pane, &viewport)) in panes.iter_mut().zip(viewports).enumerate() {
+            pane.clear();
+            pane.viewport = viewport;
+            if let Some(outcome) = session.panes().get(index).and_then(|pane| pane.outcome.as_deref()) {
+                self.draw(outcome, params, now, &look, colors, pane);
+                self.aim(index, outcome, params, now, dt_secs, pane);
+            }
+        }
+        self.stage.panes = panes;
+        &self.stage
+    }
+
+    /// Whether a camera is still on its way, so that another frame is needed.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.rigs.iter().any(|rig| !rig.is_still())
+    }
+
+    /// The camera of a pane, as it was drawn last.
+    #[must_use]
+    pub fn camera(&self, pane: usize) -> Option<&Camera> {
+        self.rigs.get(pane).map(CameraRig::camera)
+    }
+
+    fn body(&mut self, motion: &Motion) -> Arc<Body> {
+        let skeleton = motion.clip.skeleton();
+        let roles = motion.roles.fingerprint();
+        let known = self.bodies.iter().find(|(known, known_roles, _)| std::ptr::eq(known.as_ptr(), Arc::as_ptr(skeleton)) && *known_roles == roles);
+        if let Some((.., body)) = known {
+            return Arc::clone(body);
+        }
+        let body = Arc::new(Body::new(skeleton, Some(&motion.roles)));
+        self.bodies.push((Arc::downgrade(skeleton), roles, Arc::clone(&body)));
+        body
+    }
+
+    fn draw(&mut self, outcome: &Outcome, params: &Params, now: f64, look: &Look, colors: &Colors, pane: &mut Pane) {
+        let motion = &outcome.motion;
+        let Some(world) = pose_at(motion, now, &Planar::IDENTITY) else { return };
+        let body = self.body(motion);
+        let shape = params.text(Key::Look);
+        if shape != "bones" {
+            pane.add_body(&body, &world, look.clay);
+        }
+        if shape != "body" {
+            add_bones(motion.clip.skeleton(), &world, colors.result, pane);
+        }
+        if params.is_on(Key::Axes) {
+            add_axes(&world, colors, pane);
+        }
+        if params.is_on(Key::Sources) {
+            self.draw_sources(outcome, now, colors, pane);
+        }
+        let onion = params.number(Key::Ghosts) as i32;
+        for step in (-onion..=onion).filter(|&step| step != 0) {
+            let at = now + f64::from(step) * params.number(Key::GhostStep);
+            if (0.0..=outcome.duration_secs()).contains(&at)
+                && let Some(world) = pose_at(motion, at, &Planar::IDENTITY)
+            {
+                let fade = 1.0 - (step.abs() - 1) as f32 / onion as f32;
+                pane.add_ghost(&body, &world, with_alpha(color_at(outcome, at, colors), colors.ghost_alpha * 0.7 * fade));
+            }
+        }
+        if params.is_on(Key::Trail) {
+            add_ground_path(outcome, colors, pane);
+        }
+        if params.is_on(Key::JointTrail)
+            && let Some(joint) = joint_of(motion, params.text(Key::Joint))
+        {
+            add_joint_trail(motion, joint, now, colors.result, pane);
+        }
+        if params.is_on(Key::Contacts) {
+            add_contacts(motion, now, &world, colors, pane);
+        }
+    }
+
+    fn draw_sources(&mut self, outcome: &Outcome, now: f64, colors: &Colors, pane: &mut Pane) {
+        let Some(transition) = outcome.transition else { return };
+        let outside = (transition.start_secs - now).max(now - transition.end_secs).max(0.0);
+        let fade = (1.0 - outside / GHOST_FADE_SECS) as f32;
+        if fade <= 0.0 {
+            return;
+        }
+        for source in &outcome.sources {
+            let at = now - source.starts_at_secs;
+            if !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
+                continue;
+            }
+            if let Some(world) = pose_at(&source.motion, at, &source.world_from_clip) {
+                let color = match source.slot {
+                    Slot::A => colors.a,
+                    Slot::B => colors.b,
+                };
+                let body = self.body(&source.motion);
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * fade));
+            }
+        }
+    }
+
+    /// Brings the pane's camera to where the parameters want it, after the followed joint.
+    fn aim(&mut self, index: usize, outcome: &Outcome, params: &Params, now: f64, dt_secs: f32, pane: &mut Pane) {
+        let followed = followed_point(outcome, params, now);
+        let pan = Vec3::new(params.number(Key::PanX) as f32, params.number(Key::PanY) as f32, params.number(Key::PanZ) as f32);
+        let from_above = params.text(Key::Camera) == "top";
+        let goal = Camera {
+            target: followed.unwrap_or_else(|| resting_point(outcome)) + pan,
+            yaw: params.number(Key::CameraYaw).to_radians() as f32,
+            pitch: if from_above { std::f32::consts::FRAC_PI_2 } else { params.number(Key::CameraPitch).to_radians() as f32 },
+            distance: params.number(Key::CameraDistance) as f32,
+            lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
+            ..Camera::default()
+        };
+        let rig = &mut self.rigs[index];
+        let first = *rig == CameraRig::default();
+        let cut = goal.target.distance(rig.goal.target) > CUT_METRES;
+        rig.goal = goal;
+        if first || cut {
+            rig.jump();
+        } else {
+            let half_life = if followed.is_some() { params.number(Key::FollowHalfLife) as f32 } else { VIEW_HALF_LIFE_SECS };
+            // The hand turns and zooms at once; only what the camera follows is smoothed.
+            rig.update(half_life, dt_secs);
+            rig.snap_view();
+        }
+        pane.camera = *rig.camera();
+        pane.focus = goal.target.with_y(0.0);
+    }
+}
+
+/// The pose of a motion at a time, in the world that the motion lies in.
+#[must_use]
+pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<WorldPose> {
+    let pose = motion.clip.sample(secs, Interpolation::Linear)?;
+    let mut world = world_pose(motion.clip.skeleton(), &pose);
+    if *world_from_clip != Planar::IDENTITY {
+        world.apply(world_from_clip);
+    }
+    Some(world)
+}
+
+/// The point that the camera stays with; `None` when it follows nothing.
+fn followed_point(outcome: &Outcome, params: &Params, now: f64) -> Option<Vec3> {
+    let wanted = match params.text(Key::Follow) {
+        "off" => return None,
+        "a" => Some(Slot::A),
+        "b" => Some(Slot::B),
+        _ => None,
+    };
+    let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
+    let (motion, at, place) = source.map_or((&outcome.motion, now, Planar::IDENTITY), |source| {
+        (&source.motion, now - source.starts_at_secs, source.world_from_clip)
+    });
+    let world = pose_at(motion, at, &place)?;
+    let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
+    let point = *world.positions.get(joint)?;
+    let hips = motion.roles.get(Role::Hips).unwrap_or(0);
+    // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the height of a standing body's middle.
+    Some(if joint == hips { point.with_y(middle_height(motion)) } else { point })
+}
+
+/// What an unbound camera looks at: where the motion begins.
+fn resting_point(outcome: &Outcome) -> Vec3 {
+    let start = outcome.motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
+    start.with_y(middle_height(&outcome.motion))
+}
+
+fn middle_height(motion: &Motion) -> f32 {
+    motion.roles.body_height(motion.clip.skeleton()) * 0.5
+}
+
+/// Warm where A plays, cool where B does, the accent between them and where there is no transition.
+fn color_at(outcome: &Outcome, secs: f64, colors: &Colors) -> Color {
+    match outcome.transition {
+        Some(transition) if secs < transition.start_secs => colors.a,
+        Some(transition) if secs > transition.end_secs => colors.b,
+        _ => colors.result,
+    }
+}
+
+fn add_ground_path(outcome: &Outcome, colors: &Colors, pane: &mut Pane) {
+    let frames = &outcome.motion.ground_frames;
+    let fps = outcome.motion.clip.fps();
+    let stride = frames.len().div_ceil(PATH_POINTS).max(1);
+    let points = frames.iter().enumerate().step_by(stride).map(|(frame, place)| {
+        (place.origin().with_y(0.004), color_at(outcome, frame as f64 / fps, colors))
+    });
+    pane.add_path(points, 2.0, Layer::Ground);
+}
+
+fn add_joint_trail(motion: &Motion, joint: usize, now: f64, color: Color, pane: &mut Pane) {
+    /// How much of the way is shown, before and after the present.
+    const REACH_SECS: f64 = 1.0;
+    const STEPS: i32 = 60;
+    let points = (-STEPS..=STEPS).filter_map(|step| {
+        let part = f64::from(step) / f64::from(STEPS);
+        let at = now + part * REACH_SECS;
+        let inside = (0.0..=motion.clip.duration_secs()).contains(&at);
+        let world = inside.then(|| pose_at(motion, at, &Planar::IDENTITY)).flatten()?;
+        Some((*world.positions.get(joint)?, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
+    });
+    pane.add_path(points, 1.75, Layer::Space);
+}
+
+fn add_bones(skeleton: &Skeleton, world: &WorldPose, color: Color, pane: &mut Pane) {
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
+        }
+        if let Some(end) = joint.end_site {
+            pane.add_line(world.positions[index], world.point(index, end), with_alpha(color, 0.6), 2.0, Layer::Over);
+        }
+    }
+}
+
+fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
+    const LENGTH_M: f32 = 0.07;
+    for (&position, &rotation) in world.positions.iter().zip(&world.rotations) {
+        for (axis, color) in [(Vec3::X, colors.bad), (Vec3::Y, colors.result), (Vec3::Z, colors.b)] {
+            pane.add_line(position, position + rotation * axis * LENGTH_M, color, 1.5, Layer::Over);
+        }
+    }
+}
+
+/// A ring under each planted foot, red where it slides.
+fn add_contacts(motion: &Motion, now: f64, world: &WorldPose, colors: &Colors, pane: &mut Pane) {
+    let frame = session::frame_at(motion, now);
+    let dt = motion.clip.dt_secs();
+    for side in Side::BOTH {
+        if !motion.contacts.planted(side, frame) {
+            continue;
+        }
+        let Some(foot) = motion.roles.get(Role::foot(side)) else { continue };
+        let joint = motion.roles.get(Role::toe(side)).unwrap_or(foot);
+        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else { continue };
+        let earlier = pose_at(motion, now - f64::from(dt), &Planar::IDENTITY);
+        let before = earlier.and_then(|world| world.positions.get(joint).copied()).unwrap_or(toe);
+        let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;
+        let middle = toe.lerp(ankle, 0.35).with_y(0.0);
+        pane.add_contact(middle, if slides { colors.bad } else { colors.result });
+    }
+}

@@ -1,0 +1,172 @@
+//! The parameters of the lab that is open, and below them those of the stage.
+
+use super::kit;
+use super::out::{Action, Out};
+use super::param_row::{Detail, param_row_ui};
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{self, Ui};
+use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value};
+
+/// The right panel: one section for the lab, two that fold for stage and camera.
+pub(crate) fn lab_panel_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    match params.text(Key::Lab) {
+        "make" => make_ui(session, out, ui),
+        "blend" => blend_ui(session, out, ui),
+        _ => view_ui(session, out, ui),
+    }
+    ui.add_space(space::L);
+    folded_ui(text::STAGE, Group::Stage, session, out, ui);
+    folded_ui(text::CAMERA, Group::Camera, session, out, ui);
+}
+
+fn view_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(lab_label(session), ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    if let Some(entry) = session.slot(Slot::A)
+        && let Some(motion) = &entry.motion
+    {
+        let clip = &motion.clip;
+        let height = motion.roles.body_height(clip.skeleton());
+        let speed = segue::clip::ground_speed(&motion.ground_frames, clip.fps());
+        let facts = [
+            ("Length", format!("{:.2}", clip.duration_secs()), "s"),
+            ("Frames", clip.frames().to_string(), ""),
+            ("Frame rate", segue::session::format_number(clip.fps(), 0.01), "fps"),
+            ("Joints", clip.skeleton().len().to_string(), ""),
+            ("Body height", format!("{height:.2}"), "m"),
+            ("Mean speed", format!("{speed:.2}"), "m/s"),
+        ];
+        for (label, value, unit) in facts {
+            kit::fact_row_ui(label, &value, unit, ui);
+        }
+        ui.add_space(space::S);
+        if kit::button_ui(text::EXPORT_BVH, kit::Emphasis::Secondary, ui).clicked() {
+            out.actions.push(Action::SaveBvh(entry.id.clone()));
+        }
+    }
+}
+
+fn make_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(lab_label(session), ui);
+    for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
+        let detail = match (param.key, session.params().text(Key::Gait)) {
+            // What the chosen motion does not have is not offered.
+            (Key::GaitSpeed | Key::TurnRate, "idle" | "spin" | "jump") | (Key::TurnRate, "start" | "stop") => continue,
+            (Key::GaitSpeed, "walk" | "start" | "stop") => Detail { max: Some(2.2), help: Some("How fast it walks.".into()), ..Detail::default() },
+            (Key::GaitSpeed, _) => Detail { help: Some("How fast it runs: 1.8 to 6.5.".into()), ..Detail::default() },
+            _ => Detail::default(),
+        };
+        param_row_ui(param.key, &detail, session, out, ui);
+    }
+    compare_ui(Key::GaitSpeed, session, out, ui);
+    ui.add_space(space::S);
+    if kit::button_ui(text::KEEP, kit::Emphasis::Primary, ui).clicked() {
+        out.commands.push(Command::KeepMade);
+    }
+}
+
+fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(lab_label(session), ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    slot_row_ui(Slot::B, session, out, ui);
+    ui.add_space(space::S);
+    let outcome = session.main_outcome();
+    let fps = outcome.map_or(60.0, |outcome| outcome.motion.clip.fps());
+    let duration = |slot| session.slot(slot).and_then(|entry| entry.motion.as_ref()).map(|motion| motion.clip.duration_secs());
+    let window = session.params().number(Key::BlendWindow);
+    let shortest = [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
+    let longest_window = if shortest.is_finite() { Some((shortest * fps).floor()) } else { None };
+    param_row_ui(
+        Key::BlendWindow,
+        &Detail { secondary: format!("{:.2} s", window / fps), max: longest_window.map(|max| max.max(window)), ..Detail::default() },
+        session,
+        out,
+        ui,
+    );
+    compare_ui(Key::BlendWindow, session, out, ui);
+    let place = |key, slot| Detail {
+        max: duration(slot),
+        help: Some(if session.params().optional(key).is_some() {
+            text::BY_HAND.to_owned()
+        } else {
+            found_sentence(session)
+        }),
+        ..Detail::default()
+    };
+    param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A), session, out, ui);
+    param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B), session, out, ui);
+    ui.label(egui::RichText::new(Key::WeightLaw.param().label).font(theme_of(ui).font(Type::Label)));
+    param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
+    ui.add_space(space::XS);
+    param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    if kit::button_ui(text::EXPORT_RESULT, kit::Emphasis::Secondary, ui).clicked() {
+        out.actions.push(Action::SaveBvh("result".to_owned()));
+    }
+}
+
+/// How the place was found, with its distance where that is known.
+fn found_sentence(session: &Session) -> String {
+    if session.jobs().iter().any(|(name, _)| *name == "matching") {
+        return format!("{}…", text::MATCHING);
+    }
+    match session.main_outcome().and_then(|outcome| outcome.transition) {
+        Some(transition) if transition.distance_cm.is_finite() => {
+            format!("{}: best match of both windows, {:.1} cm.", text::FOUND, transition.distance_cm)
+        }
+        _ => format!("{}.", text::FOUND),
+    }
+}
+
+/// Which clip is in a slot, to be chosen anew.
+fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let entries = session.library().entries();
+    let options: Vec<(usize, &str)> = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str())).collect();
+    let chosen = session.slot(slot).and_then(|entry| entries.iter().position(|other| other.id == entry.id)).unwrap_or(usize::MAX);
+    let picked = ui.push_id(slot.label(), |ui| kit::choice_row_ui(slot.label(), chosen, &options, ui)).inner;
+    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
+        out.commands.push(Command::Assign(slot, entry.id.clone()));
+    }
+}
+
+/// The experiment of the course, and the way back from it.
+fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let on = session.compare().is_some_and(|compare| compare.key == key);
+    let label = if on { text::COMPARE_OFF } else { text::FULL_HALF_THIRD };
+    let response = kit::button_ui(label, kit::Emphasis::Quiet, ui).on_hover_text(text::COMPARE_HELP);
+    if response.clicked() {
+        if on {
+            out.set_once(Key::Compare, Value::Text(String::new()));
+        } else {
+            out.commands.push(Command::CompareThirds(key));
+        }
+    }
+}
+
+fn folded_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let open = egui::CollapsingHeader::new(egui::RichText::new(title).font(theme_of(ui).font(Type::Strong)).color(palette_of(ui).muted));
+    open.id_salt(title).show(ui, |ui| {
+        for param in PARAMS.iter().filter(|param| param.group == group && !is_handled_elsewhere(param.key)) {
+            if matches!(param.kind, segue::session::Kind::Choice(choices) if choices.len() <= 4) {
+                ui.label(egui::RichText::new(param.label).font(theme_of(ui).font(Type::Label)));
+            }
+            param_row_ui(param.key, &Detail::default(), session, out, ui);
+        }
+    });
+}
+
+/// What the timeline, the pointer on the stage or the curves' own menu set.
+fn is_handled_elsewhere(key: Key) -> bool {
+    matches!(key, Key::Joint | Key::Curve | Key::PanX | Key::PanY | Key::PanZ)
+}
+
+fn lab_label(session: &Session) -> &'static str {
+    match session.params().text(Key::Lab) {
+        "make" => "Make",
+        "blend" => "Blend",
+        _ => "View",
+    }
+}

@@ -1,0 +1,41 @@
+//! What the panels ask for. They change nothing themselves.
+
+use segue::session::{Command, Key, Value};
+
+/// What only the platform can do.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Action {
+    /// Let the user choose files.
+    OpenFiles,
+    /// Put the address of this state into the clipboard.
+    CopyLink,
+    /// Save a motion as a BVH file: a clip's id, or `result`.
+    SaveBvh(String),
+}
+
+/// What was asked for in one frame.
+#[derive(Debug, Default)]
+pub(crate) struct Out {
+    /// Changes of the document, in order.
+    pub(crate) commands: Vec<Command>,
+    /// What the platform is asked for.
+    pub(crate) actions: Vec<Action>,
+}
+
+impl Out {
+    /// Sets one parameter.
+    pub(crate) fn set(&mut self, key: Key, value: Value) {
+        self.commands.push(Command::Set(vec![(key, value)]));
+    }
+
+    /// Sets one parameter in one step of its own.
+    pub(crate) fn set_once(&mut self, key: Key, value: Value) {
+        self.set(key, value);
+        self.commands.push(Command::Settle);
+    }
+
+    /// Turns a switch round.
+    pub(crate) fn toggle(&mut self, key: Key, on: bool) {
+        self.set_once(key, Value::Switch(!on));
+    }
+}
