@@ -7,6 +7,7 @@ mod tests;
 mod tokens;
 
 use super::{Role, Side, Skeleton};
+pub(crate) use tokens::are_counterparts;
 use std::collections::BTreeMap;
 
 /// How the joint of a role was found; the most trustworthy first.

@@ -71,7 +71,7 @@ impl Search<'_> {
     /// Xsens calls the lowest joint of the back by its vertebra: `L5`.
     fn lumbar(&self, hips: Option<usize>) -> Option<usize> {
         self.names.iter().enumerate().find_map(|(joint, t)| {
-            let is = t.core.is_empty() && t.side == Some(Side::Left) && matches!(t.number, Some(1..=5));
+            let is = t.core.is_empty() && t.side == Some(Side::Left) && matches!(t.numbers.as_slice(), [n] if n == "5");
             (is && hips.is_none_or(|hips| is_below(self.skeleton, joint, hips))).then_some(joint)
         })
     }
