@@ -1,0 +1,389 @@
+//! The mannequin: girths and landmarks of an adult, scaled to the skeleton.
+//!
+//! Lengths along the body are the skeleton's. Girths and the place of landmarks off the bones (heel, chin, calf) are those of an adult of
+//! 1.75 m, rounded from the tables in Winter, "Biomechanics and Motor Control of Human Movement", and scaled with the body height.
+
+use super::{Anchor, Shape};
+use crate::skeleton::{Role, Roles, Side, Skeleton};
+use glam::Vec3;
+
+/// The body axes at rest, where all joint frames agree: left and up span the trunk, forward is out of the chest.
+struct Axes {
+    left: Vec3,
+    up: Vec3,
+    forward: Vec3,
+}
+
+struct Human<'a> {
+    skeleton: &'a Skeleton,
+    rest: &'a [Vec3],
+    roles: &'a Roles,
+    axes: Axes,
+    /// Body height in units of the adult that the numbers below are for.
+    scale: f32,
+    /// Joints that the shapes of the mannequin speak for.
+    covered: Vec<bool>,
+    shapes: Vec<Shape>,
+}
+
+/// The shapes, or `None` where the roles do not make a human with two legs, two arms and a head.
+pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<Vec<Shape>> {
+    let joint = |role| roles.get_within(role, rest.len());
+    let at = |role| Some(rest[joint(role)?]);
+    for side in Side::BOTH {
+        for role in [
+            Role::thigh(side),
+            Role::shin(side),
+            Role::foot(side),
+            Role::upper_arm(side),
+            Role::forearm(side),
+            Role::hand(side),
+        ] {
+            joint(role)?;
+        }
+    }
+    let (hip_left, hip_right) = (at(Role::LeftThigh)?, at(Role::RightThigh)?);
+    let (shoulder_left, shoulder_right) = (at(Role::LeftUpperArm)?, at(Role::RightUpperArm)?);
+    joint(Role::Hips)?;
+    let up = (at(Role::Head)? - (hip_left + hip_right) * 0.5).try_normalize()?;
+    let across = (hip_left - hip_right) + (shoulder_left - shoulder_right);
+    let left = (across - up * across.dot(up)).try_normalize()?;
+    let scale = roles.body_height(skeleton) / 1.75;
+    if !(scale.is_finite() && scale > 0.0) {
+        return None;
+    }
+    let axes = Axes {
+        left,
+        up,
+        forward: left.cross(up),
+    };
+    let mut human = Human {
+        skeleton,
+        rest,
+        roles,
+        axes,
+        scale,
+        covered: vec![false; rest.len()],
+        shapes: Vec::with_capacity(64),
+    };
+    human.trunk()?;
+    human.head()?;
+    for side in Side::BOTH {
+        human.arm(side)?;
+        human.leg(side)?;
+    }
+    human.whatever_else();
+    Some(human.shapes)
+}
+
+impl Human<'_> {
+    fn joint(&self, role: Role) -> Option<usize> {
+        self.roles.get_within(role, self.rest.len())
+    }
+
+    /// A point that lies at `rest` when the skeleton rests and moves with `joint`.
+    fn anchor(&self, joint: usize, rest: Vec3) -> Anchor {
+        Anchor {
+            joint,
+            point: rest - self.rest[joint],
+        }
+    }
+
+    fn on(&self, joint: usize, offset: Vec3) -> Anchor {
+        Anchor {
+            joint,
+            point: offset * self.scale,
+        }
+    }
+
+    /// Adds a shape whose radii are those of the adult.
+    fn add(&mut self, a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) {
+        self.shapes.push(Shape::round(a, radius_a * self.scale, b, radius_b * self.scale));
+    }
+
+    /// The joints from `joint` up to the root.
+    fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(joint), |&j| self.skeleton.parent(j))
+    }
+
+    fn cover(&mut self, from: usize) {
+        for joint in std::iter::successors(Some(from), |&j| self.skeleton.parent(j)) {
+            self.covered[joint] = true;
+        }
+    }
+
+    /// The joint that carries both arms.
+    fn chest(&self) -> Option<usize> {
+        let (left, right) = (self.joint(Role::LeftUpperArm)?, self.joint(Role::RightUpperArm)?);
+        self.ancestors(left)
+            .skip(1)
+            .find(|&joint| self.ancestors(right).any(|other| other == joint))
+    }
+
+    fn trunk(&mut self) -> Option<()> {
+        let Axes { left, up, forward } = self.axes;
+        let s = self.scale;
+        let (hips, chest) = (self.joint(Role::Hips)?, self.chest()?);
+        let (hip_left, hip_right) = (self.joint(Role::LeftThigh)?, self.joint(Role::RightThigh)?);
+        let (arm_left, arm_right) = (self.joint(Role::LeftUpperArm)?, self.joint(Role::RightUpperArm)?);
+        let hip_middle = (self.rest[hip_left] + self.rest[hip_right]) * 0.5;
+        let shoulder_middle = (self.rest[arm_left] + self.rest[arm_right]) * 0.5;
+        let half_hips = self.rest[hip_left].distance(self.rest[hip_right]) * 0.5 / s;
+        let half_shoulders = self.rest[arm_left].distance(self.rest[arm_right]) * 0.5 / s;
+        // Half of the width is an adult's, half is the skeleton's own.
+        let pelvis = (0.076 + (half_hips + 0.06) * 0.5).clamp(0.11, 0.19);
+        let ribs = (0.074 + (half_shoulders - 0.03) * 0.5).clamp(0.11, 0.2);
+        let waist = 0.5 * (pelvis + ribs) * 0.8;
+
+        let mut spine: Vec<usize> = self.ancestors(chest).take_while(|&j| j != hips).collect();
+        spine.push(hips);
+        spine.reverse();
+        let trunk = shoulder_middle - hip_middle;
+        let height = trunk.dot(up);
+        // Each landmark moves with the highest joint of the back that lies below it.
+        let landmark = |this: &Self, part: f32, ahead: f32| {
+            let point = hip_middle + trunk * part + forward * (ahead * s);
+            let level = (point - hip_middle).dot(up);
+            let below = spine
+                .iter()
+                .rev()
+                .copied()
+                .find(|&j| (this.rest[j] - hip_middle).dot(up) <= level + 1e-4 * height);
+            this.anchor(below.unwrap_or(hips), point)
+        };
+        let low = Anchor {
+            joint: hips,
+            point: hip_middle + up * (0.082 * s) - self.rest[hips],
+        };
+        let (belly, lower_ribs, upper_ribs) = (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
+        self.add(low, pelvis, belly, waist);
+        self.flatten_last(forward, 0.70);
+        self.add(belly, waist, lower_ribs, ribs * 0.90);
+        self.flatten_last(forward, 0.74);
+        self.add(lower_ribs, ribs * 0.90, upper_ribs, ribs);
+        self.flatten_last(forward, 0.70);
+
+        for (side, arm, hip) in [(1.0, arm_left, hip_left), (-1.0, arm_right, hip_right)] {
+            // Seat, shoulder girdle and chest muscle of one side.
+            let seat = self.anchor(
+                hips,
+                self.rest[hip].lerp(hip_middle, 0.22) + up * (0.012 * s) - forward * (0.036 * s),
+            );
+            self.add(seat, 0.089, seat, 0.089);
+            let girdle = self.anchor(chest, shoulder_middle + left * (side * 0.045 * s) - up * (0.015 * s));
+            self.add(
+                girdle,
+                0.066,
+                Anchor {
+                    joint: arm,
+                    point: Vec3::ZERO,
+                },
+                0.057,
+            );
+            let breast = self.anchor(
+                chest,
+                shoulder_middle + left * (side * 0.07 * s) - up * (0.085 * s) + forward * (0.052 * s),
+            );
+            let armpit = self.anchor(
+                chest,
+                self.rest[arm].lerp(shoulder_middle, 0.22) - up * (0.05 * s) + forward * (0.018 * s),
+            );
+            self.add(breast, 0.066, armpit, 0.05);
+        }
+        self.cover(chest);
+        Some(())
+    }
+
+    fn head(&mut self) -> Option<()> {
+        let Axes { left, up, forward } = self.axes;
+        let head = self.joint(Role::Head)?;
+        let chest = self.chest()?;
+        let neck = self.ancestors(head).skip(1).take_while(|&j| j != chest).last().unwrap_or(chest);
+        let shoulders = (self.rest[self.joint(Role::LeftUpperArm)?] + self.rest[self.joint(Role::RightUpperArm)?]) * 0.5;
+        let base = self.anchor(if neck == head { chest } else { neck }, shoulders.lerp(self.rest[head], 0.15));
+        let skull_base = self.on(head, up * 0.035);
+        self.add(base, 0.056, skull_base, 0.05);
+        for side in Side::BOTH {
+            // From the side of the neck down to the shoulder.
+            let nape = self.anchor(base.joint, shoulders.lerp(self.rest[head], 0.42) - forward * (0.008 * self.scale));
+            let shoulder = Anchor {
+                joint: self.joint(Role::upper_arm(side))?,
+                point: up * (0.008 * self.scale),
+            };
+            self.add(nape, 0.042, shoulder, 0.042);
+        }
+        // The head's own size where the file tells it: from the joint to its crown.
+        let crown = self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up));
+        let size = (crown / (0.2 * self.scale)).clamp(0.88, 1.15);
+        let (cranium, chin) = (
+            self.on(head, (up * 0.122 - forward * 0.002) * size),
+            self.on(head, (up * 0.040 + forward * 0.040) * size),
+        );
+        let (brow, tip) = (
+            self.on(head, (up * 0.112 + forward * 0.084) * size),
+            self.on(head, (up * 0.076 + forward * 0.103) * size),
+        );
+        self.add(cranium, 0.094 * size, chin, 0.058 * size);
+        self.flatten_last(left, 0.84);
+        self.add(brow, 0.011 * size, tip, 0.0135 * size);
+        self.cover(head);
+        Some(())
+    }
+
+    fn arm(&mut self, side: Side) -> Option<()> {
+        let (shoulder, elbow, wrist) = (
+            self.joint(Role::upper_arm(side))?,
+            self.joint(Role::forearm(side))?,
+            self.joint(Role::hand(side))?,
+        );
+        let middle = |this: &Self, a: usize, b: usize, t: f32| this.anchor(a, this.rest[a].lerp(this.rest[b], t));
+        let zero = |joint| Anchor { joint, point: Vec3::ZERO };
+        let biceps = middle(self, shoulder, elbow, 0.42);
+        self.add(zero(shoulder), 0.058, biceps, 0.048);
+        self.add(biceps, 0.048, zero(elbow), 0.038);
+        let bulge = middle(self, elbow, wrist, 0.24);
+        self.add(zero(elbow), 0.038, bulge, 0.042);
+        self.add(bulge, 0.042, zero(wrist), 0.026);
+
+        // The palm faces down when the arm is stretched out to the side, inwards when it hangs; `palm` points out of the back of the hand.
+        let along = (self.rest[wrist] - self.rest[elbow]).normalize_or(self.axes.left);
+        let sign = if side == Side::Left { 1.0 } else { -1.0 };
+        let palm = (self.axes.forward.cross(along) * sign).normalize_or(self.axes.up);
+        let across = along.cross(palm) * sign;
+        let knuckles = self.on(wrist, along * 0.078);
+        self.add(zero(wrist), 0.027, knuckles, 0.040);
+        self.flatten_last(palm, 0.52);
+        let below: Vec<usize> = (wrist + 1..self.rest.len())
+            .filter(|&j| self.ancestors(j).any(|a| a == wrist))
+            .collect();
+        let has_fingers = below.len() >= 10;
+        if !has_fingers {
+            let tips = self.on(wrist, along * 0.158 - palm * 0.012);
+            self.add(knuckles, 0.038, tips, 0.022);
+            self.flatten_last(palm, 0.42);
+            let (root, tip) = (
+                self.on(wrist, along * 0.03 + across * 0.02),
+                self.on(wrist, along * 0.088 + across * 0.052 - palm * 0.012),
+            );
+            self.add(root, 0.018, tip, 0.011);
+        }
+        for joint in below {
+            self.covered[joint] = true;
+            if has_fingers && let Some(parent) = self.skeleton.parent(joint) {
+                let (from, radius) = if parent == wrist {
+                    (zero(wrist), 0.014)
+                } else {
+                    (zero(parent), 0.0098)
+                };
+                self.add(from, radius, zero(joint), 0.0092);
+                if let Some(end) = self.skeleton.joints()[joint].end_site {
+                    self.add(zero(joint), 0.0092, Anchor { joint, point: end }, 0.007);
+                }
+            }
+        }
+        self.cover(wrist);
+        Some(())
+    }
+
+    fn flatten_last(&mut self, flat: Vec3, flatness: f32) {
+        if let Some(shape) = self.shapes.last_mut() {
+            *shape = shape.flattened(flat, flatness);
+        }
+    }
+
+    fn leg(&mut self, side: Side) -> Option<()> {
+        let s = self.scale;
+        let (hip, knee, ankle) = (
+            self.joint(Role::thigh(side))?,
+            self.joint(Role::shin(side))?,
+            self.joint(Role::foot(side))?,
+        );
+        let zero = |joint| Anchor { joint, point: Vec3::ZERO };
+        let down = (self.rest[ankle] - self.rest[hip]).normalize_or(-self.axes.up);
+        // Out of the knee, in the frames of the leg. In some files the legs of the resting skeleton point up.
+        let ahead = down.cross(self.axes.left).normalize_or(self.axes.forward);
+        let thigh = self.anchor(hip, self.rest[hip].lerp(self.rest[knee], 0.36) + ahead * (0.010 * s));
+        self.add(zero(hip), 0.086, thigh, 0.079);
+        self.add(thigh, 0.079, self.on(knee, ahead * 0.004), 0.054);
+        let calf = self.anchor(knee, self.rest[knee].lerp(self.rest[ankle], 0.30) - ahead * (0.014 * s));
+        self.add(self.on(knee, ahead * 0.004), 0.054, calf, 0.055);
+        self.add(calf, 0.055, zero(ankle), 0.035);
+        self.cover(ankle);
+
+        let toe = self.joint(Role::toe(side));
+        let bone = match toe {
+            Some(toe) => self.rest[toe] - self.rest[ankle],
+            None => self.skeleton.joints()[ankle]
+                .end_site
+                .filter(|e| e.length() > 0.05 * s)
+                .unwrap_or((ahead * 0.13 + down * 0.06) * s),
+        };
+        let along = bone.normalize_or(ahead);
+        // The sole is level where the resting leg stands on it, and else lies as under an adult's foot: 27° off the bone over it.
+        let rise = along.cross(self.axes.left).normalize_or(-down);
+        let slope = along.dot(down);
+        let (sin, cos) = if (0.05..0.9).contains(&slope) {
+            (slope, (1.0 - slope * slope).sqrt())
+        } else {
+            27f32.to_radians().sin_cos()
+        };
+        let forward = along * cos + rise * sin;
+        let up = rise * cos - along * sin;
+        // The middle of the ball of the foot lies 2.6 cm over the sole.
+        let ball_over_ankle = bone.dot(up) / s;
+        let ball = forward * (bone.dot(forward) / s) + up * ball_over_ankle;
+        let heel = -forward * 0.042 + up * (ball_over_ankle + 0.006);
+        let (heel, ball_on_foot) = (self.on(ankle, heel), self.on(ankle, ball));
+        self.add(zero(ankle), 0.036, heel, 0.034);
+        self.add(heel, 0.033, ball_on_foot, 0.042);
+        self.flatten_last(up, 0.70);
+        self.add(
+            self.on(ankle, up * 0.004 + forward * 0.012),
+            0.036,
+            self.on(ankle, ball - forward * 0.012 + up * 0.006),
+            0.03,
+        );
+        let (toe_joint, toe_root) = toe.map_or((ankle, ball), |toe| (toe, Vec3::ZERO));
+        self.add(
+            self.on(toe_joint, toe_root),
+            0.042,
+            self.on(toe_joint, toe_root + forward * 0.058 - up * 0.004),
+            0.032,
+        );
+        self.flatten_last(up, 0.62);
+        self.cover(toe_joint);
+        for joint in ankle + 1..self.rest.len() {
+            if self.ancestors(joint).any(|a| a == ankle) {
+                self.covered[joint] = true;
+            }
+        }
+        Some(())
+    }
+
+    /// Bones that no part of a human speaks for: tails, bags, swords. What lies within the head stays within.
+    fn whatever_else(&mut self) {
+        let head = self.joint(Role::Head);
+        for joint in 1..self.rest.len() {
+            let Some(parent) = self.skeleton.parent(joint) else { continue };
+            let length = self.skeleton.joints()[joint].offset.length() / self.scale;
+            let in_head = head.is_some_and(|head| self.ancestors(joint).any(|a| a == head)) && length < 0.25;
+            if self.covered[joint] || in_head || length < 0.03 || self.between_roles(joint) {
+                continue;
+            }
+            let radius = (length * 0.16).min(0.028);
+            let zero = |joint| Anchor { joint, point: Vec3::ZERO };
+            self.add(zero(parent), radius, zero(joint), radius * 0.75);
+            if let Some(end) = self.skeleton.joints()[joint].end_site {
+                self.add(zero(joint), radius * 0.75, Anchor { joint, point: end }, radius * 0.5);
+            }
+        }
+    }
+
+    /// Whether a joint with a role lies below: then it is part of a chain that the mannequin has already.
+    fn between_roles(&self, joint: usize) -> bool {
+        Role::ALL
+            .into_iter()
+            .filter_map(|role| self.joint(role))
+            .any(|end| self.ancestors(end).any(|a| a == joint))
+    }
+}

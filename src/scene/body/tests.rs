@@ -1,0 +1,224 @@
+use super::*;
+use crate::scene::rgb;
+use crate::skeleton::{Joint, Pose, world_pose};
+use glam::Quat;
+
+fn skeleton(joints: &[(&str, Option<usize>, [f32; 3])]) -> Skeleton {
+    let joints = joints
+        .iter()
+        .map(|&(name, parent, offset)| Joint {
+            name: name.into(),
+            parent,
+            offset: offset.into(),
+            end_site: None,
+            channels: vec![],
+        })
+        .collect();
+    Skeleton::new(joints).unwrap()
+}
+
+/// An adult in a T-pose, metres.
+fn adult() -> Skeleton {
+    skeleton(&[
+        ("Hips", None, [0.0, 0.95, 0.0]),
+        ("LeftUpLeg", Some(0), [0.09, -0.04, 0.0]),
+        ("LeftLeg", Some(1), [0.0, -0.42, 0.0]),
+        ("LeftFoot", Some(2), [0.0, -0.41, 0.0]),
+        ("LeftToe", Some(3), [0.0, -0.06, 0.14]),
+        ("RightUpLeg", Some(0), [-0.09, -0.04, 0.0]),
+        ("RightLeg", Some(5), [0.0, -0.42, 0.0]),
+        ("RightFoot", Some(6), [0.0, -0.41, 0.0]),
+        ("RightToe", Some(7), [0.0, -0.06, 0.14]),
+        ("Spine", Some(0), [0.0, 0.1, -0.01]),
+        ("Spine1", Some(9), [0.0, 0.13, 0.0]),
+        ("Spine2", Some(10), [0.0, 0.13, 0.0]),
+        ("Neck", Some(11), [0.0, 0.2, 0.0]),
+        ("Head", Some(12), [0.0, 0.1, 0.02]),
+        ("LeftShoulder", Some(11), [0.04, 0.13, 0.0]),
+        ("LeftArm", Some(14), [0.13, 0.0, 0.0]),
+        ("LeftForeArm", Some(15), [0.28, 0.0, 0.0]),
+        ("LeftHand", Some(16), [0.25, 0.0, 0.0]),
+        ("RightShoulder", Some(11), [-0.04, 0.13, 0.0]),
+        ("RightArm", Some(18), [-0.13, 0.0, 0.0]),
+        ("RightForeArm", Some(19), [-0.28, 0.0, 0.0]),
+        ("RightHand", Some(20), [-0.25, 0.0, 0.0]),
+    ])
+}
+
+fn rest_limbs(skeleton: &Skeleton, body: &Body) -> Vec<Limb> {
+    let pose = Pose {
+        root_translation: skeleton.joints()[0].offset,
+        ..Pose::default()
+    };
+    let mut limbs = Vec::new();
+    body.limbs(&world_pose(skeleton, &pose), rgb(0xff_ff_ff), &mut limbs);
+    limbs
+}
+
+fn lowest(limbs: &[Limb]) -> f32 {
+    // Half the height of an ellipse of radius r, scaled by k along the unit vector f, in the direction y: r √(1 - f_y² (1 - k²)).
+    let reach = |limb: &Limb, radius: f32| radius * (1.0 - limb.flat.y.powi(2) * (1.0 - limb.flatness.powi(2))).sqrt();
+    limbs
+        .iter()
+        .flat_map(|l| [l.a.y - reach(l, l.radius_a), l.b.y - reach(l, l.radius_b)])
+        .fold(f32::INFINITY, f32::min)
+}
+
+#[test]
+fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
+    let skeleton = adult();
+    let body = Body::new(&skeleton, Some(&Roles::detect(&skeleton)));
+    let limbs = rest_limbs(&skeleton, &body);
+    assert_eq!(limbs.len(), body.limb_count());
+    let top = limbs
+        .iter()
+        .map(|l| (l.a.y + l.radius_a).max(l.b.y + l.radius_b))
+        .fold(0.0, f32::max);
+    assert!((1.6..1.85).contains(&top), "crown at {top} m");
+    // The joint at the ball of the foot is at 2 cm: the sole lies on the ground, give or take a centimetre.
+    assert!(lowest(&limbs).abs() < 0.012, "sole at {} m", lowest(&limbs));
+    for limb in &limbs {
+        let mirrored = |p: Vec3| p * Vec3::new(-1.0, 1.0, 1.0);
+        let twin = limbs.iter().any(|other| {
+            let straight = other.a.distance(mirrored(limb.a)) < 1e-4 && other.b.distance(mirrored(limb.b)) < 1e-4;
+            straight && (other.radius_a - limb.radius_a).abs() < 1e-5 && (other.radius_b - limb.radius_b).abs() < 1e-5
+        });
+        assert!(twin, "no mirror image of {limb:?}");
+    }
+}
+
+#[test]
+fn the_body_scales_with_the_skeleton_and_moves_with_it() {
+    let skeleton = adult();
+    let half = Skeleton::new(
+        skeleton
+            .joints()
+            .iter()
+            .map(|j| Joint {
+                offset: j.offset * 0.5,
+                ..j.clone()
+            })
+            .collect(),
+    )
+    .unwrap();
+    let full = rest_limbs(&skeleton, &Body::new(&skeleton, Some(&Roles::detect(&skeleton))));
+    let small = rest_limbs(&half, &Body::new(&half, Some(&Roles::detect(&half))));
+    for (x, y) in full.iter().zip(&small) {
+        assert!((x.a * 0.5).distance(y.a) < 1e-4 && (x.radius_a * 0.5 - y.radius_a).abs() < 1e-4);
+    }
+
+    let turn = Quat::from_rotation_y(1.2);
+    let body = Body::new(&skeleton, Some(&Roles::detect(&skeleton)));
+    let mut rotations = vec![Quat::IDENTITY; skeleton.len()];
+    rotations[0] = turn;
+    let root_translation = skeleton.joints()[0].offset;
+    let mut turned = Vec::new();
+    body.limbs(
+        &world_pose(
+            &skeleton,
+            &Pose {
+                root_translation,
+                rotations,
+                translations: vec![],
+            },
+        ),
+        rgb(0),
+        &mut turned,
+    );
+    for (x, y) in full.iter().zip(&turned) {
+        assert!((turn * x.b).distance(y.b) < 1e-4 && (turn * x.flat).distance(y.flat) < 1e-4);
+    }
+}
+
+#[test]
+fn legs_that_rest_upside_down_get_the_same_shapes() {
+    // Some files let every bone of the resting skeleton point along one axis; a pose turns the legs down. Knees and feet must look the same.
+    let upright = adult();
+    let mut joints = upright.joints().to_vec();
+    for joint in [1, 5] {
+        for below in joint + 1..joint + 4 {
+            // Half a turn about x of everything below the hip joints.
+            joints[below].offset = joints[below].offset * Vec3::new(1.0, -1.0, -1.0);
+        }
+    }
+    let odd = Skeleton::new(joints).unwrap();
+    let mut rotations = vec![Quat::IDENTITY; odd.len()];
+    for joint in [1, 5] {
+        rotations[joint] = Quat::from_rotation_x(std::f32::consts::PI);
+    }
+    let root_translation = odd.joints()[0].offset;
+    let body = Body::new(&odd, Some(&Roles::detect(&odd)));
+    let mut limbs = Vec::new();
+    body.limbs(
+        &world_pose(
+            &odd,
+            &Pose {
+                root_translation,
+                rotations,
+                translations: vec![],
+            },
+        ),
+        rgb(0),
+        &mut limbs,
+    );
+    let expected = rest_limbs(&upright, &Body::new(&upright, Some(&Roles::detect(&upright))));
+    assert_eq!(limbs.len(), expected.len());
+    for (x, y) in limbs.iter().zip(&expected) {
+        assert!(x.a.distance(y.a) < 2e-3 && x.b.distance(y.b) < 2e-3, "{x:?} is not {y:?}");
+    }
+}
+
+#[test]
+fn any_tree_has_a_body_thicker_towards_its_root() {
+    let skeleton = adult();
+    let limbs = rest_limbs(&skeleton, &Body::new(&skeleton, None));
+    let radius_from = |a: Vec3| {
+        limbs
+            .iter()
+            .filter(|l| l.a.distance(a) < 1e-4 && l.a != l.b)
+            .map(|l| l.radius_a)
+            .fold(0.0, f32::max)
+    };
+    let (thigh, shin, foot) = (
+        radius_from(Vec3::new(0.09, 0.91, 0.0)),
+        radius_from(Vec3::new(0.09, 0.49, 0.0)),
+        radius_from(Vec3::new(0.09, 0.08, 0.0)),
+    );
+    assert!(thigh > shin && shin > foot && foot > 0.01, "{thigh} {shin} {foot}");
+    // One limb per bone with a length, and the trunk.
+    assert_eq!(limbs.len(), 22);
+}
+
+#[test]
+fn degenerate_skeletons_have_a_body_too() {
+    let point = skeleton(&[("root", None, [0.0; 3])]);
+    assert_eq!(rest_limbs(&point, &Body::new(&point, Some(&Roles::detect(&point)))).len(), 1);
+    let flat = skeleton(&[
+        ("root", None, [0.0; 3]),
+        ("same", Some(0), [0.0; 3]),
+        ("far", Some(1), [1.0, 0.0, 0.0]),
+    ]);
+    let limbs = rest_limbs(&flat, &Body::new(&flat, Some(&Roles::detect(&flat))));
+    assert!(!limbs.is_empty() && limbs.iter().all(|l| l.radius_a > 0.0 && l.a.is_finite()));
+    // A pose with fewer joints than the body leaves the rest out, and one with numbers that are none too.
+    let body = Body::new(&adult(), None);
+    let mut out = Vec::new();
+    body.limbs(
+        &WorldPose {
+            positions: vec![Vec3::ZERO],
+            rotations: vec![Quat::IDENTITY],
+        },
+        rgb(0),
+        &mut out,
+    );
+    assert!(out.len() <= 1);
+    body.limbs(
+        &WorldPose {
+            positions: vec![Vec3::NAN; 22],
+            rotations: vec![Quat::IDENTITY; 22],
+        },
+        rgb(0),
+        &mut out,
+    );
+    assert!(out.len() <= 1);
+}

@@ -1,0 +1,131 @@
+use super::Camera;
+use glam::Vec3;
+use std::f32::consts::{LN_2, PI};
+
+/// A camera that comes smoothly to where it should be.
+///
+/// Change `goal` (from the pointer, by framing, by following a body) and call [`CameraRig::update`] once a frame. The way there is that of a
+/// critically damped spring (Holden, "Spring-It-On", with its half-life), which overshoots nothing and does not depend on the frame rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraRig {
+    /// Where the camera should be.
+    pub goal: Camera,
+    shown: Camera,
+    target_velocity: Vec3,
+    yaw_velocity: f32,
+    pitch_velocity: f32,
+    zoom_velocity: f32,
+}
+
+/// One step of a critically damped spring that starts `offset` from its goal.
+fn spring(offset: Vec3, velocity: Vec3, half_life_secs: f32, dt_secs: f32) -> (Vec3, Vec3) {
+    let rate = 2.0 * LN_2 / half_life_secs.max(1e-5);
+    let decay = (-rate * dt_secs).exp();
+    let pull = velocity + offset * rate;
+    (decay * (offset + pull * dt_secs), decay * (velocity - pull * rate * dt_secs))
+}
+
+impl CameraRig {
+    /// A rig that stands still at `camera`.
+    #[must_use]
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            goal: camera,
+            shown: camera,
+            ..Self::default()
+        }
+    }
+
+    /// The camera to draw with.
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.shown
+    }
+
+    /// Stands at the goal at once.
+    pub fn jump(&mut self) {
+        *self = Self::new(self.goal);
+    }
+
+    /// Whether there is nothing left to move: nothing need be drawn again for the camera's sake.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        self.shown == self.goal
+    }
+
+    /// Moves on by `dt_secs`; the distance to the goal halves about every `half_life_secs`. A half-life of 0 jumps.
+    pub fn update(&mut self, half_life_secs: f32, dt_secs: f32) {
+        if self.is_still() || half_life_secs <= 0.0 || !dt_secs.is_finite() {
+            self.jump();
+            return;
+        }
+        let goal = self.goal;
+        let (target, target_velocity) = spring(self.shown.target - goal.target, self.target_velocity, half_life_secs, dt_secs);
+        let yaw_offset = (self.shown.yaw - goal.yaw + PI).rem_euclid(2.0 * PI) - PI;
+        // Zooming is even when the logarithm of the distance is.
+        let zoom_offset = (self.shown.distance / goal.distance).ln();
+        let (turn, turn_velocity) = spring(
+            Vec3::new(yaw_offset, self.shown.pitch - goal.pitch, zoom_offset),
+            Vec3::new(self.yaw_velocity, self.pitch_velocity, self.zoom_velocity),
+            half_life_secs,
+            dt_secs,
+        );
+        let still = target.length() < 1e-4 && turn.length() < 1e-4 && target_velocity.length() < 1e-3 && turn_velocity.length() < 1e-3;
+        if still || !(target.is_finite() && turn.is_finite()) {
+            self.jump();
+            return;
+        }
+        self.shown = Camera {
+            target: goal.target + target,
+            yaw: goal.yaw + turn.x,
+            pitch: goal.pitch + turn.y,
+            distance: goal.distance * turn.z.exp(),
+            ..goal
+        };
+        self.target_velocity = target_velocity;
+        [self.yaw_velocity, self.pitch_velocity, self.zoom_velocity] = turn_velocity.to_array();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrives_without_overshoot_the_short_way_round_at_any_frame_rate() {
+        let start = Camera {
+            yaw: 3.0,
+            distance: 2.0,
+            ..Camera::default()
+        };
+        let mut at_60 = CameraRig::new(start);
+        let mut at_15 = at_60;
+        for rig in [&mut at_60, &mut at_15] {
+            rig.goal = Camera {
+                yaw: -3.0,
+                distance: 8.0,
+                target: Vec3::new(1.0, 0.9, 0.0),
+                ..start
+            };
+        }
+        let mut previous = 0.0;
+        for _ in 0..10 {
+            for _ in 0..4 {
+                at_60.update(0.15, 1.0 / 60.0);
+            }
+            at_15.update(0.15, 1.0 / 15.0);
+            assert!((at_60.camera().target - at_15.camera().target).length() < 1e-4);
+            assert!((at_60.camera().distance - at_15.camera().distance).abs() < 1e-3);
+            let x = at_60.camera().target.x;
+            assert!(x > previous && x <= 1.0);
+            previous = x;
+            // From 3 to -3 the short way leads over π, not over 0.
+            assert!((at_60.camera().yaw.abs() - PI).abs() < 0.15);
+        }
+        for _ in 0..600 {
+            at_60.update(0.15, 1.0 / 60.0);
+        }
+        assert!(at_60.is_still());
+        assert_eq!(*at_60.camera(), at_60.goal);
+    }
+}
