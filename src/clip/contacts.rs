@@ -1,0 +1,164 @@
+use super::Clip;
+use crate::math::stats;
+use crate::skeleton::{Role, Roles, Side, WorldPose};
+use glam::Vec3;
+use std::ops::Range;
+
+/// When a foot counts as planted. Lengths and speeds are those of a character 1.75 m tall and are scaled to the clip's character.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactOptions {
+    /// A point of the foot comes to the ground at or below this height above its own lowest level, metres.
+    pub enter_height_m: f32,
+    /// It leaves the ground above this height, metres. At least `enter_height_m`.
+    pub leave_height_m: f32,
+    /// It comes to the ground at or below this speed, metres per second.
+    pub enter_speed_mps: f32,
+    /// It leaves the ground above this speed, metres per second. At least `enter_speed_mps`.
+    pub leave_speed_mps: f32,
+    /// Contacts, and gaps between contacts, that are shorter than this are noise, seconds.
+    pub min_secs: f32,
+}
+
+impl Default for ContactOptions {
+    fn default() -> Self {
+        Self { enter_height_m: 0.04, leave_height_m: 0.07, enter_speed_mps: 0.4, leave_speed_mps: 0.8, min_secs: 0.06 }
+    }
+}
+
+/// The height that the options' lengths and speeds are given for, metres.
+const REFERENCE_HEIGHT_M: f32 = 1.75;
+/// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and the dents of a soft floor.
+const GROUND_PERCENTILE: f32 = 0.05;
+
+/// When which foot stands on the ground.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Contacts {
+    planted: [Vec<bool>; 2],
+}
+
+impl Contacts {
+    /// Finds the contacts of a clip's feet with the ground, by height and speed of ankles, toe joints and toe tips, with hysteresis.
+    ///
+    /// A foot is planted while at least one of its points is. Each kind of point is measured against its own lowest level in the clip
+    /// (5th percentile over both feet), so a clip that floats 3 cm above the ground gives the same contacts, and an ankle need not
+    /// come down to the height of a toe.
+    #[must_use]
+    pub fn detect(clip: &Clip, roles: &Roles, options: &ContactOptions) -> Self {
+        let points = foot_points(clip, roles);
+        let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
+        let min_frames = (f64::from(options.min_secs) * clip.fps()).round().max(0.0) as usize;
+        let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
+        for kind in &points {
+            let heights: Vec<f32> = kind.iter().flat_map(|(_, way)| way.iter().map(|p| p.y)).collect();
+            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else { continue };
+            for (side, way) in kind {
+                let mut down = false;
+                for (frame, planted) in planted[side.index()].iter_mut().enumerate() {
+                    let height = (way[frame].y - level) / scale;
+                    let speed = speed(way, frame, clip.fps()) / scale;
+                    down = if down {
+                        height <= options.leave_height_m && speed <= options.leave_speed_mps
+                    } else {
+                        height <= options.enter_height_m && speed <= options.enter_speed_mps
+                    };
+                    *planted |= down;
+                }
+            }
+        }
+        for flags in &mut planted {
+            drop_short_runs(flags, false, min_frames);
+            drop_short_runs(flags, true, min_frames);
+        }
+        Self { planted }
+    }
+
+    /// The number of frames.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.planted[0].len()
+    }
+
+    /// Whether the foot of `side` is on the ground in `frame`; never beyond the clip.
+    #[must_use]
+    pub fn planted(&self, side: Side, frame: usize) -> bool {
+        self.planted[side.index()].get(frame).copied().unwrap_or(false)
+    }
+
+    /// The frames during which the foot of `side` is on the ground, as ranges in order of time.
+    #[must_use]
+    pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {
+        runs(&self.planted[side.index()]).filter(|(value, _)| *value).map(|(_, range)| range).collect()
+    }
+}
+
+/// The height of the ground under a clip, metres: the 5th percentile of the heights of the feet's lowest points. 0 for a clip without feet.
+#[must_use]
+pub fn ground_height(clip: &Clip, roles: &Roles) -> f32 {
+    let kinds = foot_points(clip, roles);
+    let heights: Vec<f32> = (0..clip.frames())
+        .filter_map(|frame| kinds.iter().flatten().map(|(_, way)| way[frame].y).min_by(f32::total_cmp))
+        .collect();
+    stats::percentile(&heights, GROUND_PERCENTILE).unwrap_or(0.0)
+}
+
+/// The ways of one kind of point, for each side that has it.
+type Ways = Vec<(Side, Vec<Vec3>)>;
+
+/// World positions, frame by frame, of ankles, toe joints and toe tips.
+fn foot_points(clip: &Clip, roles: &Roles) -> [Ways; 3] {
+    let skeleton = clip.skeleton();
+    let joint = |role| roles.get_within(role, skeleton.len());
+    let mut wanted: Vec<(usize, Side, usize, Vec3)> = Vec::new();
+    for side in Side::BOTH {
+        let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
+        wanted.extend(foot.map(|j| (0, side, j, Vec3::ZERO)));
+        wanted.extend(toe.map(|j| (1, side, j, Vec3::ZERO)));
+        // A foot without toes may have its tip at its own end.
+        let last = toe.or(foot);
+        wanted.extend(last.and_then(|j| Some((2, side, j, skeleton.joints()[j].end_site?))));
+    }
+    let mut kinds: [Ways; 3] = Default::default();
+    let mut ways: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
+    let mut world = WorldPose::default();
+    for frame in 0..clip.frames() {
+        clip.world_pose_into(frame, &mut world);
+        for (&(_, _, joint, point), way) in wanted.iter().zip(&mut ways) {
+            way.push(world.point(joint, point));
+        }
+    }
+    for ((kind, side, _, _), way) in wanted.into_iter().zip(ways) {
+        kinds[kind].push((side, way));
+    }
+    kinds
+}
+
+/// Speed by central differences, metres per second.
+fn speed(way: &[Vec3], frame: usize, fps: f64) -> f32 {
+    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(way.len() - 1));
+    if before == after {
+        return 0.0;
+    }
+    way[before].distance(way[after]) * fps as f32 / (after - before) as f32
+}
+
+/// The maximal runs of equal flags, in order.
+fn runs(flags: &[bool]) -> impl Iterator<Item = (bool, Range<usize>)> + '_ {
+    let mut start = 0;
+    flags.chunk_by(|a, b| a == b).map(move |run| {
+        let range = start..start + run.len();
+        start = range.end;
+        (run[0], range)
+    })
+}
+
+/// Turns over runs of `value` that are shorter than `min_frames` and touch neither end of the clip.
+fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
+    let last = flags.len();
+    let short: Vec<Range<usize>> = runs(flags)
+        .filter(|(v, range)| *v == value && range.len() < min_frames && range.start > 0 && range.end < last)
+        .map(|(_, range)| range)
+        .collect();
+    for range in short {
+        flags[range].fill(!value);
+    }
+}

@@ -1,0 +1,230 @@
+/// One side of the body, as the character itself calls it: a character that faces +Z has its left at +X.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    /// Left, then right.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// The other side.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
+    /// 0 for left, 1 for right: the place in an array of two.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    const fn pick(self, left: Role, right: Role) -> Role {
+        match self {
+            Self::Left => left,
+            Self::Right => right,
+        }
+    }
+}
+
+/// What a joint is for, in any rig.
+///
+/// A joint is named for the bone that *starts* at it: `LeftThigh` is the joint whose rotation swings the left thigh (the hip joint),
+/// `LeftShin` is the knee, `LeftFoot` the ankle, `LeftToe` the ball of the foot, `LeftForearm` the elbow, `LeftHand` the wrist. `Spine` is
+/// the lowest joint of the back, next above `Hips`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[expect(missing_docs, reason = "the type's text explains the names")]
+pub enum Role {
+    Hips,
+    Spine,
+    Head,
+    LeftThigh,
+    LeftShin,
+    LeftFoot,
+    LeftToe,
+    RightThigh,
+    RightShin,
+    RightFoot,
+    RightToe,
+    LeftUpperArm,
+    LeftForearm,
+    LeftHand,
+    RightUpperArm,
+    RightForearm,
+    RightHand,
+}
+
+impl Role {
+    /// The number of roles.
+    pub const COUNT: usize = 17;
+
+    /// Every role, in the order of declaration.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Hips,
+        Self::Spine,
+        Self::Head,
+        Self::LeftThigh,
+        Self::LeftShin,
+        Self::LeftFoot,
+        Self::LeftToe,
+        Self::RightThigh,
+        Self::RightShin,
+        Self::RightFoot,
+        Self::RightToe,
+        Self::LeftUpperArm,
+        Self::LeftForearm,
+        Self::LeftHand,
+        Self::RightUpperArm,
+        Self::RightForearm,
+        Self::RightHand,
+    ];
+
+    /// The place in [`Role::ALL`].
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// What a person calls it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hips => "hips",
+            Self::Spine => "spine",
+            Self::Head => "head",
+            Self::LeftThigh => "left thigh",
+            Self::LeftShin => "left shin",
+            Self::LeftFoot => "left foot",
+            Self::LeftToe => "left toe",
+            Self::RightThigh => "right thigh",
+            Self::RightShin => "right shin",
+            Self::RightFoot => "right foot",
+            Self::RightToe => "right toe",
+            Self::LeftUpperArm => "left upper arm",
+            Self::LeftForearm => "left forearm",
+            Self::LeftHand => "left hand",
+            Self::RightUpperArm => "right upper arm",
+            Self::RightForearm => "right forearm",
+            Self::RightHand => "right hand",
+        }
+    }
+
+    /// The side of the body; `None` in the middle.
+    #[must_use]
+    pub const fn side(self) -> Option<Side> {
+        match self {
+            Self::Hips | Self::Spine | Self::Head => None,
+            Self::LeftThigh
+            | Self::LeftShin
+            | Self::LeftFoot
+            | Self::LeftToe
+            | Self::LeftUpperArm
+            | Self::LeftForearm
+            | Self::LeftHand => Some(Side::Left),
+            _ => Some(Side::Right),
+        }
+    }
+
+    /// The role that a mirror shows in this one's place.
+    #[must_use]
+    pub const fn mirrored(self) -> Self {
+        match self {
+            Self::Hips | Self::Spine | Self::Head => self,
+            Self::LeftThigh => Self::RightThigh,
+            Self::LeftShin => Self::RightShin,
+            Self::LeftFoot => Self::RightFoot,
+            Self::LeftToe => Self::RightToe,
+            Self::RightThigh => Self::LeftThigh,
+            Self::RightShin => Self::LeftShin,
+            Self::RightFoot => Self::LeftFoot,
+            Self::RightToe => Self::LeftToe,
+            Self::LeftUpperArm => Self::RightUpperArm,
+            Self::LeftForearm => Self::RightForearm,
+            Self::LeftHand => Self::RightHand,
+            Self::RightUpperArm => Self::LeftUpperArm,
+            Self::RightForearm => Self::LeftForearm,
+            Self::RightHand => Self::LeftHand,
+        }
+    }
+
+    /// The hip joint, which swings the thigh.
+    #[must_use]
+    pub const fn thigh(side: Side) -> Self {
+        side.pick(Self::LeftThigh, Self::RightThigh)
+    }
+
+    /// The knee, which swings the shin.
+    #[must_use]
+    pub const fn shin(side: Side) -> Self {
+        side.pick(Self::LeftShin, Self::RightShin)
+    }
+
+    /// The ankle.
+    #[must_use]
+    pub const fn foot(side: Side) -> Self {
+        side.pick(Self::LeftFoot, Self::RightFoot)
+    }
+
+    /// The ball of the foot.
+    #[must_use]
+    pub const fn toe(side: Side) -> Self {
+        side.pick(Self::LeftToe, Self::RightToe)
+    }
+
+    /// The shoulder joint, which swings the upper arm.
+    #[must_use]
+    pub const fn upper_arm(side: Side) -> Self {
+        side.pick(Self::LeftUpperArm, Self::RightUpperArm)
+    }
+
+    /// The elbow, which swings the forearm.
+    #[must_use]
+    pub const fn forearm(side: Side) -> Self {
+        side.pick(Self::LeftForearm, Self::RightForearm)
+    }
+
+    /// The wrist.
+    #[must_use]
+    pub const fn hand(side: Side) -> Self {
+        side.pick(Self::LeftHand, Self::RightHand)
+    }
+
+    /// Thigh, shin, foot and toe of one side, from the hips outwards.
+    #[must_use]
+    pub const fn leg(side: Side) -> [Self; 4] {
+        [Self::thigh(side), Self::shin(side), Self::foot(side), Self::toe(side)]
+    }
+
+    /// Upper arm, forearm and hand of one side, from the chest outwards.
+    #[must_use]
+    pub const fn arm(side: Side) -> [Self; 3] {
+        [Self::upper_arm(side), Self::forearm(side), Self::hand(side)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_complete_and_mirrors_itself() {
+        for (index, role) in Role::ALL.into_iter().enumerate() {
+            assert_eq!(role.index(), index);
+            assert_eq!(role.mirrored().mirrored(), role);
+            assert_eq!(role.mirrored().side(), role.side().map(Side::other));
+            assert_eq!(role.side().is_none(), role.mirrored() == role);
+        }
+        for side in Side::BOTH {
+            for role in Role::leg(side).into_iter().chain(Role::arm(side)) {
+                assert_eq!(role.side(), Some(side));
+                assert!(role.name().starts_with(if side == Side::Left { "left " } else { "right " }));
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+use super::tokens::{self, Tokens};
+use super::{Found, Roles, is_below};
+use crate::skeleton::{Role, Side, Skeleton};
+
+/// For each part of the body the words for it, in groups: a word of an earlier group wins over those of later ones.
+type Vocabulary = &'static [&'static [&'static str]];
+
+const HIPS: Vocabulary = &[&["hips", "pelvis", "hip"], &["root"]];
+const SPINE: Vocabulary = &[&[
+    "spine", "lowerback", "lowerspine", "spinelower", "back", "abdomen", "abdomenlower", "ab", "waist", "torso", "stomach", "belly", "chest", "thorax",
+    "upperback", "upperspine",
+]];
+const HEAD: Vocabulary = &[&["head", "skull"]];
+// A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU); "LeftLeg" is the shin, unless it is
+// followed by a "LeftKnee".
+const THIGH: Vocabulary = &[&["thigh", "upleg", "upperleg", "uleg", "femur"], &["hip"], &["leg"]];
+const SHIN: Vocabulary = &[&["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"], &["leg"]];
+// SMPL: "L_Ankle" has a child "L_Foot", and that is the ball of the foot. Likewise "L_Wrist" and "L_Hand", and CMU's ASF "lwrist" and "lhand".
+const FOOT: Vocabulary = &[&["ankle"], &["foot"]];
+const TOE: Vocabulary = &[&["toe", "toes", "ball"], &["foot"]];
+// "LeftShoulder" is the upper arm only where no "LeftArm" follows it.
+const UPPER_ARM: Vocabulary = &[&["upperarm", "uparm", "uarm", "humerus"], &["arm"], &["shoulder", "shldr"]];
+const FOREARM: Vocabulary = &[&["forearm", "lowerarm", "lowarm", "farm", "radius", "elbow"]];
+const HAND: Vocabulary = &[&["wrist"], &["hand"]];
+
+pub(super) fn detect(skeleton: &Skeleton) -> Roles {
+    let names: Vec<Tokens> = skeleton.joints().iter().map(|j| tokens::read(&j.name)).collect();
+    let search = Search { skeleton, names: &names, depths: depths(skeleton) };
+    let mut roles = Roles::default();
+    let hips = search.best(HIPS, None, None);
+    roles.assign(Role::Hips, hips, Found::ByName);
+    let spine = search.best(SPINE, None, hips).or_else(|| search.lumbar(hips));
+    roles.assign(Role::Spine, spine, Found::ByName);
+    roles.assign(Role::Head, search.best(HEAD, None, spine.or(hips)), Found::ByName);
+    for side in Side::BOTH {
+        let leg = Role::leg(side).into_iter().zip([THIGH, SHIN, FOOT, TOE]);
+        let arm = Role::arm(side).into_iter().zip([UPPER_ARM, FOREARM, HAND]);
+        for limb in [leg.collect::<Vec<_>>(), arm.collect()] {
+            let mut above = None;
+            for (role, words) in limb {
+                let joint = search.best(words, Some(side), above);
+                roles.assign(role, joint, Found::ByName);
+                above = joint.or(above);
+            }
+        }
+    }
+    roles
+}
+
+struct Search<'a> {
+    skeleton: &'a Skeleton,
+    names: &'a [Tokens],
+    depths: Vec<usize>,
+}
+
+impl Search<'_> {
+    /// The joint of that side, below `above`, with the best word; of several the one nearest the root.
+    fn best(&self, words: Vocabulary, side: Option<Side>, above: Option<usize>) -> Option<usize> {
+        let rank = |joint: usize, tokens: &Tokens| {
+            if tokens.helper || tokens.side != side || above.is_some_and(|above| !is_below(self.skeleton, joint, above)) {
+                return None;
+            }
+            let group = |core: &str| words.iter().position(|group| group.contains(&core));
+            // "torso_head" is read as the joint where the head starts, if no joint is called "head" outright.
+            group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
+        };
+        let ranked = self.names.iter().enumerate().filter_map(|(joint, tokens)| Some((rank(joint, tokens)?, self.depths[joint], joint)));
+        ranked.min().map(|(_, _, joint)| joint)
+    }
+
+    /// Xsens calls the lowest joint of the back by its vertebra: `L5`.
+    fn lumbar(&self, hips: Option<usize>) -> Option<usize> {
+        self.names.iter().enumerate().find_map(|(joint, t)| {
+            let is = t.core.is_empty() && t.side == Some(Side::Left) && matches!(t.number, Some(1..=5));
+            (is && hips.is_none_or(|hips| is_below(self.skeleton, joint, hips))).then_some(joint)
+        })
+    }
+}
+
+/// The number of joints above each joint.
+fn depths(skeleton: &Skeleton) -> Vec<usize> {
+    let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
+    for joint in skeleton.joints() {
+        depths.push(joint.parent.map_or(0, |parent| depths[parent] + 1));
+    }
+    depths
+}

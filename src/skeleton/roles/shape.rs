@@ -1,0 +1,173 @@
+use super::{Found, Roles, is_below};
+use crate::skeleton::{Role, Side, Skeleton};
+use glam::Vec3;
+
+/// A bone belongs to the limb proper when it has at least this share of the limb's longest bone; clavicles often do, feet and hands do not.
+const LONG: f32 = 0.55;
+/// The hips lie above the feet by at least this share of the skeleton's height.
+const LEAST_LEG: f32 = 0.25;
+/// The hands reach to either side by at least this share of the skeleton's height.
+const LEAST_REACH: f32 = 0.05;
+
+/// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two that reach farthest sideways above them
+/// are arms, what rises highest between is the head. +Y must be up at rest.
+pub(super) fn detect(skeleton: &Skeleton) -> Roles {
+    let mut roles = Roles::default();
+    let shape = Shape::of(skeleton);
+    let Some((hips, legs)) = shape.legs() else { return roles };
+    roles.assign(Role::Hips, Some(hips), Found::ByShape);
+    let legs: Vec<Leg> = legs.into_iter().map(|tip| shape.leg(hips, tip)).collect();
+    let [Some(a), Some(b)] = [legs[0].thigh, legs[1].thigh] else { return roles };
+    // Left × up = forward, so left = up × forward.
+    let forward = legs.iter().filter_map(|leg| leg.forward).sum::<Vec3>();
+    let forward = if forward.length() > 0.01 * shape.height { forward } else { Vec3::Z };
+    let left = Vec3::Y.cross(forward).normalize_or(Vec3::X);
+    let side_of = |of: Vec3, other: Vec3| if (of - other).dot(left) > 0.0 { Side::Left } else { Side::Right };
+    let first = side_of(shape.rest[a], shape.rest[b]);
+    for (leg, side) in legs.iter().zip([first, first.other()]) {
+        for (role, joint) in Role::leg(side).into_iter().zip([leg.thigh, leg.shin, leg.foot, leg.toe]) {
+            roles.assign(role, joint, Found::ByShape);
+        }
+    }
+    let body: Vec<usize> = legs.iter().filter_map(|leg| leg.thigh).collect();
+    let above: Vec<usize> = (shape.leaves.iter().copied())
+        .filter(|&leaf| is_below(skeleton, leaf, hips) && !body.iter().any(|&thigh| leaf == thigh || is_below(skeleton, leaf, thigh)))
+        .collect();
+    let chest = shape.arms(&above, left, hips, &mut roles);
+    shape.back_and_head(&above, hips, chest, &mut roles);
+    roles
+}
+
+#[derive(Default)]
+struct Leg {
+    thigh: Option<usize>,
+    shin: Option<usize>,
+    foot: Option<usize>,
+    toe: Option<usize>,
+    /// From the ankle to the tip of the toes over the ground, metres.
+    forward: Option<Vec3>,
+}
+
+struct Shape<'a> {
+    skeleton: &'a Skeleton,
+    rest: Vec<Vec3>,
+    /// Joints without children.
+    leaves: Vec<usize>,
+    height: f32,
+}
+
+impl<'a> Shape<'a> {
+    fn of(skeleton: &'a Skeleton) -> Self {
+        let rest = skeleton.rest_positions();
+        let mut has_child = vec![false; skeleton.len()];
+        for parent in skeleton.joints().iter().filter_map(|j| j.parent) {
+            has_child[parent] = true;
+        }
+        let leaves: Vec<usize> = (0..skeleton.len()).filter(|&joint| !has_child[joint]).collect();
+        let mut shape = Self { skeleton, rest, leaves, height: 0.0 };
+        let heights = || (0..skeleton.len()).map(|joint| shape.tip(joint).y);
+        shape.height = heights().fold(f32::MIN, f32::max) - heights().fold(f32::MAX, f32::min);
+        shape
+    }
+
+    /// The end of the bone of a leaf, or the joint itself.
+    fn tip(&self, joint: usize) -> Vec3 {
+        self.rest[joint] + self.skeleton.joints()[joint].end_site.unwrap_or(Vec3::ZERO)
+    }
+
+    /// The joints from below `top` down to `bottom`.
+    fn path(&self, top: usize, bottom: usize) -> Vec<usize> {
+        let mut path: Vec<usize> =
+            std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j)).take_while(|&joint| joint != top).collect();
+        path.reverse();
+        path
+    }
+
+    /// The lowest joint that is above both, or is one of them.
+    fn meeting(&self, a: usize, b: usize) -> usize {
+        let (mut a, mut b) = (a, b);
+        // Parents have smaller indices, so the larger of the two is never above the other one.
+        while a != b {
+            let higher = self.skeleton.parent(a.max(b)).unwrap_or(0);
+            (a, b) = (a.min(b), higher);
+        }
+        a
+    }
+
+    /// The joint where the legs meet, and a leaf of either leg.
+    fn legs(&self) -> Option<(usize, [usize; 2])> {
+        let mut by_height = self.leaves.clone();
+        by_height.sort_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        let &first = by_height.first()?;
+        by_height.iter().skip(1).find_map(|&second| {
+            let meeting = self.meeting(first, second);
+            let lower = self.tip(first).y.max(self.tip(second).y);
+            (self.rest[meeting].y - lower > LEAST_LEG * self.height).then_some((meeting, [first, second]))
+        })
+    }
+
+    /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower, the joint at the lower one's end).
+    fn limb(&self, top: usize, tip: usize) -> Option<(usize, usize, Option<usize>)> {
+        let mut path = self.path(top, tip);
+        // Joints at one place (bones without length) count as one: the last of them turns what comes next.
+        path.dedup_by(|later, earlier| {
+            let same = self.rest[*later].distance(self.rest[*earlier]) < 1e-4 * self.height;
+            if same {
+                *earlier = *later;
+            }
+            same
+        });
+        let bone = |i: usize| match path.get(i + 1) {
+            Some(&next) => self.rest[path[i]].distance(self.rest[next]),
+            None => self.rest[path[i]].distance(self.tip(path[i])),
+        };
+        let longest = (0..path.len()).map(bone).fold(0.0, f32::max);
+        let mut long = (0..path.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
+        let (lower, upper) = (long.next()?, long.next()?);
+        Some((path[upper], path[lower], path.get(lower + 1).copied()))
+    }
+
+    fn leg(&self, hips: usize, tip: usize) -> Leg {
+        let Some((thigh, shin, foot)) = self.limb(hips, tip) else { return Leg::default() };
+        let Some(ankle) = foot else { return Leg { thigh: Some(thigh), shin: Some(shin), ..Leg::default() } };
+        let over_ground = |leaf: usize| (self.tip(leaf) - self.rest[ankle]) * Vec3::new(1.0, 0.0, 1.0);
+        // A heel may be the lowest point; the toes are what is farthest from the ankle.
+        let leaves = self.leaves.iter().copied().filter(|&leaf| leaf == ankle || is_below(self.skeleton, leaf, ankle));
+        let farthest = leaves.max_by(|&a, &b| over_ground(a).length().total_cmp(&over_ground(b).length()));
+        let toe = farthest.and_then(|leaf| self.path(ankle, leaf).first().copied());
+        Leg { thigh: Some(thigh), shin: Some(shin), foot: Some(ankle), toe: toe.filter(|&t| t != ankle), forward: farthest.map(over_ground) }
+    }
+
+    /// Assigns the arms and returns the joint where they meet.
+    fn arms(&self, leaves: &[usize], left: Vec3, hips: usize, roles: &mut Roles) -> Option<usize> {
+        let middle = self.rest[hips].dot(left);
+        let reach = |leaf: usize| self.tip(leaf).dot(left) - middle;
+        let by_reach = |a: &&usize, b: &&usize| reach(**a).total_cmp(&reach(**b));
+        let (&right, &left) = (leaves.iter().min_by(by_reach)?, leaves.iter().max_by(by_reach)?);
+        if reach(left) < LEAST_REACH * self.height || reach(right) > -LEAST_REACH * self.height {
+            return None;
+        }
+        let chest = self.meeting(left, right);
+        for (side, leaf) in [(Side::Left, left), (Side::Right, right)] {
+            let (upper, fore, hand) = self.limb(chest, leaf)?;
+            for (role, joint) in Role::arm(side).into_iter().zip([Some(upper), Some(fore), hand]) {
+                roles.assign(role, joint, Found::ByShape);
+            }
+        }
+        Some(chest)
+    }
+
+    fn back_and_head(&self, leaves: &[usize], hips: usize, chest: Option<usize>, roles: &mut Roles) {
+        let arms: Vec<usize> = Side::BOTH.into_iter().filter_map(|side| roles.get(Role::upper_arm(side))).collect();
+        let in_arm = |leaf: usize| arms.iter().any(|&arm| leaf == arm || is_below(self.skeleton, leaf, arm));
+        let highest = (leaves.iter().copied()).filter(|&leaf| !in_arm(leaf)).max_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else { return };
+        // A leaf without a bone of its own marks where the head ends.
+        let marks_the_end = self.skeleton.joints()[highest].end_site.is_none_or(|end| end.length() < 1e-4 * self.height);
+        let head = if marks_the_end { self.skeleton.parent(highest) } else { Some(highest) };
+        let head = head.filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips)).unwrap_or(highest);
+        roles.assign(Role::Head, Some(head), Found::ByShape);
+        let spine = self.path(hips, chest.unwrap_or(head)).first().copied();
+        roles.assign(Role::Spine, spine.filter(|&spine| spine != head), Found::ByShape);
+    }
+}

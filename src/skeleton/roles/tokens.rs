@@ -1,0 +1,169 @@
+use crate::skeleton::Side;
+
+/// Words of which joint names are composed. Only runs that consist of these words entirely are split (`leftupleg`, `lowerback`).
+const WORDS: &[&str] = &[
+    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f", "femur",
+    "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee", "left", "leg",
+    "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin", "shldr", "shoulder",
+    "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up", "upper", "waist", "wrist",
+];
+
+/// Words that say nothing about what a joint is for.
+const NOISE: &[&str] = &[
+    "avg", "b", "base", "bend", "bind", "bip", "biped", "bn", "bone", "c", "cc", "character", "def", "j", "jnt", "joint", "jt", "m", "mixamorig",
+    "mot", "org", "rig", "sk", "skel",
+];
+
+/// Words of joints that move nothing of the body itself.
+const HELPERS: &[&str] = &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
+
+/// A joint's name, read.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Tokens {
+    /// The side that the name says, if it says one side only.
+    pub(super) side: Option<Side>,
+    /// The words without side, numbers and noise, joined: `upleg`.
+    pub(super) core: String,
+    /// The same of the part behind the last separator, where the name has several: `head` of `torso_head`.
+    pub(super) last: String,
+    /// The first number in the name.
+    pub(super) number: Option<u32>,
+    /// The name is that of an end site, a twist joint, an IK target.
+    pub(super) helper: bool,
+}
+
+/// Reads a name: case, separators and camel humps split it into words.
+pub(super) fn read(name: &str) -> Tokens {
+    // What stands before a colon is the name space of the file's author.
+    let name = name.rsplit(':').next().unwrap_or(name);
+    let mut sides = Vec::new();
+    let (mut core, mut last) = (String::new(), String::new());
+    let (mut number, mut helper) = (None, false);
+    for part in name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
+        let mut of_part = String::new();
+        for run in humps(part) {
+            if run.starts_with(|c: char| c.is_ascii_digit()) {
+                number = number.or(run.parse().ok());
+                continue;
+            }
+            for word in words(&run) {
+                match word.as_str() {
+                    "l" | "left" => sides.push(Side::Left),
+                    "r" | "right" => sides.push(Side::Right),
+                    w if HELPERS.contains(&w) => helper = true,
+                    w if NOISE.contains(&w) => {}
+                    w => of_part.push_str(w),
+                }
+            }
+        }
+        core.push_str(&of_part);
+        if !of_part.is_empty() {
+            last = of_part;
+        }
+    }
+    let side = sides.first().copied().filter(|first| sides.iter().all(|s| s == first));
+    Tokens { side, core, last, number, helper }
+}
+
+/// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.
+fn humps(part: &str) -> Vec<String> {
+    let chars: Vec<char> = part.chars().collect();
+    let mut runs: Vec<String> = Vec::new();
+    for (i, &c) in chars.iter().enumerate() {
+        let starts = i.checked_sub(1).and_then(|p| chars.get(p)).is_none_or(|&before| {
+            c.is_ascii_digit() != before.is_ascii_digit()
+                || (c.is_uppercase() && (before.is_lowercase() || chars.get(i + 1).is_some_and(|after| after.is_lowercase())))
+        });
+        if starts {
+            runs.push(String::new());
+        }
+        if let Some(run) = runs.last_mut() {
+            run.extend(c.to_lowercase());
+        }
+    }
+    runs
+}
+
+/// Splits a lower-case run into known words, after a leading `l` or `r` if need be; a run that does not consist of known words stays whole.
+fn words(run: &str) -> Vec<String> {
+    if let Some(split) = known_words(run) {
+        return split;
+    }
+    if matches!(run.as_bytes().first(), Some(b'l' | b'r'))
+        && let Some(mut split) = known_words(&run[1..])
+    {
+        split.insert(0, run[..1].to_owned());
+        return split;
+    }
+    vec![run.to_owned()]
+}
+
+/// The split into the fewest known words. Names are short, so the table is, too; very long ones are not taken apart.
+fn known_words(run: &str) -> Option<Vec<String>> {
+    if run.is_empty() || run.len() > 64 || !run.is_ascii() {
+        return None;
+    }
+    // best[i]: the last word of the shortest split of run[..i], and how many words it has.
+    let mut best: Vec<Option<(usize, usize)>> = vec![None; run.len() + 1];
+    best[0] = Some((0, 0));
+    for end in 1..=run.len() {
+        for word in WORDS.iter().filter(|word| run[..end].ends_with(**word)) {
+            if let Some((_, count)) = best[end - word.len()]
+                && best[end].is_none_or(|(_, c)| count + 1 < c)
+            {
+                best[end] = Some((word.len(), count + 1));
+            }
+        }
+    }
+    let mut split = Vec::new();
+    let mut end = run.len();
+    while end > 0 {
+        let (length, _) = best[end]?;
+        split.push(run[end - length..end].to_owned());
+        end -= length;
+    }
+    split.reverse();
+    Some(split)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_fall_into_words() {
+        for (name, side, core) in [
+            ("LeftUpLeg", Some(Side::Left), "upleg"),
+            ("leftupleg", Some(Side::Left), "upleg"),
+            ("mixamorig:RightForeArm", Some(Side::Right), "forearm"),
+            ("Bip01 L Thigh", Some(Side::Left), "thigh"),
+            ("UpperLeg_R", Some(Side::Right), "upperleg"),
+            ("upper_arm.L", Some(Side::Left), "upperarm"),
+            ("lfemur", Some(Side::Left), "femur"),
+            ("rradius", Some(Side::Right), "radius"),
+            ("radius", None, "radius"),
+            ("lowerback", None, "lowerback"),
+            ("root", None, "root"),
+            ("LHipJoint", Some(Side::Left), "hip"),
+            ("LFArm", Some(Side::Left), "farm"),
+            ("RUArm", Some(Side::Right), "uarm"),
+            ("lToeJoint", Some(Side::Left), "toe"),
+            ("LeftRight", None, ""),
+            ("Hüfte", None, "hüfte"),
+            ("", None, ""),
+        ] {
+            let read = read(name);
+            assert_eq!((read.side, read.core.as_str()), (side, core), "{name}");
+        }
+    }
+
+    #[test]
+    fn ends_are_helpers_and_numbers_are_kept() {
+        assert!(read("LeftToeBase_End").helper);
+        assert!(read("Bip01 HeadNub").helper);
+        assert!(read("LeftForeArmTwist").helper);
+        assert!(!read("LeftToeBase").helper);
+        assert_eq!(read("Spine12").number, Some(12));
+        assert_eq!(read("lowerback_torso").last, "torso");
+    }
+}
