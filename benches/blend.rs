@@ -1,0 +1,73 @@
+//! What happens while a hand drags the blend window: two clips of 3,000 frames and 31 joints.
+//!
+//! `window/cached sums` against `window/direct` is the same question (distances between all windows on the search's grid) answered from the
+//! sums along diagonals and straight from the definition.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::{Quat, Vec3};
+use segue::clip::Clip;
+use segue::registration::{SearchOptions, TransitionSearch, limb_weights};
+use segue::skeleton::{Joint, Skeleton};
+use std::hint::black_box;
+use std::sync::Arc;
+
+const FRAMES: usize = 3_000;
+const FPS: f64 = 120.0;
+
+/// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
+fn skeleton() -> Arc<Skeleton> {
+    let joint = |index: usize| {
+        let (chain, link) = ((index + 4) / 5, (index + 4) % 5);
+        let parent = (index > 0).then(|| if link == 0 { 0 } else { index - 1 });
+        let name = format!("Joint{index}");
+        let turn = Quat::from_rotation_y(chain as f32);
+        let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
+        Joint { name, parent, offset, end_site: None, channels: vec![] }
+    };
+    Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
+}
+
+fn clip(skeleton: &Arc<Skeleton>, cadence: f32, speed: f32) -> Arc<Clip> {
+    let mut rotations = Vec::with_capacity(FRAMES * skeleton.len());
+    let mut roots = Vec::with_capacity(FRAMES);
+    for frame in 0..FRAMES {
+        let time = frame as f32 / FPS as f32;
+        for joint in 0..skeleton.len() {
+            rotations.push(Quat::from_rotation_x(0.4 * (cadence * time + joint as f32).sin()));
+        }
+        roots.push(Vec3::new((0.3 * time).sin(), 1.0, speed * time));
+    }
+    Arc::new(Clip::new("bench", Arc::clone(skeleton), FPS, rotations, roots).expect("lengths fit"))
+}
+
+fn registration(c: &mut Criterion) {
+    let skeleton = skeleton();
+    let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
+    let weights = limb_weights(&skeleton);
+    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights).expect("the clips fit");
+    c.bench_function("window/first (once per pair of clips)", |bench| {
+        bench.iter(|| {
+            let mut search = prepared();
+            search.advance(usize::MAX);
+            search
+        });
+    });
+    let mut search = prepared();
+    search.advance(usize::MAX);
+    for window in [30, 120] {
+        c.bench_function(&format!("window/best transition, {window} frames"), |bench| {
+            bench.iter(|| search.best(black_box(&SearchOptions::new(window))).expect("the window fits"));
+        });
+        c.bench_function(&format!("window/cached sums, {window} frames"), |bench| {
+            bench.iter(|| search.sums().distances(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("complete"));
+        });
+        let mut slow = c.benchmark_group("slow");
+        slow.sample_size(10);
+        slow.bench_function(format!("window/direct, {window} frames"), |bench| {
+            bench.iter(|| search.sums().distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("finite"));
+        });
+    }
+}
+
+criterion_group!(benches, registration);
+criterion_main!(benches);
