@@ -1,0 +1,443 @@
+//! The app: the document and what surrounds it, frame by frame.
+//!
+//! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws the same [`Segue`] on.
+
+mod address_bar;
+mod api;
+mod downloads;
+mod frames;
+mod keeper;
+
+pub(crate) use address_bar::link_query;
+
+use crate::platform::{self, Inbox, Incoming};
+use crate::ui::out::{Action, Out};
+use address_bar::AddressBar;
+use downloads::Downloads;
+use eframe::egui;
+use frames::Frames;
+use keeper::Keeper;
+use segue::session::{Command, CommandError, Key, Level, Request, Session};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// How much of a frame may go into work that is left over, milliseconds.
+const WORK_MS: f64 = 5.0;
+/// Time that the playhead skips over when a frame took longer than that, seconds: a page that was in the background does not leap on.
+const LONGEST_STEP_SECS: f64 = 0.25;
+
+/// What the page's API tells its listeners.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub(crate) enum Event {
+    /// Anything but the playhead has changed.
+    Change {
+        /// The link to the new state.
+        query: String,
+    },
+    /// Something did not work.
+    Error {
+        /// What and why.
+        message: String,
+    },
+    /// Something that takes long goes on.
+    Progress {
+        /// What.
+        name: String,
+        /// How much of it is done, 0 to 1, where that is known.
+        progress: Option<f64>,
+    },
+    /// The graphics device is gone.
+    Lost {
+        /// What the driver says.
+        message: String,
+    },
+}
+
+impl Event {
+    /// The name that listeners know it by.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Change { .. } => "change",
+            Self::Error { .. } => "error",
+            Self::Progress { .. } => "progress",
+            Self::Lost { .. } => "lost",
+        }
+    }
+}
+
+/// The document, the panels' state, and what connects them to the world outside.
+#[derive(Debug)]
+pub(crate) struct Segue {
+    session: Session,
+    inbox: Inbox,
+    keeper: Keeper,
+    address: AddressBar,
+    downloads: Downloads,
+    /// The bundled takes that are under way, by id.
+    samples: Vec<&'static str>,
+    frames: Frames,
+    events: Vec<Event>,
+    told: Told,
+    clock: Clock,
+    window: Window,
+}
+
+/// What listeners know already.
+#[derive(Debug, Default)]
+struct Told {
+    revision: u64,
+    next_notice: u64,
+}
+
+/// When what was done last, milliseconds.
+#[derive(Debug)]
+struct Clock {
+    ticked_at_ms: f64,
+    /// How long the input, the panels and the scene of the last frame took.
+    own_ms: f64,
+    frame_began_ms: f64,
+}
+
+/// The window that draws at present.
+#[derive(Debug, Default)]
+struct Window {
+    /// Counted from the app's start.
+    generation: u64,
+    backend: String,
+    /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
+    within_event: bool,
+}
+
+/// A [`Segue`] that several hold on to: the window that draws it, and the page's API.
+pub(crate) type Shared = Rc<RefCell<Segue>>;
+
+impl Segue {
+    /// Starts, and asks for what is stored.
+    pub(crate) fn new(inbox: Inbox) -> Shared {
+        let link = platform::location_query();
+        let embedded = segue::session::link::read(&link).values.contains(&(Key::Embed, segue::session::Value::Switch(true)));
+        let now_ms = platform::now_ms();
+        platform::watch_navigation(&inbox);
+        Rc::new(RefCell::new(Self {
+            session: Session::new(),
+            keeper: Keeper::new(link, embedded, &inbox, now_ms),
+            inbox,
+            address: AddressBar::default(),
+            downloads: Downloads::default(),
+            samples: Vec::new(),
+            frames: Frames::default(),
+            events: Vec::new(),
+            told: Told::default(),
+            clock: Clock { ticked_at_ms: now_ms, own_ms: 0.0, frame_began_ms: now_ms },
+            window: Window::default(),
+        }))
+    }
+
+    /// Takes a new window, with all that belongs to its graphics device.
+    fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
+        self.inbox.wakes(&cc.egui_ctx);
+        self.window.generation += 1;
+        self.window.within_event = false;
+        let Some(state) = &cc.wgpu_render_state else {
+            return;
+        };
+        self.window.backend = api::backend_name(state.adapter.get_info().backend).to_owned();
+        let (inbox, generation) = (self.inbox.clone(), self.window.generation);
+        state.device.set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
+        // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of everything.
+        state.device.on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
+    }
+
+    /// Lets go of the window: what becomes of its device is no news.
+    pub(crate) fn detach(&mut self) {
+        self.window.generation += 1;
+    }
+
+    /// Carries out a command that the user or the page's API gave.
+    pub(crate) fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        // Time that has passed belongs to the state as it was.
+        self.tick();
+        self.session.apply(command)
+    }
+
+    fn tick(&mut self) -> bool {
+        let now_ms = platform::now_ms();
+        let passed = (now_ms - self.clock.ticked_at_ms).max(0.0) / 1e3;
+        self.clock.ticked_at_ms = now_ms;
+        let playing = self.session.params().is_on(Key::Play);
+        self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed })
+    }
+
+    /// Takes what has come in, sends what is asked for, and works on what is left over for a while. `true` while there is more to do.
+    pub(crate) fn pump(&mut self) -> bool {
+        for incoming in self.inbox.take() {
+            self.receive(incoming);
+        }
+        let now_ms = platform::now_ms();
+        if self.keeper.wait(&mut self.session, now_ms) {
+            self.address.is_right(&self.session);
+        }
+        if self.keeper.is_waiting() {
+            return true;
+        }
+        self.send_requests();
+        let mut more = true;
+        while more && platform::now_ms() - now_ms < WORK_MS {
+            more = self.session.work();
+        }
+        // A piece of work may have found out that it needs something.
+        self.send_requests();
+        more
+    }
+
+    /// Whether something is under way that changes what is shown.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || !self.session.jobs().is_empty()
+    }
+
+    fn receive(&mut self, incoming: Incoming) {
+        match incoming {
+            Incoming::File { name, bytes } => self.load(&name, bytes),
+            Incoming::Failed { reason } => self.session.say(Level::Error, reason),
+            Incoming::Sample { sample, result } => {
+                self.samples.retain(|id| *id != sample.id);
+                let loaded = result.and_then(|packed| self.session.load_sample(sample, &packed).map_err(|error| error.to_string()));
+                if let Err(reason) = loaded {
+                    self.session.say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
+                }
+            }
+            Incoming::Progress { address, done, total } => {
+                if let Some((name, progress)) = self.downloads.progressed(&address, done, total) {
+                    self.events.push(Event::Progress { name, progress });
+                }
+            }
+            Incoming::Fetched { address, result } => {
+                self.downloads.finished(&address, result);
+                while let Some(fetched) = self.downloads.next_ready() {
+                    match fetched {
+                        Ok((name, bytes)) => self.load(&name, bytes),
+                        Err(reason) => self.session.say(Level::Error, reason),
+                    }
+                }
+            }
+            Incoming::Stored(stored) => {
+                if self.keeper.arrived(&mut self.session, stored.map(|stored| *stored)) {
+                    self.address.is_right(&self.session);
+                }
+            }
+            Incoming::Navigated(query) => {
+                if self.address.is_news(&query) {
+                    self.obey(Command::OpenLink(query));
+                    self.address.is_right(&self.session);
+                }
+            }
+            Incoming::DeviceLost { generation, reason } => {
+                if generation == self.window.generation {
+                    log::warn!("the graphics device was lost: {reason}");
+                    self.events.push(Event::Lost { message: reason });
+                }
+            }
+        }
+    }
+
+    /// Loads a file. What is wrong with it stands in a notice.
+    fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>) {
+        if let Err(error) = self.session.load(name, bytes) {
+            log::info!("{name} was not loaded: {error}");
+        }
+    }
+
+    /// Carries out a command of the user's. What cannot be done is said.
+    fn obey(&mut self, command: Command) {
+        if let Err(error) = self.apply(command) {
+            self.session.say(Level::Warning, error.to_string());
+        }
+    }
+
+    fn send_requests(&mut self) {
+        for request in self.session.take_requests() {
+            match request {
+                Request::Sample(sample) => {
+                    if !self.samples.contains(&sample.id) {
+                        self.samples.push(sample.id);
+                        platform::load_sample(sample, &self.inbox);
+                    }
+                }
+                Request::Fetch(address) => self.downloads.start(address, &self.inbox),
+                // Storage keeps what the library names, and nothing else.
+                Request::Forget(_) => {}
+            }
+        }
+        let wanted = self.session.params().text(Key::Src);
+        self.downloads.keep_only(|address| wanted.split_whitespace().any(|source| source == address));
+    }
+
+    /// What happens in every frame, and now and then while the page is hidden. No drawing.
+    fn logic(&mut self, ctx: &egui::Context) {
+        self.clock.frame_began_ms = platform::now_ms();
+        let more = self.pump();
+        let ticked = self.tick();
+        if more || ticked {
+            ctx.request_repaint();
+        }
+    }
+
+    /// One frame of the window.
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame) {
+        let dropped = ui.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
+        if !dropped.is_empty() {
+            platform::read_dropped(dropped, &self.inbox);
+        }
+        if self.keeper.is_waiting() {
+            return;
+        }
+        self.note_frame_time(ui.ctx(), frame);
+        let before = self.session.revision();
+        let out = self.page_ui(ui);
+        for command in out.commands {
+            self.obey(command);
+        }
+        for action in out.actions {
+            self.act(&action, ui.ctx());
+        }
+        if self.session.revision() != before {
+            ui.ctx().request_repaint();
+        }
+        self.frames.begin();
+        self.clock.own_ms = platform::now_ms() - self.clock.frame_began_ms;
+    }
+
+    /// Everything that is to be seen.
+    fn page_ui(&mut self, ui: &mut egui::Ui) -> Out {
+        let mut out = Out::default();
+        egui::CentralPanel::default().show(ui, |ui| {
+            ui.heading("Segue");
+            ui.label(self.session.query());
+            if ui.button("Open files").clicked() {
+                out.actions.push(Action::OpenFiles);
+            }
+            for notice in self.session.notices().list() {
+                ui.label(&notice.text);
+            }
+        });
+        out
+    }
+
+    /// Does what only the platform can do.
+    fn act(&mut self, action: &Action, ctx: &egui::Context) {
+        match action {
+            Action::OpenFiles => platform::open_files(&self.inbox),
+            Action::CopyLink => {
+                ctx.copy_text(platform::full_link(&link_query(&self.session)));
+                self.session.say(Level::Info, "The link to this state is in the clipboard.");
+            }
+            Action::SaveBvh(which) => match self.export(which, "bvh") {
+                Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
+                Err(reason) => self.session.say(Level::Error, reason),
+            },
+        }
+    }
+
+    /// Remembers how long the last frame took. eframe measures all of it, up to the commands for the graphics device, but only when it began
+    /// with the screen's beat; a frame that was computed inside of an input event is counted with what was measured here.
+    fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
+        let whole_ms = frame.info().cpu_usage.map(|secs| secs * 1e3);
+        let millis = if self.window.within_event { None } else { whole_ms }.unwrap_or(self.clock.own_ms as f32);
+        if self.frames.count() > 0 {
+            self.frames.took(millis);
+        }
+        self.window.within_event = ctx.input(|input| {
+            let computed_at_once = |event: &egui::Event| {
+                matches!(event, egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_))
+            };
+            input.events.iter().any(computed_at_once)
+        });
+    }
+
+    /// Has the next frame drawn when there will be something new to see or to do, and only then.
+    fn schedule(&mut self, ctx: &egui::Context) {
+        let now_ms = platform::now_ms();
+        let dragging = ctx.input(|input| input.pointer.any_down());
+        let waits = [
+            self.address.tend(&self.session, dragging, now_ms),
+            self.keeper.tend(&self.session, now_ms),
+            self.session.notices().next_change_secs().map(|secs| secs * 1e3),
+        ];
+        if let Some(wait) = waits.into_iter().flatten().min_by(f64::total_cmp) {
+            ctx.request_repaint_after(Duration::from_secs_f64((wait / 1e3).max(0.0)));
+        }
+        if self.session.params().is_on(Key::Play) || self.keeper.is_waiting() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Stores the work at once: the page may be about to go.
+    pub(crate) fn save_now(&mut self) {
+        self.keeper.save_now(&self.session);
+    }
+
+    /// What there is to tell listeners since the last call.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        let mut events = std::mem::take(&mut self.events);
+        for notice in self.session.notices().list() {
+            if notice.id >= self.told.next_notice {
+                self.told.next_notice = notice.id + 1;
+                if notice.level == Level::Error {
+                    events.push(Event::Error { message: notice.text.clone() });
+                }
+            }
+        }
+        for (name, progress) in self.session.jobs() {
+            events.push(Event::Progress { name: name.to_owned(), progress: Some(f64::from(progress)) });
+        }
+        if self.session.revision() != self.told.revision && !self.keeper.is_waiting() {
+            self.told.revision = self.session.revision();
+            events.push(Event::Change { query: link_query(&self.session) });
+        }
+        events
+    }
+}
+
+/// What eframe draws: a window on a [`Segue`].
+pub(crate) struct View {
+    segue: Shared,
+    /// Called with what there is to tell, after every frame.
+    tell: Box<dyn Fn(Vec<Event>)>,
+}
+
+impl View {
+    /// A window that begins to draw `segue`.
+    pub(crate) fn new(segue: Shared, cc: &eframe::CreationContext<'_>, tell: impl Fn(Vec<Event>) + 'static) -> Self {
+        segue.borrow_mut().attach(cc);
+        Self { segue, tell: Box::new(tell) }
+    }
+}
+
+impl eframe::App for View {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        // In use means: some call of the page's API is being answered. The next frame will do.
+        let Ok(mut segue) = self.segue.try_borrow_mut() else {
+            ctx.request_repaint();
+            return;
+        };
+        segue.logic(ctx);
+        segue.schedule(ctx);
+        let events = segue.take_events();
+        drop(segue);
+        (self.tell)(events);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if let Ok(mut segue) = self.segue.try_borrow_mut() {
+            segue.ui(ui, frame);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        if let Ok(mut segue) = self.segue.try_borrow_mut() {
+            segue.save_now();
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Keeps the work: brings it back at the start, and stores it soon after it has changed.
+
+use crate::platform::{Inbox, Storage, Stored, StoredFiles, Work};
+use segue::session::{Origin, Saved, Session};
+use std::sync::Arc;
+
+/// The page does not wait longer than this for what is stored, milliseconds.
+const PATIENCE_MS: f64 = 150.0;
+/// Work that has not changed for so long is stored, milliseconds.
+const QUIET_MS: f64 = 600.0;
+
+/// What was stored, or is: when one of the two differs, there is something to store.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Mark {
+    library: u64,
+    query: String,
+}
+
+impl Mark {
+    fn of(session: &Session) -> Self {
+        Self { library: session.library_revision(), query: session.query() }
+    }
+}
+
+#[derive(Debug)]
+enum Phase {
+    /// Nothing is shown yet: what is stored may come any moment.
+    Waiting { since_ms: f64 },
+    /// It takes longer than anybody waits. The session has begun without it.
+    Late { begun: Mark },
+    /// What was stored is here, or there is nothing.
+    Ready,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct Keeper {
+    storage: Option<Storage>,
+    phase: Phase,
+    /// The link that the page was opened with; empty for none.
+    link: String,
+    stored: Mark,
+    seen: Mark,
+    changed_at_ms: Option<f64>,
+}
+
+impl Keeper {
+    /// Asks for what is stored. A page inside of another page keeps nothing: it would show, and overwrite, what the reader works on elsewhere.
+    pub(crate) fn new(link: String, embedded: bool, inbox: &Inbox, now_ms: f64) -> Self {
+        Self {
+            storage: (!embedded).then(|| Storage::open(inbox)),
+            phase: Phase::Waiting { since_ms: now_ms },
+            link,
+            stored: Mark::default(),
+            seen: Mark::default(),
+            changed_at_ms: None,
+        }
+    }
+
+    /// Whether nothing can be shown yet.
+    pub(crate) fn is_waiting(&self) -> bool {
+        matches!(self.phase, Phase::Waiting { .. })
+    }
+
+    /// Begins without what is stored when it takes too long. Says whether the session has begun just now.
+    pub(crate) fn wait(&mut self, session: &mut Session, now_ms: f64) -> bool {
+        let Phase::Waiting { since_ms } = self.phase else { return false };
+        if self.storage.is_some() && now_ms - since_ms < PATIENCE_MS {
+            return false;
+        }
+        self.open(session, None);
+        self.phase = if self.storage.is_some() { Phase::Late { begun: Mark::of(session) } } else { Phase::Ready };
+        true
+    }
+
+    /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
+    pub(crate) fn arrived(&mut self, session: &mut Session, stored: Option<Stored>) -> bool {
+        let nothing = stored.is_none();
+        match std::mem::replace(&mut self.phase, Phase::Ready) {
+            Phase::Waiting { .. } => {
+                self.open(session, stored);
+                return nothing || !self.link.is_empty();
+            }
+            Phase::Late { begun } => {
+                let now = Mark::of(session);
+                if now.library != begun.library {
+                    // The user's files are in the library by now; they stay, and what was stored gives way to them.
+                    log::warn!("the stored work came too late");
+                } else if let Some(stored) = stored {
+                    // Parameters that were touched meanwhile stay as they are.
+                    let query = (now.query != begun.query || !self.link.is_empty()).then_some(now.query);
+                    session.restore(&stored.saved, |key| stored.files.get(key).cloned(), query.as_deref());
+                }
+                self.mark(session);
+            }
+            Phase::Ready => {}
+        }
+        false
+    }
+
+    fn open(&mut self, session: &mut Session, stored: Option<Stored>) {
+        let link = (!self.link.is_empty()).then_some(self.link.as_str());
+        match stored {
+            Some(stored) => session.restore(&stored.saved, |key| stored.files.get(key).cloned(), link),
+            // Without a link there is nothing to bring about: a new session shows what a first visitor sees.
+            None if link.is_some() => session.restore(&Saved::default(), |_| None, link),
+            None => {}
+        }
+        self.mark(session);
+    }
+
+    fn mark(&mut self, session: &Session) {
+        self.stored = Mark::of(session);
+        self.seen.clone_from(&self.stored);
+        self.changed_at_ms = None;
+    }
+
+    /// Stores the work when it has been quiet for a while. Returns in how many milliseconds to ask again.
+    pub(crate) fn tend(&mut self, session: &Session, now_ms: f64) -> Option<f64> {
+        if !matches!(self.phase, Phase::Ready) || self.storage.is_none() {
+            return None;
+        }
+        let now = Mark::of(session);
+        if now != self.seen {
+            self.seen = now;
+            self.changed_at_ms = Some(now_ms);
+        }
+        let wait = self.changed_at_ms? + QUIET_MS - now_ms;
+        if wait > 0.0 {
+            return Some(wait);
+        }
+        self.save_now(session);
+        None
+    }
+
+    /// Stores the work at once, if there is anything new in it.
+    pub(crate) fn save_now(&mut self, session: &Session) {
+        let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else { return };
+        self.changed_at_ms = None;
+        let now = Mark::of(session);
+        if now == self.stored {
+            return;
+        }
+        match serde_json::to_string(&session.saved()) {
+            Ok(record) => storage.save(Work { record, files: files_of(session) }),
+            Err(error) => log::error!("the work cannot be written down: {error}"),
+        }
+        self.stored.clone_from(&now);
+        self.seen = now;
+    }
+}
+
+fn files_of(session: &Session) -> StoredFiles {
+    let origins = session.library().entries().iter().map(|entry| &entry.origin);
+    origins
+        .filter_map(|origin| match origin {
+            Origin::File(file) => Some((file.sha256.clone(), Arc::clone(&file.bytes))),
+            Origin::Preset | Origin::Sample(_) | Origin::Made => None,
+        })
+        .collect()
+}

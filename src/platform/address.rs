@@ -1,0 +1,69 @@
+//! Addresses as text: what both sides need to know of them.
+
+use super::last_part;
+use percent_encoding::percent_decode_str;
+
+/// The key with which a page is told which graphics to use. It belongs to the page, not to the state.
+const BACKEND: &str = "backend";
+
+/// The value of `backend=` in a query.
+#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a window has no backend to choose by its address"))]
+pub(super) fn backend_of(query: &str) -> Option<String> {
+    form_urlencoded::parse(bare(query).as_bytes()).find(|(key, _)| key == BACKEND).map(|(_, value)| value.into_owned())
+}
+
+/// `query` with the `backend=` that `old` has.
+#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a window has no address to keep it in"))]
+pub(super) fn with_backend_of(query: &str, old: &str) -> String {
+    let kept = bare(old).split('&').find(|pair| pair.split('=').next() == Some(BACKEND));
+    match kept {
+        Some(pair) if query.is_empty() => pair.to_owned(),
+        Some(pair) => format!("{query}&{pair}"),
+        None => query.to_owned(),
+    }
+}
+
+/// A query without its question mark and without `backend=`.
+pub(super) fn state_of(query: &str) -> String {
+    let pairs: Vec<&str> =
+        bare(query).split('&').filter(|pair| !pair.is_empty() && pair.split('=').next() != Some(BACKEND)).collect();
+    pairs.join("&")
+}
+
+fn bare(query: &str) -> &str {
+    query.strip_prefix('?').unwrap_or(query)
+}
+
+/// The name of the file at an address.
+pub(crate) fn file_name_of(address: &str) -> String {
+    let path = address.split(['?', '#']).next().unwrap_or(address);
+    let path = path.split_once("://").map_or(path, |(_, rest)| rest);
+    // The host alone names no file.
+    let name = path.split_once('/').map_or("", |(_, path)| last_part(path));
+    let name = percent_decode_str(name).decode_utf8_lossy();
+    if name.is_empty() { "download".to_owned() } else { name.into_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn backend_stays_and_is_no_state() {
+        assert_eq!(state_of("?lab=blend&backend=webgl2&t=1"), "lab=blend&t=1");
+        assert_eq!(state_of(""), "");
+        assert_eq!(state_of("?backend=webgpu"), "");
+    }
+
+    #[test]
+    fn files_are_named_by_their_address() {
+        for (address, name) in [
+            ("https://a.org/x/01%20walk.bvh?raw=1#top", "01 walk.bvh"),
+            ("https://a.org/x/", "x"),
+            ("https://a.org", "download"),
+            ("https://a.org/?file=x.bvh", "download"),
+        ] {
+            assert_eq!(file_name_of(address), name, "{address}");
+        }
+    }
+}

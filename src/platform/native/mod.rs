@@ -1,0 +1,60 @@
+//! The desktop window.
+
+mod files;
+mod storage;
+
+pub(crate) use files::{download, open_files, read_arguments, read_dropped};
+pub(crate) use storage::Storage;
+
+use super::{Inbox, Incoming, address};
+use segue::session::Sample;
+use std::sync::{Arc, LazyLock};
+use std::time::Instant;
+
+pub(crate) use super::address::file_name_of;
+
+/// Milliseconds since some fixed moment; never goes back.
+pub(crate) fn now_ms() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64() * 1e3
+}
+
+/// The state that the command line describes: `segue "lab=blend&blend_window=24"`.
+pub(crate) fn location_query() -> String {
+    std::env::args().skip(1).find(|argument| files::is_query(argument)).map_or_else(String::new, |query| address::state_of(&query))
+}
+
+/// A window has no address.
+pub(crate) fn replace_query(_query: &str) {}
+
+/// The query that restores a state, for the end of a page's address or for the command line.
+pub(crate) fn full_link(query: &str) -> String {
+    format!("?{query}")
+}
+
+/// Nobody goes back or forward in a window.
+pub(crate) fn watch_navigation(_inbox: &Inbox) {}
+
+/// A file that is under way.
+#[derive(Debug)]
+pub(crate) struct Fetch;
+
+/// A window loads nothing over the network, and says so.
+pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
+    let reason = format!("This window does not load files over the network. Download {address} and drop the file here.");
+    inbox.push(Incoming::Fetched { address: address.to_owned(), result: Err(reason) });
+    Fetch
+}
+
+/// Reads a bundled take; [`Incoming::Sample`] brings it. They lie in `samples` beside the program, or in the project's folder.
+pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
+    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join("samples")));
+    let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples");
+    let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(sample.file)).collect();
+    let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
+    let result = match read {
+        Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
+        None => Err(format!("{} is not in the folder `samples` beside the program", sample.file)),
+    };
+    inbox.push(Incoming::Sample { sample, result });
+}

@@ -1,0 +1,111 @@
+//! Files of the user: into the page and out of it.
+
+use super::page::{document, listen};
+use super::words_of;
+use crate::platform::{Inbox, Incoming, too_large};
+use eframe::egui::DroppedFileHandle;
+use js_sys::{Array, Uint8Array};
+use std::path::Path;
+use std::sync::Arc;
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::spawn_local;
+use web_sys::{Blob, BlobPropertyBag, File, HtmlAnchorElement, HtmlInputElement, Url};
+
+/// Lets the user choose files.
+///
+/// Only within a user's gesture: browsers ignore it otherwise. There is no filter by ending, because phones then grey out every file
+/// of a kind that they do not know.
+pub(crate) fn open_files(inbox: &Inbox) {
+    let asked = (|| -> Result<(), JsValue> {
+        let document = document().ok_or("no document")?;
+        let input: HtmlInputElement = document.create_element("input")?.dyn_into()?;
+        input.set_type("file");
+        input.set_multiple(true);
+        input.set_hidden(true);
+        // Safari forgets an input that is nowhere on the page.
+        document.body().ok_or("no body")?.append_child(&input)?;
+        let (chosen, inbox) = (input.clone(), inbox.clone());
+        listen(Some(&input), "change", move |_| {
+            let files = chosen.files().map(|list| (0..list.length()).filter_map(|index| list.get(index)).collect());
+            chosen.remove();
+            spawn_local(read(files.unwrap_or_default(), inbox.clone()));
+        });
+        let given_up = input.clone();
+        listen(Some(&input), "cancel", move |_| given_up.remove());
+        input.click();
+        Ok(())
+    })();
+    if let Err(error) = asked {
+        log::error!("no file dialog: {}", words_of(&error));
+    }
+}
+
+/// Reads files one after the other, so that they arrive in order.
+async fn read(files: Vec<File>, inbox: Inbox) {
+    for file in files {
+        let name = file.name();
+        if let Some(reason) = too_large(&name, file.size() as u64) {
+            inbox.push(Incoming::Failed { reason });
+            continue;
+        }
+        let bytes = file.array_buffer().await.map(|buffer| Uint8Array::new(&buffer).to_vec());
+        deliver(name, bytes.map_err(|error| words_of(&error)), &inbox);
+    }
+}
+
+fn deliver(name: String, bytes: Result<Vec<u8>, String>, inbox: &Inbox) {
+    inbox.push(match bytes {
+        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
+        Err(error) => {
+            log::warn!("{name}: {error}");
+            Incoming::Failed { reason: format!("{name} cannot be read. If it is a folder, drop the files in it.") }
+        }
+    });
+}
+
+/// Reads what was dropped on the page, in order.
+pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
+    let inbox = inbox.clone();
+    spawn_local(async move {
+        for file in files {
+            let name = file.path().file_name().and_then(|name| name.to_str()).map_or_else(|| path_text(file.path()), str::to_owned);
+            let size = file.web_file().map_or(0.0, |file| file.size());
+            if let Some(reason) = too_large(&name, size as u64) {
+                inbox.push(Incoming::Failed { reason });
+                continue;
+            }
+            deliver(name, file.bytes_async().await, &inbox);
+        }
+    });
+}
+
+fn path_text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// Hands a file to the user.
+pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox) {
+    let handed = (|| -> Result<(), JsValue> {
+        let document = document().ok_or("no document")?;
+        let options = BlobPropertyBag::new();
+        options.set_type(mime);
+        let blob = Blob::new_with_u8_array_sequence_and_options(&Array::of1(&Uint8Array::from(bytes)), &options)?;
+        let url = Url::create_object_url_with_blob(&blob)?;
+        let anchor: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
+        anchor.set_href(&url);
+        anchor.set_download(file_name);
+        anchor.set_hidden(true);
+        document.body().ok_or("no body")?.append_child(&anchor)?;
+        anchor.click();
+        anchor.remove();
+        // The browser reads the blob after the click; a minute is more than it needs.
+        spawn_local(async move {
+            super::page::sleep(60_000).await;
+            Url::revoke_object_url(&url).ok();
+        });
+        Ok(())
+    })();
+    if let Err(error) = handed {
+        inbox.push(Incoming::Failed { reason: format!("{file_name} could not be saved: {}.", words_of(&error)) });
+    }
+}

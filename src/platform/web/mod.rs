@@ -1,0 +1,24 @@
+//! The page.
+
+mod fetch;
+mod files;
+mod handle;
+mod page;
+mod snapshot;
+mod storage;
+
+pub(crate) use super::address::file_name_of;
+pub(crate) use fetch::{Fetch, fetch, load_sample};
+pub(crate) use files::{download, open_files, read_dropped};
+pub(crate) use page::{full_link, location_query, now_ms, replace_query, watch_navigation};
+pub(crate) use storage::Storage;
+
+use wasm_bindgen::{JsCast as _, JsValue};
+
+/// What a JavaScript error says.
+fn words_of(error: &JsValue) -> String {
+    match error.dyn_ref::<js_sys::Error>() {
+        Some(error) => String::from(error.message()),
+        None => error.as_string().unwrap_or_else(|| format!("{error:?}")),
+    }
+}

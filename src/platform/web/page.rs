@@ -1,0 +1,116 @@
+//! The window, its address and its clock.
+
+use crate::platform::address::{backend_of, state_of, with_backend_of};
+use crate::platform::{Inbox, Incoming};
+use js_sys::{Function, Promise};
+use wasm_bindgen::prelude::Closure;
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::JsFuture;
+use web_sys::{Document, EventTarget, Window};
+
+pub(super) fn window() -> Option<Window> {
+    web_sys::window()
+}
+
+pub(super) fn document() -> Option<Document> {
+    window()?.document()
+}
+
+/// Milliseconds since some fixed moment; never goes back.
+pub(crate) fn now_ms() -> f64 {
+    window().and_then(|window| window.performance()).map_or_else(js_sys::Date::now, |performance| performance.now())
+}
+
+fn search() -> String {
+    window().and_then(|window| window.location().search().ok()).unwrap_or_default()
+}
+
+/// The state that the page's address describes: its query, without `?` and without what belongs to the page.
+pub(crate) fn location_query() -> String {
+    state_of(&search())
+}
+
+/// The graphics that the page's address asks for.
+pub(super) fn wanted_backend() -> Option<String> {
+    backend_of(&search())
+}
+
+/// Puts the state into the page's address. The history gets no entry.
+pub(crate) fn replace_query(query: &str) {
+    let Some(window) = window() else { return };
+    let query = with_backend_of(query, &search());
+    let location = window.location();
+    let result = location.pathname().and_then(|path| {
+        let hash = location.hash().unwrap_or_default();
+        let address = if query.is_empty() { format!("{path}{hash}") } else { format!("{path}?{query}{hash}") };
+        window.history()?.replace_state_with_url(&JsValue::NULL, "", Some(&address))
+    });
+    if let Err(error) = result {
+        // A frame without an origin has no address of its own, and browsers limit how often it may change. The state is not lost by it.
+        log::debug!("the address was not changed: {}", super::words_of(&error));
+    }
+}
+
+/// The whole link that restores a state.
+pub(crate) fn full_link(query: &str) -> String {
+    let base = window().and_then(|window| {
+        let location = window.location();
+        Some(format!("{}{}", location.origin().ok()?, location.pathname().ok()?))
+    });
+    format!("{}?{query}", base.unwrap_or_default())
+}
+
+/// Tells the app when the user goes back or forward, or changes the address.
+pub(crate) fn watch_navigation(inbox: &Inbox) {
+    let inbox = inbox.clone();
+    listen(window().as_deref(), "popstate", move |_| inbox.push(Incoming::Navigated(location_query())));
+}
+
+/// Calls back when the page may be about to go: in the background a browser may end it without a word.
+pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
+    let hidden = on_hide.clone();
+    listen(document().as_deref(), "visibilitychange", move |_| {
+        if is_hidden() {
+            hidden();
+        }
+    });
+    listen(window().as_deref(), "pagehide", move |_| on_hide());
+}
+
+/// Whether nothing is drawn because nobody could see it.
+pub(super) fn is_hidden() -> bool {
+    document().is_some_and(|document| document.hidden())
+}
+
+/// Listens for as long as the page lives.
+pub(super) fn listen(target: Option<&EventTarget>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+    let Some(target) = target else { return };
+    let closure = Closure::<dyn FnMut(web_sys::Event)>::new(listener);
+    if let Err(error) = target.add_event_listener_with_callback(event, closure.as_ref().unchecked_ref()) {
+        log::error!("no `{event}` events: {}", super::words_of(&error));
+    }
+    closure.forget();
+}
+
+/// Waits.
+pub(super) async fn sleep(millis: i32) {
+    resolved(|resolve| {
+        window().is_some_and(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis).is_ok())
+    })
+    .await;
+}
+
+/// Waits for the next frame of the page: what runs then runs after the app's own drawing, before the picture is shown.
+pub(super) async fn next_frame() {
+    resolved(|resolve| window().is_some_and(|window| window.request_animation_frame(resolve).is_ok())).await;
+}
+
+/// Waits for a function to be called that `ask` hands on; not at all when `ask` says that it could not.
+async fn resolved(mut ask: impl FnMut(&Function) -> bool) {
+    let promise = Promise::new(&mut |resolve, _| {
+        if !ask(&resolve) {
+            resolve.call0(&JsValue::NULL).ok();
+        }
+    });
+    JsFuture::from(promise).await.ok();
+}

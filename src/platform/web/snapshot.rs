@@ -1,0 +1,70 @@
+//! A picture of the page.
+
+use super::page::{document, is_hidden, next_frame};
+use js_sys::{Error, Promise};
+use wasm_bindgen::prelude::Closure;
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::JsFuture;
+use web_sys::{Blob, CanvasRenderingContext2d, HtmlCanvasElement};
+
+/// A rectangle of the canvas in its own pixels: left, top, width, height.
+pub(super) type Area = [f64; 4];
+
+/// How many frames to wait for one in which the app draws.
+const MOST_FRAMES: usize = 120;
+
+/// A part of the canvas as a PNG.
+///
+/// What WebGPU and WebGL draw can be read only until the frame ends. So this waits for a frame in which the app draws (`frames` counts
+/// them, `wake` asks for one), copies the picture within it, and packs the copy.
+pub(super) async fn snapshot(
+    canvas: &HtmlCanvasElement,
+    frames: impl Fn() -> u64,
+    wake: impl Fn(),
+    area: impl Fn() -> Option<Area>,
+) -> Result<Blob, JsValue> {
+    for _ in 0..MOST_FRAMES {
+        if is_hidden() {
+            return Err(Error::new("snapshot: the page is hidden, so nothing is drawn; bring it to the front").into());
+        }
+        let before = frames();
+        wake();
+        next_frame().await;
+        if frames() != before {
+            return pack(&copy(canvas, area())?).await;
+        }
+    }
+    Err(Error::new("snapshot: nothing was drawn").into())
+}
+
+fn copy(canvas: &HtmlCanvasElement, area: Option<Area>) -> Result<HtmlCanvasElement, JsValue> {
+    let whole = [0.0, 0.0, f64::from(canvas.width()), f64::from(canvas.height())];
+    let [x, y, width, height] = area.unwrap_or(whole);
+    let copy: HtmlCanvasElement = document().ok_or("no document")?.create_element("canvas")?.dyn_into()?;
+    copy.set_width(width.max(1.0) as u32);
+    copy.set_height(height.max(1.0) as u32);
+    let context: CanvasRenderingContext2d =
+        copy.get_context("2d")?.ok_or_else(|| Error::new("snapshot: this browser cannot copy pictures"))?.dyn_into()?;
+    context.draw_image_with_html_canvas_element_and_sw_and_sh_and_dx_and_dy_and_dw_and_dh(
+        canvas, x, y, width, height, 0.0, 0.0, width, height,
+    )?;
+    Ok(copy)
+}
+
+async fn pack(canvas: &HtmlCanvasElement) -> Result<Blob, JsValue> {
+    let mut failed = None;
+    let promise = Promise::new(&mut |resolve, reject| {
+        let done = Closure::once_into_js(move |blob: JsValue| {
+            if blob.is_null() {
+                reject.call1(&JsValue::NULL, &Error::new("snapshot: the picture could not be packed")).ok();
+            } else {
+                resolve.call1(&JsValue::NULL, &blob).ok();
+            }
+        });
+        failed = canvas.to_blob_with_type(done.unchecked_ref(), "image/png").err();
+    });
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    JsFuture::from(promise).await?.dyn_into()
+}
