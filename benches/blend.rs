@@ -22,7 +22,13 @@ fn skeleton() -> Arc<Skeleton> {
         let name = format!("Joint{index}");
         let turn = Quat::from_rotation_y(chain as f32);
         let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
-        Joint { name, parent, offset, end_site: None, channels: vec![] }
+        Joint {
+            name,
+            parent,
+            offset,
+            end_site: None,
+            channels: vec![],
+        }
     };
     Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
 }
@@ -59,12 +65,22 @@ fn registration(c: &mut Criterion) {
             bench.iter(|| search.best(black_box(&SearchOptions::new(window))).expect("the window fits"));
         });
         c.bench_function(&format!("window/cached sums, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("complete"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("complete")
+            });
         });
         let mut slow = c.benchmark_group("slow");
         slow.sample_size(10);
         slow.bench_function(format!("window/direct, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("finite"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("finite")
+            });
         });
     }
 }

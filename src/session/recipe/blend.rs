@@ -19,9 +19,7 @@ pub(in crate::session) struct BlendInputs {
 
 impl PartialEq for BlendInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pair, &other.pair)
-            && self.place == other.place
-            && self.options == other.options
+        Arc::ptr_eq(&self.pair, &other.pair) && self.place == other.place && self.options == other.options
     }
 }
 
@@ -44,26 +42,19 @@ struct Pair {
 
 impl Pair {
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
-        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton())
-            || a.clip.skeleton() == b.clip.skeleton();
+        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
         let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
         let incoming = if same_skeleton && same_rate {
             Arc::clone(b)
         } else {
             let mut clip = (*b.clip).clone();
             if !same_skeleton {
-                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles)
-                    .map_err(|error| error.to_string())?;
+                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
             }
             if !same_rate {
-                clip = resample(&clip, a.clip.fps(), Interpolation::Linear)
-                    .map_err(|error| error.to_string())?;
+                clip = resample(&clip, a.clip.fps(), Interpolation::Linear).map_err(|error| error.to_string())?;
             }
-            let roles = if same_skeleton {
-                b.roles.clone()
-            } else {
-                a.roles.clone()
-            };
+            let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
             Arc::new(Motion::analyze(clip, Some(roles)))
         };
         Ok(Self {
@@ -98,9 +89,7 @@ impl Blender {
     ) -> Result<BlendInputs, String> {
         let pair = self.pair(a, b)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
-        let window = (params.number(Key::BlendWindow) as usize)
-            .min(frames_a)
-            .min(frames_b);
+        let window = (params.number(Key::BlendWindow) as usize).min(frames_a).min(frames_b);
         let fps = pair.a.clip.fps();
         let frame = |key, frames: usize| {
             params
@@ -108,12 +97,7 @@ impl Blender {
                 .map(|secs| ((secs * fps).round() as usize).min(frames.saturating_sub(window)))
         };
         let match_window = match_window.min(frames_a).min(frames_b);
-        let place = self.place(
-            &pair,
-            match_window,
-            frame(Key::LeaveA, frames_a),
-            frame(Key::EnterB, frames_b),
-        )?;
+        let place = self.place(&pair, match_window, frame(Key::LeaveA, frames_a), frame(Key::EnterB, frames_b))?;
         let law = match params.text(Key::WeightLaw) {
             "linear" => WeightLaw::Linear,
             "smoother" => WeightLaw::Smoother,
@@ -145,11 +129,7 @@ impl Blender {
         }
         let pair = Arc::new(Pair::new(a, b)?);
         let weights = limb_weights(pair.a.clip.skeleton());
-        let search = TransitionSearch::new(
-            Arc::clone(&pair.a.clip),
-            Arc::clone(&pair.incoming.clip),
-            &weights,
-        );
+        let search = TransitionSearch::new(Arc::clone(&pair.a.clip), Arc::clone(&pair.incoming.clip), &weights);
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(&pair));
         self.compare_rows(ROWS_AT_ONCE);
@@ -168,13 +148,7 @@ impl Blender {
     }
 
     /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
-    fn place(
-        &self,
-        pair: &Pair,
-        window: usize,
-        leave: Option<usize>,
-        enter: Option<usize>,
-    ) -> Result<Place, String> {
+    fn place(&self, pair: &Pair, window: usize, leave: Option<usize>, enter: Option<usize>) -> Result<Place, String> {
         let search = self.search.as_ref().ok_or("there are no clips to match")?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let mut options = SearchOptions::new(window);
@@ -223,11 +197,7 @@ impl Blender {
 impl BlendInputs {
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        let Self {
-            pair,
-            place,
-            options,
-        } = self;
+        let Self { pair, place, options } = self;
         let (a, b) = (&pair.a, &pair.incoming);
         let _ = (a, b, place, options);
         todo!()
