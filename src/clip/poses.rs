@@ -18,14 +18,26 @@ impl Clip {
         let mut tracks: Vec<JointTranslations> = Vec::new();
         for pose in poses {
             if pose.rotations.len() != skeleton.len() {
-                return Err(ClipError::Length { what: "rotations of a pose", found: pose.rotations.len(), expected: skeleton.len() });
+                return Err(ClipError::Length {
+                    what: "rotations of a pose",
+                    found: pose.rotations.len(),
+                    expected: skeleton.len(),
+                });
             }
             if root_translations.is_empty() {
-                tracks = pose.translations.iter().map(|&(joint, _)| JointTranslations { joint, values: Vec::new() }).collect();
+                tracks = pose
+                    .translations
+                    .iter()
+                    .map(|&(joint, _)| JointTranslations { joint, values: Vec::new() })
+                    .collect();
             }
             if pose.translations.len() != tracks.len() {
                 let (found, expected) = (pose.translations.len(), tracks.len());
-                return Err(ClipError::Length { what: "translations of a pose", found, expected });
+                return Err(ClipError::Length {
+                    what: "translations of a pose",
+                    found,
+                    expected,
+                });
             }
             for (track, &(joint, value)) in tracks.iter_mut().zip(&pose.translations) {
                 if track.joint != joint {
@@ -39,4 +51,3 @@ impl Clip {
         Self::new(name, skeleton, fps, rotations, root_translations)?.with_translations(tracks)
     }
 }
-
