@@ -43,11 +43,7 @@ impl Clip {
         Some(Pose {
             root_translation: position(&|f| self.root_translations()[f]),
             rotations: (0..self.skeleton().len()).map(rotation).collect(),
-            translations: self
-                .translations()
-                .iter()
-                .map(|track| (track.joint, position(&|f| track.values[f])))
-                .collect(),
+            translations: self.translations().iter().map(|track| (track.joint, position(&|f| track.values[f]))).collect(),
         })
     }
 }

@@ -26,10 +26,7 @@ pub struct Provenance {
 impl Default for Provenance {
     /// Centimetres and Y up, what most BVH files use.
     fn default() -> Self {
-        Self {
-            metres_per_unit: 0.01,
-            up: UpAxis::Y,
-        }
+        Self { metres_per_unit: 0.01, up: UpAxis::Y }
     }
 }
 
@@ -104,11 +101,7 @@ impl Clip {
         }
         let expected = root_translations.len() * skeleton.len();
         if rotations.len() != expected {
-            return Err(ClipError::Length {
-                what: "rotations",
-                found: rotations.len(),
-                expected,
-            });
+            return Err(ClipError::Length { what: "rotations", found: rotations.len(), expected });
         }
         Ok(Self {
             name: name.into(),
@@ -132,11 +125,7 @@ impl Clip {
                 return Err(ClipError::Translations(track.joint));
             }
             if track.values.len() != self.frames() {
-                return Err(ClipError::Length {
-                    what: "translations",
-                    found: track.values.len(),
-                    expected: self.frames(),
-                });
+                return Err(ClipError::Length { what: "translations", found: track.values.len(), expected: self.frames() });
             }
             previous = track.joint;
         }
@@ -281,11 +270,7 @@ impl Clip {
     /// [`ClipError::OutOfRange`] when the range is not inside the clip.
     pub fn crop(&self, range: Range<usize>) -> Result<Self, ClipError> {
         if range.start > range.end || range.end > self.frames() {
-            return Err(ClipError::OutOfRange {
-                start: range.start,
-                end: range.end,
-                frames: self.frames(),
-            });
+            return Err(ClipError::OutOfRange { start: range.start, end: range.end, frames: self.frames() });
         }
         let joints = self.skeleton.len();
         Ok(Self {
@@ -295,10 +280,7 @@ impl Clip {
             rotations: self.rotations[range.start * joints..range.end * joints].to_vec(),
             root_translations: self.root_translations[range.clone()].to_vec(),
             translations: (self.translations.iter())
-                .map(|track| JointTranslations {
-                    joint: track.joint,
-                    values: track.values[range.clone()].to_vec(),
-                })
+                .map(|track| JointTranslations { joint: track.joint, values: track.values[range.clone()].to_vec() })
                 .collect(),
             provenance: self.provenance,
         })

@@ -34,13 +34,7 @@ impl WorldPose {
 #[must_use]
 pub fn world_pose(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
     let mut world = WorldPose::default();
-    world_pose_into(
-        skeleton,
-        pose.root_translation,
-        &pose.rotations,
-        pose.translations.iter().copied(),
-        &mut world,
-    );
+    world_pose_into(skeleton, pose.root_translation, &pose.rotations, pose.translations.iter().copied(), &mut world);
     world
 }
 

@@ -71,20 +71,11 @@ impl Skeleton {
         for (index, joint) in joints.iter().enumerate() {
             match joint.parent {
                 Some(parent) if index > 0 && parent >= index => {
-                    return Err(SkeletonError::ParentAfterChild {
-                        index,
-                        name: joint.name.clone(),
-                        parent,
-                    });
+                    return Err(SkeletonError::ParentAfterChild { index, name: joint.name.clone(), parent });
                 }
                 Some(_) if index > 0 => {}
                 None if index == 0 => {}
-                _ => {
-                    return Err(SkeletonError::NotOneRoot {
-                        index,
-                        name: joint.name.clone(),
-                    });
-                }
+                _ => return Err(SkeletonError::NotOneRoot { index, name: joint.name.clone() }),
             }
         }
         Ok(Self { joints })
@@ -136,30 +127,15 @@ mod tests {
     use super::*;
 
     fn joint(parent: Option<usize>) -> Joint {
-        Joint {
-            name: "j".into(),
-            parent,
-            offset: Vec3::Y,
-            end_site: None,
-            channels: vec![],
-        }
+        Joint { name: "j".into(), parent, offset: Vec3::Y, end_site: None, channels: vec![] }
     }
 
     #[test]
     fn only_trees_with_the_root_first_are_skeletons() {
         assert_eq!(Skeleton::new(vec![]), Err(SkeletonError::Empty));
-        assert!(matches!(
-            Skeleton::new(vec![joint(Some(0))]),
-            Err(SkeletonError::NotOneRoot { index: 0, .. })
-        ));
-        assert!(matches!(
-            Skeleton::new(vec![joint(None), joint(None)]),
-            Err(SkeletonError::NotOneRoot { index: 1, .. })
-        ));
-        assert!(matches!(
-            Skeleton::new(vec![joint(None), joint(Some(1))]),
-            Err(SkeletonError::ParentAfterChild { index: 1, .. })
-        ));
+        assert!(matches!(Skeleton::new(vec![joint(Some(0))]), Err(SkeletonError::NotOneRoot { index: 0, .. })));
+        assert!(matches!(Skeleton::new(vec![joint(None), joint(None)]), Err(SkeletonError::NotOneRoot { index: 1, .. })));
+        assert!(matches!(Skeleton::new(vec![joint(None), joint(Some(1))]), Err(SkeletonError::ParentAfterChild { index: 1, .. })));
         let skeleton = Skeleton::new(vec![joint(None), joint(Some(0)), joint(Some(0)), joint(Some(1))]).unwrap();
         assert_eq!(skeleton.children(0).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(skeleton.rest_positions()[3], Vec3::Y * 2.0);
