@@ -1,6 +1,8 @@
 //! Clips: frames × joints of a skeleton, and what can be asked of one clip alone.
 
 mod contacts;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod mirror;
 mod poses;
 mod resample;

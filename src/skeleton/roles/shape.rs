@@ -116,23 +116,23 @@ impl<'a> Shape<'a> {
 
     /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower, the joint at the lower one's end).
     fn limb(&self, top: usize, tip: usize) -> Option<(usize, usize, Option<usize>)> {
-        let mut path = self.path(top, tip);
-        // Joints at one place (bones without length) count as one: the last of them turns what comes next.
-        path.dedup_by(|later, earlier| {
-            let same = self.rest[*later].distance(self.rest[*earlier]) < 1e-4 * self.height;
-            if same {
-                *earlier = *later;
+        // Joints at one place (bones without length) count as one. The last of them turns the bone that starts there, and the first one
+        // carries all that hangs on the end of the bone before.
+        let mut places: Vec<(usize, usize)> = Vec::new();
+        for joint in self.path(top, tip) {
+            match places.last_mut() {
+                Some((_, last)) if self.rest[*last].distance(self.rest[joint]) < 1e-4 * self.height => *last = joint,
+                _ => places.push((joint, joint)),
             }
-            same
-        });
-        let bone = |i: usize| match path.get(i + 1) {
-            Some(&next) => self.rest[path[i]].distance(self.rest[next]),
-            None => self.rest[path[i]].distance(self.tip(path[i])),
+        }
+        let bone = |i: usize| match places.get(i + 1) {
+            Some(&(next, _)) => self.rest[places[i].1].distance(self.rest[next]),
+            None => self.rest[places[i].1].distance(self.tip(places[i].1)),
         };
-        let longest = (0..path.len()).map(bone).fold(0.0, f32::max);
-        let mut long = (0..path.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
+        let longest = (0..places.len()).map(bone).fold(0.0, f32::max);
+        let mut long = (0..places.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
         let (lower, upper) = (long.next()?, long.next()?);
-        Some((path[upper], path[lower], path.get(lower + 1).copied()))
+        Some((places[upper].1, places[lower].1, places.get(lower + 1).map(|&(first, _)| first)))
     }
 
     fn leg(&self, hips: usize, tip: usize) -> Leg {
