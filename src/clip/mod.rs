@@ -1,6 +1,7 @@
 //! Clips: frames × joints of a skeleton, and what can be asked of one clip alone.
 
 mod contacts;
+mod curves;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod mirror;
@@ -12,6 +13,7 @@ mod sampling;
 mod storage;
 mod velocity;
 
+pub use curves::{CurveKind, joint_curve};
 pub use contacts::{ContactOptions, Contacts, ground_height};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;

@@ -170,3 +170,23 @@ fn lab_label(session: &Session) -> &'static str {
         _ => "View",
     }
 }
+
+/// The lab's parameters that the link names: what an embedding page wants its readers to try.
+fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
+    let compared = session.compare().map(|compare| compare.key);
+    let named = session.params().changed().map(|(param, _)| param);
+    let named = named.filter(|param| matches!(param.group, Group::Make | Group::Blend)).map(|param| param.key);
+    named.chain(compared.into_iter().filter(|key| session.params().get(*key) == &key.param().default_value()))
+}
+
+/// Whether the link names a parameter of the lab.
+pub(crate) fn has_named_params(session: &Session) -> bool {
+    named_params(session).next().is_some()
+}
+
+/// Their rows.
+pub(crate) fn named_params_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    for key in named_params(session) {
+        param_row_ui(key, &Detail::default(), session, out, ui);
+    }
+}

@@ -1,18 +1,23 @@
+//! The document itself: what it holds, and what commands do to it.
+
+mod loading;
+mod panes;
+
+pub use loading::Loaded;
+pub use panes::Pane;
+
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
-use super::library::{Entry, Library, Origin, Sample, SourceFile, file_id, split_reference};
+use super::library::{Entry, Library, Origin, Sample, SourceFile, split_reference};
+use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
-use super::params::{Group, Key, Params, Value};
-use super::recipe::{BlendInputs, Blender, Outcome, Slot, made_id, made_motion, made_params, preset_motion, synth_action};
-use super::saved::{Saved, SavedEntry};
+use super::params::{Key, Params, Value};
+use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
-use super::{MAX_PANES, link};
-use crate::formats::{self, ImportError, ImportOptions, Imported, import};
-use crate::skeleton::Roles;
+use crate::formats::{ImportOptions, import};
 use crate::synth;
-use sha2::{Digest as _, Sha256};
 use std::sync::Arc;
 
 /// The bundled takes.
