@@ -22,7 +22,13 @@ fn skeleton() -> Arc<Skeleton> {
         let name = format!("Joint{index}");
         let turn = Quat::from_rotation_y(chain as f32);
         let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
-        Joint { name, parent, offset, end_site: None, channels: vec![] }
+        Joint {
+            name,
+            parent,
+            offset,
+            end_site: None,
+            channels: vec![],
+        }
     };
     Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
 }
@@ -44,7 +50,7 @@ fn registration(c: &mut Criterion) {
     let skeleton = skeleton();
     let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
     let weights = limb_weights(&skeleton);
-    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights).expect("the clips fit");
+    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights, 1.75).expect("the clips fit");
     c.bench_function("window/first (once per pair of clips)", |bench| {
         bench.iter(|| {
             let mut search = prepared();
@@ -59,12 +65,22 @@ fn registration(c: &mut Criterion) {
             bench.iter(|| search.best(black_box(&SearchOptions::new(window))).expect("the window fits"));
         });
         c.bench_function(&format!("window/cached sums, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("complete"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("complete")
+            });
         });
         let mut slow = c.benchmark_group("slow");
         slow.sample_size(10);
         slow.bench_function(format!("window/direct, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("finite"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("finite")
+            });
         });
     }
 }
