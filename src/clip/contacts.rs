@@ -21,7 +21,13 @@ pub struct ContactOptions {
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { enter_height_m: 0.04, leave_height_m: 0.07, enter_speed_mps: 0.4, leave_speed_mps: 0.8, min_secs: 0.06 }
+        Self {
+            enter_height_m: 0.04,
+            leave_height_m: 0.07,
+            enter_speed_mps: 0.4,
+            leave_speed_mps: 0.8,
+            min_secs: 0.06,
+        }
     }
 }
 
@@ -50,7 +56,9 @@ impl Contacts {
         let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
         for kind in &points {
             let heights: Vec<f32> = kind.iter().flat_map(|(_, way)| way.iter().map(|p| p.y)).collect();
-            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else { continue };
+            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else {
+                continue;
+            };
             for (side, way) in kind {
                 let mut down = false;
                 for (frame, planted) in planted[side.index()].iter_mut().enumerate() {
@@ -87,7 +95,10 @@ impl Contacts {
     /// The frames during which the foot of `side` is on the ground, as ranges in order of time.
     #[must_use]
     pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {
-        runs(&self.planted[side.index()]).filter(|(value, _)| *value).map(|(_, range)| range).collect()
+        runs(&self.planted[side.index()])
+            .filter(|(value, _)| *value)
+            .map(|(_, range)| range)
+            .collect()
     }
 }
 

@@ -1,14 +1,21 @@
 //! Clips: frames × joints of a skeleton, and what can be asked of one clip alone.
 
 mod contacts;
+#[cfg(test)]
+pub(crate) mod fixtures;
+mod mirror;
+mod poses;
 mod resample;
+mod retarget;
 mod root_motion;
 mod sampling;
 mod storage;
 mod velocity;
 
 pub use contacts::{ContactOptions, Contacts, ground_height};
+pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
+pub use retarget::{RetargetError, retarget};
 pub use root_motion::{character_frames, facing, ground_speed, motion_root};
 pub use sampling::Interpolation;
 pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};

@@ -1,13 +1,19 @@
 //! Skeletons, poses, forward kinematics, and what a joint is for.
 
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod kinematics;
+mod mirror;
 mod pose;
+mod retarget;
 mod role;
 mod roles;
 mod tree;
 
 pub use kinematics::{WorldPose, world_pose, world_pose_into};
+pub use mirror::{Mirror, NoSides};
 pub use pose::Pose;
+pub use retarget::{JointMap, Retargeting};
 pub use role::{Role, Side};
 pub use roles::{Found, Roles};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};

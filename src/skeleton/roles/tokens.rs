@@ -2,20 +2,45 @@ use crate::skeleton::Side;
 
 /// Words of which joint names are composed. Only runs that consist of these words entirely are split (`leftupleg`, `lowerback`).
 const WORDS: &[&str] = &[
-    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f", "femur",
-    "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee", "left", "leg",
-    "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin", "shldr", "shoulder",
-    "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up", "upper", "waist", "wrist",
+    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f",
+    "femur", "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee",
+    "left", "leg", "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin",
+    "shldr", "shoulder", "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up",
+    "upper", "waist", "wrist",
 ];
 
 /// Words that say nothing about what a joint is for.
 const NOISE: &[&str] = &[
-    "avg", "b", "base", "bend", "bind", "bip", "biped", "bn", "bone", "c", "cc", "character", "def", "j", "jnt", "joint", "jt", "m", "mixamorig",
-    "mot", "org", "rig", "sk", "skel",
+    "avg",
+    "b",
+    "base",
+    "bend",
+    "bind",
+    "bip",
+    "biped",
+    "bn",
+    "bone",
+    "c",
+    "cc",
+    "character",
+    "def",
+    "j",
+    "jnt",
+    "joint",
+    "jt",
+    "m",
+    "mixamorig",
+    "mot",
+    "org",
+    "rig",
+    "sk",
+    "skel",
 ];
 
 /// Words of joints that move nothing of the body itself.
-const HELPERS: &[&str] = &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
+const HELPERS: &[&str] = &[
+    "effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist",
+];
 
 /// A joint's name, read.
 #[derive(Debug, PartialEq, Eq)]
@@ -26,10 +51,16 @@ pub(super) struct Tokens {
     pub(super) core: String,
     /// The same of the part behind the last separator, where the name has several: `head` of `torso_head`.
     pub(super) last: String,
-    /// The first number in the name.
-    pub(super) number: Option<u32>,
+    /// The numbers in the name, as written.
+    pub(super) numbers: Vec<String>,
     /// The name is that of an end site, a twist joint, an IK target.
     pub(super) helper: bool,
+}
+
+/// Whether two names differ in nothing but the side: `LeftHandIndex1` and `RightHandIndex1`.
+pub(crate) fn are_counterparts(a: &str, b: &str) -> bool {
+    let (a, b) = (read(a), read(b));
+    a.side.is_some() && a.side.map(Side::other) == b.side && a.core == b.core && a.numbers == b.numbers && a.helper == b.helper
 }
 
 /// Reads a name: case, separators and camel humps split it into words.
@@ -38,12 +69,12 @@ pub(super) fn read(name: &str) -> Tokens {
     let name = name.rsplit(':').next().unwrap_or(name);
     let mut sides = Vec::new();
     let (mut core, mut last) = (String::new(), String::new());
-    let (mut number, mut helper) = (None, false);
+    let (mut numbers, mut helper) = (Vec::new(), false);
     for part in name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
         let mut of_part = String::new();
         for run in humps(part) {
             if run.starts_with(|c: char| c.is_ascii_digit()) {
-                number = number.or(run.parse().ok());
+                numbers.push(run);
                 continue;
             }
             for word in words(&run) {
@@ -62,7 +93,13 @@ pub(super) fn read(name: &str) -> Tokens {
         }
     }
     let side = sides.first().copied().filter(|first| sides.iter().all(|s| s == first));
-    Tokens { side, core, last, number, helper }
+    Tokens {
+        side,
+        core,
+        last,
+        numbers,
+        helper,
+    }
 }
 
 /// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.
@@ -163,7 +200,7 @@ mod tests {
         assert!(read("Bip01 HeadNub").helper);
         assert!(read("LeftForeArmTwist").helper);
         assert!(!read("LeftToeBase").helper);
-        assert_eq!(read("Spine12").number, Some(12));
+        assert_eq!(read("Bip01 L Finger02").numbers, ["01", "02"]);
         assert_eq!(read("lowerback_torso").last, "torso");
     }
 }

@@ -1,0 +1,40 @@
+use super::{Clip, ClipError, ground_height};
+use crate::skeleton::{Pose, Retargeting, Roles, Skeleton};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Why a clip cannot be moved to another skeleton.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RetargetError {
+    /// No joint of one skeleton corresponds to a joint of the other.
+    #[error("the two skeletons have no joint in common, neither by name nor by role: say by hand which joints are the hips and the legs")]
+    NothingInCommon,
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}
+
+/// The clip on another skeleton: see [`Retargeting`] for how joints are matched and turned.
+///
+/// The result stands as high above the ground as the source does, in proportion to its legs ([`ground_height`] of both). On the same skeleton the
+/// clip comes back unchanged; on the same rig with its joints in another order every shared joint stays where it was.
+///
+/// # Errors
+/// [`RetargetError::NothingInCommon`] when no joint of `target` corresponds to one of the clip's.
+pub fn retarget(clip: &Clip, source_roles: &Roles, target: &Arc<Skeleton>, target_roles: &Roles) -> Result<Clip, RetargetError> {
+    let source = clip.skeleton();
+    if Arc::ptr_eq(source, target) || source == target {
+        return Ok(clip.clone());
+    }
+    let way = Retargeting::new(source, source_roles, target, target_roles).ok_or(RetargetError::NothingInCommon)?;
+    let mut poses: Vec<Pose> = (0..clip.frames()).map(|frame| way.pose(&clip.pose(frame))).collect();
+    let make = |poses: Vec<Pose>| Clip::from_poses(clip.name(), Arc::clone(target), clip.fps(), poses);
+    if !way.is_same_rig() {
+        let standing = make(poses.clone())?;
+        let sinks = ground_height(clip, source_roles) * way.scale() - ground_height(&standing, target_roles);
+        for pose in &mut poses {
+            pose.root_translation += Vec3::Y * sinks;
+        }
+    }
+    Ok(make(poses)?.with_provenance(clip.provenance()))
+}

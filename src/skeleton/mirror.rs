@@ -1,0 +1,296 @@
+use super::roles::are_counterparts;
+use super::{Pose, Role, Roles, Side, Skeleton};
+use crate::math::quat;
+use glam::{Quat, Vec3};
+
+/// An axis of the rest pose this near to the skeleton's left-right axis is meant to be it: cos 15°.
+const NEARLY_AN_AXIS: f32 = 0.966;
+/// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this share of its distance.
+const SHAPE_TOLERANCE: f32 = 0.35;
+
+/// A skeleton in which no joint of the left has a counterpart on the right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no joint on the left has a counterpart on the right: say by hand which joints are the left and right thigh or upper arm")]
+pub struct NoSides;
+
+/// How a skeleton looks in a mirror: which joint stands for which, and how their frames differ.
+///
+/// With S the reflection `x → -x` of the world and M that of the rest pose in its own plane of symmetry, a joint `j` with the
+/// counterpart `p` gets the world rotation `S · R(p) · M · C(j)`, where `C(j)` takes the bone of `j` at rest to the mirror image of that of `p`. With
+/// a symmetric skeleton C is the identity; with one that is not, the bones' directions are those of the mirror image all the same, and
+/// only their lengths are the skeleton's own. Mirroring twice gives the original back, because `C(p) = M · C(j)⁻¹ · M`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mirror {
+    /// Unit normal of the rest pose's plane of symmetry.
+    normal: Vec3,
+    /// The counterpart of every joint: itself in the middle of the body, `None` where there is none.
+    counterparts: Vec<Option<usize>>,
+    parents: Vec<Option<usize>>,
+    offsets: Vec<Vec3>,
+    corrections: Vec<Quat>,
+}
+
+impl Mirror {
+    /// Pairs the joints of a skeleton: those that have roles (or lead to one) by role, others by name, then by where they are at rest.
+    ///
+    /// # Errors
+    /// [`NoSides`] when roles and names give no pair at all.
+    pub fn of(skeleton: &Skeleton, roles: &Roles) -> Result<Self, NoSides> {
+        let rest = skeleton.rest_positions();
+        let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoSides)?;
+        let pairing = Pairing::new(skeleton, roles, &rest, normal);
+        let counterparts = pairing.counterparts();
+        if !counterparts
+            .iter()
+            .enumerate()
+            .any(|(joint, other)| other.is_some_and(|other| other != joint))
+        {
+            return Err(NoSides);
+        }
+        let mut mirror = Self {
+            normal,
+            counterparts,
+            parents: skeleton.joints().iter().map(|j| j.parent).collect(),
+            offsets: skeleton.joints().iter().map(|j| j.offset).collect(),
+            corrections: vec![Quat::IDENTITY; skeleton.len()],
+        };
+        for joint in 1..skeleton.len() {
+            let Some(other) = mirror.counterparts[joint] else { continue };
+            mirror.corrections[joint] = match (pairing.bone(joint), pairing.bone(other)) {
+                // The second of a pair is made from the first, so that both undo each other to the last bit.
+                _ if other < joint => mirror.reflected_rotation(mirror.corrections[other].conjugate()),
+                (Some(bone), Some(others)) => quat::between_directions(bone, mirror.reflected(others)),
+                // What has no bone follows its parent, except in the middle: a chest is the mirror image of itself.
+                _ if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
+                _ => Quat::IDENTITY,
+            };
+        }
+        Ok(mirror)
+    }
+
+    /// The joint that moves in a mirror as this one does: itself in the middle of the body; `None` for a joint without counterpart.
+    #[must_use]
+    pub fn counterpart(&self, joint: usize) -> Option<usize> {
+        self.counterparts.get(joint).copied().flatten()
+    }
+
+    /// The mirror image of a pose in the plane x = 0 of the world. Joints without counterpart keep what they do.
+    #[must_use]
+    pub fn pose(&self, pose: &Pose) -> Pose {
+        let local = |joint: usize| pose.rotations.get(joint).copied().unwrap_or(Quat::IDENTITY);
+        let rotations = (0..self.counterparts.len()).map(|joint| match (self.counterparts[joint], self.parents[joint]) {
+            (Some(other), Some(parent)) => {
+                let mirrored = self.reflected_rotation(local(other));
+                quat::renormalize(self.corrections[parent].conjugate() * mirrored * self.corrections[joint])
+            }
+            (_, None) => {
+                // S · R · M = (S · R · S) · (S · M), and two reflections are the product of their normals as pure quaternions.
+                let q = local(joint);
+                let (x, n) = (Quat::from_xyzw(1.0, 0.0, 0.0, 0.0), self.normal);
+                quat::renormalize(Quat::from_xyzw(q.x, -q.y, -q.z, q.w) * (x * Quat::from_xyzw(n.x, n.y, n.z, 0.0)))
+            }
+            (None, Some(_)) => local(joint),
+        });
+        let mut translations: Vec<(usize, Vec3)> = pose
+            .translations
+            .iter()
+            .map(|&(joint, value)| self.translation(joint, value))
+            .collect();
+        translations.sort_by_key(|&(joint, _)| joint);
+        Pose {
+            root_translation: pose.root_translation * Vec3::new(-1.0, 1.0, 1.0),
+            rotations: rotations.collect(),
+            translations,
+        }
+    }
+
+    /// The mirror image of a translation of `joint` against its parent, and whose it is then.
+    fn translation(&self, joint: usize, value: Vec3) -> (usize, Vec3) {
+        let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint)) else {
+            return (joint, value);
+        };
+        let into_parent = self.parents[other].map_or(Quat::IDENTITY, |parent| self.corrections[parent].conjugate());
+        if other == joint {
+            return (joint, self.corrections[*parent].conjugate() * self.reflected(value));
+        }
+        // What differs from rest is mirrored, so that a bone at its rest length keeps its own length.
+        (
+            other,
+            self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]),
+        )
+    }
+
+    /// M · v.
+    fn reflected(&self, v: Vec3) -> Vec3 {
+        v - 2.0 * self.normal * self.normal.dot(v)
+    }
+
+    /// M · q · M.
+    fn reflected_rotation(&self, q: Quat) -> Quat {
+        let v = -self.reflected(Vec3::new(q.x, q.y, q.z));
+        Quat::from_xyzw(v.x, v.y, v.z, q.w)
+    }
+}
+
+/// From the right to the left of the rest pose, unit length: by roles, else by names.
+fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<Vec3> {
+    let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
+    let by_role = Role::ALL.into_iter().filter(|role| role.side() == Some(Side::Left));
+    let mut differences: Vec<Vec3> = by_role.filter_map(|role| Some(at(role)? - at(role.mirrored())?)).collect();
+    if differences.is_empty() {
+        let joints = skeleton.joints();
+        for (a, first) in joints.iter().enumerate() {
+            let second = joints
+                .iter()
+                .enumerate()
+                .skip(a + 1)
+                .find(|(_, second)| are_counterparts(&first.name, &second.name));
+            differences.extend(second.map(|(b, _)| rest[a] - rest[b]));
+        }
+    }
+    // Which of a pair is the left one does not matter for a plane, but they must not cancel out.
+    let longest = differences.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let axis = differences
+        .iter()
+        .map(|&d| if d.dot(longest) < 0.0 { -d } else { d })
+        .sum::<Vec3>()
+        .try_normalize()
+        .unwrap_or(Vec3::X);
+    let snapped = [Vec3::X, Vec3::Y, Vec3::Z]
+        .into_iter()
+        .find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
+    Some(snapped.unwrap_or(axis))
+}
+
+/// What is needed to find the counterparts.
+struct Pairing<'a> {
+    skeleton: &'a Skeleton,
+    children: Vec<Vec<usize>>,
+    /// For every joint, the roles of itself and all joints below, as bits.
+    roles_below: Vec<u32>,
+    /// For every joint, the mean of itself, the joints and the end sites below, relative to its parent.
+    centres: Vec<Vec3>,
+    normal: Vec3,
+}
+
+impl<'a> Pairing<'a> {
+    fn new(skeleton: &'a Skeleton, roles: &Roles, rest: &[Vec3], normal: Vec3) -> Self {
+        let joints = skeleton.joints();
+        let mut children = vec![Vec::new(); joints.len()];
+        let mut roles_below = vec![0u32; joints.len()];
+        let mut sums: Vec<(Vec3, f32)> = rest.iter().map(|&p| (p, 1.0)).collect();
+        for role in Role::ALL {
+            if let Some(joint) = roles.get_within(role, joints.len()) {
+                roles_below[joint] |= 1 << role.index();
+            }
+        }
+        for (index, joint) in joints.iter().enumerate().rev() {
+            if let Some(end) = joint.end_site {
+                sums[index] = (sums[index].0 + rest[index] + end, sums[index].1 + 1.0);
+            }
+            if let Some(parent) = joint.parent {
+                children[parent].insert(0, index);
+                roles_below[parent] |= roles_below[index];
+                sums[parent] = (sums[parent].0 + sums[index].0, sums[parent].1 + sums[index].1);
+            }
+        }
+        let from = |index: usize| joints[index].parent.map_or(Vec3::ZERO, |parent| rest[parent]);
+        let centres = sums
+            .iter()
+            .enumerate()
+            .map(|(index, (sum, count))| *sum / *count - from(index))
+            .collect();
+        Self {
+            skeleton,
+            children,
+            roles_below,
+            centres,
+            normal,
+        }
+    }
+
+    /// The counterpart of every joint, from the root down: children of counterparts are compared with each other.
+    fn counterparts(&self) -> Vec<Option<usize>> {
+        let mut counterparts: Vec<Option<usize>> = vec![None; self.skeleton.len()];
+        counterparts[0] = Some(0);
+        for joint in 0..self.skeleton.len() {
+            // Parents come before children, so a joint's own counterpart is known when its children's turn comes.
+            let Some(other) = counterparts[joint].filter(|&other| joint <= other) else {
+                continue;
+            };
+            let mut candidates: Vec<(u8, f32, usize, usize)> = Vec::new();
+            for &a in &self.children[joint] {
+                for &b in self.children[other].iter().filter(|&&b| joint != other || a <= b) {
+                    candidates.extend(self.likeness(a, b, joint == other).map(|(rank, cost)| (rank, cost, a, b)));
+                }
+            }
+            candidates.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
+            for (_, _, a, b) in candidates {
+                if counterparts[a].is_none() && counterparts[b].is_none() {
+                    counterparts[a] = Some(b);
+                    counterparts[b] = Some(a);
+                }
+            }
+        }
+        counterparts
+    }
+
+    /// How good a pair two joints make: rank (roles, names, shape), then the distance by which the mirror image misses. `None` for no pair.
+    fn likeness(&self, a: usize, b: usize, in_the_middle: bool) -> Option<(u8, f32)> {
+        let reflected = self.centres[a] - 2.0 * self.normal * self.normal.dot(self.centres[a]);
+        let cost = reflected.distance(self.centres[b]);
+        let (below_a, below_b) = (self.roles_below[a], self.roles_below[b]);
+        if below_a != 0 || below_b != 0 {
+            // Roles decide where there are any, though one side may lack some of them.
+            let mirrored = mirrored_roles(below_a);
+            return if mirrored & below_b != 0 {
+                Some((0, cost))
+            } else {
+                (a == b).then_some((3, cost))
+            };
+        }
+        let joints = self.skeleton.joints();
+        if a != b && are_counterparts(&joints[a].name, &joints[b].name) {
+            return Some((1, cost));
+        }
+        let fits = cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
+        // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a tail.
+        if fits {
+            Some((2, cost))
+        } else {
+            (in_the_middle && a == b).then_some((3, cost))
+        }
+    }
+
+    /// The direction of the bone that starts at a joint, not of unit length: to the only child, or the only one that leads to a role; for a
+    /// leaf to its end site. Joints at the same place count as one.
+    fn bone(&self, joint: usize) -> Option<Vec3> {
+        let mut at = joint;
+        loop {
+            let children = &self.children[at];
+            let next = match children.as_slice() {
+                [] => return self.skeleton.joints()[at].end_site.filter(|end| end.length() > 1e-6),
+                [only] => *only,
+                several => {
+                    let mut leading = several.iter().filter(|&&child| self.roles_below[child] != 0);
+                    leading.next().copied().filter(|_| leading.next().is_none())?
+                }
+            };
+            let offset = self.skeleton.joints()[next].offset;
+            if offset.length() > 1e-6 {
+                return Some(offset);
+            }
+            at = next;
+        }
+    }
+}
+
+fn mirrored_roles(bits: u32) -> u32 {
+    Role::ALL
+        .into_iter()
+        .filter(|role| bits & (1 << role.index()) != 0)
+        .fold(0, |sum, role| sum | 1 << role.mirrored().index())
+}
+
+#[cfg(test)]
+mod tests;
