@@ -50,7 +50,7 @@ fn registration(c: &mut Criterion) {
     let skeleton = skeleton();
     let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
     let weights = limb_weights(&skeleton);
-    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights).expect("the clips fit");
+    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights, 1.75).expect("the clips fit");
     c.bench_function("window/first (once per pair of clips)", |bench| {
         bench.iter(|| {
             let mut search = prepared();
