@@ -1,6 +1,7 @@
 //! The Segue app: a desktop window natively, the whole page on the web.
 
 mod ui;
+mod render;
 
 /// A placeholder window until the app lands on top of the core.
 #[derive(Default)]

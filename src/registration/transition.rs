@@ -20,6 +20,14 @@ impl Region {
     /// The second half.
     pub const SECOND_HALF: Self = Self { from: 0.5, to: 1.0 };
 
+    /// One frame alone, of a clip of `frames`.
+    #[must_use]
+    pub fn frame(frame: usize, frames: usize) -> Self {
+        // Half a frame to both sides, so that rounding cannot move it to a neighbour.
+        let share = |at: f64| at / frames.max(1) as f64;
+        Self { from: share(frame as f64 - 0.5), to: share(frame as f64 + 0.5) }
+    }
+
     /// The frames at which a window of `window` frames may start, and whether the region had to grow to the whole clip because no window that
     /// starts in it ends before the clip does. `None` when the window is longer than the clip.
     fn starts(self, frames: usize, window: usize) -> Option<(Range<usize>, bool)> {

@@ -140,16 +140,16 @@ impl Session {
             "make" => Ok(Inputs::Make(made_id(params))),
             _ => self.motion_of(params.text(Key::A)).and_then(|a| {
                 let b = self.motion_of(params.text(Key::B))?;
-                Ok(Inputs::Blend(BlendInputs::new(a, b, params, match_window)))
+                self.blender.inputs(&a, &b, params, match_window).map(Inputs::Blend)
             }),
         };
         match inputs {
-            Ok(inputs) if pane.inputs.as_ref() == Some(&inputs) && !self.blender.has_news() => {}
+            Ok(inputs) if pane.inputs.as_ref() == Some(&inputs) => {}
             Ok(inputs) => {
                 let outcome = match &inputs {
                     Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
                     Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
-                    Inputs::Blend(blend) => self.blender.run(blend),
+                    Inputs::Blend(blend) => blend.run(),
                 };
                 match outcome {
                     Ok(outcome) => {

@@ -1,12 +1,11 @@
 use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
-use crate::clip::{Interpolation, resample};
+use crate::clip::{Contacts, Interpolation, resample, retarget};
 use crate::math::Planar;
 use crate::metrics::TransitionMetrics;
 use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
-use crate::skeleton::retarget;
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -38,6 +37,7 @@ struct Pair {
     b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
     incoming: Arc<Motion>,
+    sources: [blend::Source; 2],
 }
 
 impl Pair {
@@ -198,8 +198,38 @@ impl BlendInputs {
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let Self { pair, place, options } = self;
-        let (a, b) = (&pair.a, &pair.incoming);
-        let _ = (a, b, place, options);
-        todo!()
+        let [a, b] = &pair.sources;
+        let made = blend::dissolve(a, place.leave, b, place.enter, options).map_err(|error| error.to_string())?;
+        let fps = made.clip.fps();
+        let secs = |frame: usize| frame as f64 / fps;
+        let window = made.transition.clone();
+        let transition = Transition {
+            start_secs: secs(window.start),
+            end_secs: secs(window.end.max(window.start)),
+            leave_a_secs: secs(place.leave),
+            enter_b_secs: secs(place.enter),
+            window_frames: window.len(),
+            distance_cm: place.distance_cm,
+        };
+        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, window.len());
+        let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
+        let motion = Motion {
+            clip: Arc::new(made.clip.with_name(name)),
+            roles: pair.a.roles.clone(),
+            contacts,
+            ground_frames: made.frames,
+        };
+        let metrics = Vec::new();
+        let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        };
+        let sources = vec![
+            source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            source(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
+        ];
+        Ok(Outcome { motion: Arc::new(motion), sources, transition: Some(transition), metrics })
     }
 }
