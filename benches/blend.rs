@@ -5,9 +5,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
+use segue::blend::{DissolveOptions, RootBlend, Source, dissolve};
 use segue::clip::Clip;
 use segue::registration::{SearchOptions, TransitionSearch, limb_weights};
-use segue::skeleton::{Joint, Skeleton};
+use segue::skeleton::{Joint, Roles, Skeleton};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -85,5 +86,18 @@ fn registration(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, registration);
+fn blending(c: &mut Criterion) {
+    let skeleton = skeleton();
+    let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
+    let roles = Roles::detect(&skeleton);
+    let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
+        c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
+            bench.iter(|| dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits"));
+        });
+    }
+}
+
+criterion_group!(benches, registration, blending);
 criterion_main!(benches);
