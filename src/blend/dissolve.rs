@@ -55,14 +55,16 @@ impl Source {
     /// Measures where the character stands and faces in every frame, and the joint that carries it. O(frames × joints).
     #[must_use]
     pub fn new(clip: Arc<Clip>, roles: &Roles) -> Self {
-        let (frames, motion_root) = (character_frames(&clip, roles), motion_root(&clip, roles));
+        let frames = character_frames(&clip, roles);
+        Self::with_frames(clip, roles, frames)
+    }
+
+    /// Likewise, where `frames` ([`character_frames`] of the clip) are known already.
+    #[must_use]
+    pub fn with_frames(clip: Arc<Clip>, roles: &Roles, frames: Vec<Planar>) -> Self {
+        let motion_root = motion_root(&clip, roles);
         let weights = limb_weights(clip.skeleton());
-        Self {
-            clip,
-            frames,
-            motion_root,
-            weights,
-        }
+        Self { clip, frames, motion_root, weights }
     }
 
     /// The clip.

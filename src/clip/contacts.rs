@@ -80,6 +80,27 @@ impl Contacts {
         Self { planted }
     }
 
+    /// The contacts of a result that plays `outgoing` up to frame `leave`, then `window` overlapped frames, then `incoming`, which is entered at its
+    /// frame `enter`. In the window the first half of the frames has the contacts of the outgoing clip, the second those of the incoming one: the
+    /// clip that has the greater weight.
+    #[must_use]
+    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, window: usize) -> Self {
+        let from_incoming = leave + window / 2;
+        let frames = (leave + incoming.frames()).saturating_sub(enter).max(from_incoming);
+        let planted = Side::BOTH.map(|side| {
+            (0..frames)
+                .map(|frame| {
+                    if frame < from_incoming {
+                        outgoing.planted(side, frame)
+                    } else {
+                        incoming.planted(side, (frame + enter).saturating_sub(leave))
+                    }
+                })
+                .collect()
+        });
+        Self { planted }
+    }
+
     /// The number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {

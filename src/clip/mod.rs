@@ -13,8 +13,8 @@ mod sampling;
 mod storage;
 mod velocity;
 
-pub use curves::{CurveKind, joint_curve};
 pub use contacts::{ContactOptions, Contacts, ground_height};
+pub use curves::{CurveKind, joint_curve};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget};

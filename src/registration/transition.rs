@@ -25,7 +25,10 @@ impl Region {
     pub fn frame(frame: usize, frames: usize) -> Self {
         // Half a frame to both sides, so that rounding cannot move it to a neighbour.
         let share = |at: f64| at / frames.max(1) as f64;
-        Self { from: share(frame as f64 - 0.5), to: share(frame as f64 + 0.5) }
+        Self {
+            from: share(frame as f64 - 0.5),
+            to: share(frame as f64 + 0.5),
+        }
     }
 
     /// The frames at which a window of `window` frames may start, and whether the region had to grow to the whole clip because no window that

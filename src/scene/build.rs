@@ -24,7 +24,7 @@ pub struct Colors {
 /// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their way, and the bodies of skeletons.
 #[derive(Debug, Default)]
 pub struct Director {
-    stage: Stage,
+    stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
@@ -51,15 +51,16 @@ impl Director {
         look: Look,
         colors: &Colors,
         dt_secs: f32,
-    ) -> &Stage {
+    ) -> Arc<Stage> {
         let params = session.params();
         let now = session.now_secs();
-        self.stage.look = look;
-        self.stage.pixels_per_point = pixels_per_point;
-        self.stage.panes.resize_with(shown.len(), Pane::default);
+        let stage = Arc::make_mut(&mut self.stage);
+        stage.look = look;
+        stage.pixels_per_point = pixels_per_point;
+        stage.panes.resize_with(shown.len(), Pane::default);
+        let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
-        let mut panes = std::mem::take(&mut self.stage.panes);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
@@ -68,8 +69,8 @@ impl Director {
                 self.aim(index, outcome, params, now, dt_secs, pane);
             }
         }
-        self.stage.panes = panes;
-        &self.stage
+        Arc::make_mut(&mut self.stage).panes = panes;
+        Arc::clone(&self.stage)
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -86,16 +87,14 @@ impl Director {
 
     fn body(&mut self, motion: &Motion) -> Arc<Body> {
         let skeleton = motion.clip.skeleton();
-        let roles = motion.roles.fingerprint();
-        let known = self
-            .bodies
-            .iter()
-            .find(|(known, known_roles, _)| std::ptr::eq(known.as_ptr(), Arc::as_ptr(skeleton)) && *known_roles == roles);
-        if let Some((.., body)) = known {
+        let known =
+            |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles;
+        if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
         let body = Arc::new(Body::new(skeleton, Some(&motion.roles)));
-        self.bodies.push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
+        self.bodies
+            .push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
         body
     }
 

@@ -56,7 +56,10 @@ impl CameraRig {
     /// Takes direction, distance and lens of the goal at once; only the target stays on its way. For a hand that turns the camera: what it
     /// does is not to be smoothed, what the camera follows is.
     pub fn turn_at_once(&mut self) {
-        self.shown = Camera { target: self.shown.target, ..self.goal };
+        self.shown = Camera {
+            target: self.shown.target,
+            ..self.goal
+        };
         (self.yaw_velocity, self.pitch_velocity, self.zoom_velocity) = (0.0, 0.0, 0.0);
     }
 

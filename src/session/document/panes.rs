@@ -68,7 +68,7 @@ impl Session {
     }
 
     /// The motion of a clip: made or asked for when it is not there yet.
-    fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, String> {
+    pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, String> {
         let Some(entry) = self.library.find(reference) else {
             return Err(format!(
                 "`{}` is not here: drop its file, or choose another clip.",
@@ -100,7 +100,7 @@ impl Session {
     }
 
     /// Recomputes the panes whose inputs have changed.
-    fn refresh(&mut self) {
+    pub(super) fn refresh(&mut self) {
         self.revision += 1;
         let compare = self
             .compare()
@@ -193,4 +193,3 @@ fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
         params.number(Key::BlendWindow) as usize
     }
 }
-

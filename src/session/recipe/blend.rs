@@ -2,7 +2,6 @@ use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
 use crate::clip::{Contacts, Interpolation, resample, retarget};
 use crate::math::Planar;
-use crate::metrics::TransitionMetrics;
 use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -57,10 +56,12 @@ impl Pair {
             let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
             Arc::new(Motion::analyze(clip, Some(roles)))
         };
+        let sources = [a, &incoming].map(|m| blend::Source::with_frames(Arc::clone(&m.clip), &m.roles, m.ground_frames.clone()));
         Ok(Self {
             a: Arc::clone(a),
             b: Arc::clone(b),
             incoming,
+            sources,
         })
     }
 }
@@ -129,7 +130,13 @@ impl Blender {
         }
         let pair = Arc::new(Pair::new(a, b)?);
         let weights = limb_weights(pair.a.clip.skeleton());
-        let search = TransitionSearch::new(Arc::clone(&pair.a.clip), Arc::clone(&pair.incoming.clip), &weights);
+        let body_height = pair.a.roles.body_height(pair.a.clip.skeleton());
+        let search = TransitionSearch::new(
+            Arc::clone(&pair.a.clip),
+            Arc::clone(&pair.incoming.clip),
+            &weights,
+            body_height.into(),
+        );
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(&pair));
         self.compare_rows(ROWS_AT_ONCE);
@@ -230,6 +237,11 @@ impl BlendInputs {
             source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             source(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
         ];
-        Ok(Outcome { motion: Arc::new(motion), sources, transition: Some(transition), metrics })
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources,
+            transition: Some(transition),
+            metrics,
+        })
     }
 }
