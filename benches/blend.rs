@@ -5,9 +5,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
+use segue::blend::{DissolveOptions, RootBlend, Source, dissolve};
 use segue::clip::Clip;
 use segue::registration::{SearchOptions, TransitionSearch, limb_weights};
-use segue::skeleton::{Joint, Skeleton};
+use segue::skeleton::{Joint, Roles, Skeleton};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -22,7 +23,13 @@ fn skeleton() -> Arc<Skeleton> {
         let name = format!("Joint{index}");
         let turn = Quat::from_rotation_y(chain as f32);
         let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
-        Joint { name, parent, offset, end_site: None, channels: vec![] }
+        Joint {
+            name,
+            parent,
+            offset,
+            end_site: None,
+            channels: vec![],
+        }
     };
     Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
 }
@@ -44,7 +51,7 @@ fn registration(c: &mut Criterion) {
     let skeleton = skeleton();
     let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
     let weights = limb_weights(&skeleton);
-    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights).expect("the clips fit");
+    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights, 1.75).expect("the clips fit");
     c.bench_function("window/first (once per pair of clips)", |bench| {
         bench.iter(|| {
             let mut search = prepared();
@@ -59,15 +66,38 @@ fn registration(c: &mut Criterion) {
             bench.iter(|| search.best(black_box(&SearchOptions::new(window))).expect("the window fits"));
         });
         c.bench_function(&format!("window/cached sums, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("complete"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("complete")
+            });
         });
         let mut slow = c.benchmark_group("slow");
         slow.sample_size(10);
         slow.bench_function(format!("window/direct, {window} frames"), |bench| {
-            bench.iter(|| search.sums().distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES)).expect("finite"));
+            bench.iter(|| {
+                search
+                    .sums()
+                    .distances_directly(black_box(window), &(0..FRAMES), &(0..FRAMES))
+                    .expect("finite")
+            });
         });
     }
 }
 
-criterion_group!(benches, registration);
+fn blending(c: &mut Criterion) {
+    let skeleton = skeleton();
+    let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
+    let roles = Roles::detect(&skeleton);
+    let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
+        c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
+            bench.iter(|| dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits"));
+        });
+    }
+}
+
+criterion_group!(benches, registration, blending);
 criterion_main!(benches);

@@ -1,5 +1,8 @@
 //! The Segue app: a desktop window natively, the whole page on the web.
 
+mod ui;
+mod render;
+
 /// A placeholder window until the app lands on top of the core.
 #[derive(Default)]
 struct Hello;
@@ -12,11 +15,7 @@ impl eframe::App for Hello {
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> eframe::Result {
-    eframe::run_native(
-        "Segue",
-        eframe::NativeOptions::default(),
-        Box::new(|_| Ok(Box::<Hello>::default())),
-    )
+    eframe::run_native("Segue", eframe::NativeOptions::default(), Box::new(|_| Ok(Box::<Hello>::default())))
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -29,11 +28,7 @@ fn main() {
             .and_then(|e| e.dyn_into::<eframe::web_sys::HtmlCanvasElement>().ok())
             .expect("the page has a canvas with the id `segue`");
         eframe::WebRunner::new()
-            .start(
-                canvas,
-                eframe::WebOptions::default(),
-                Box::new(|_| Ok(Box::<Hello>::default())),
-            )
+            .start(canvas, eframe::WebOptions::default(), Box::new(|_| Ok(Box::<Hello>::default())))
             .await
             .expect("eframe starts");
     });

@@ -1,1 +1,57 @@
-//! blend
+//! From one clip to another: weights, placing one motion on another, and the dissolve.
+//!
+//! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in which
+//! `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`: the convention of [`crate::registration`].
+
+mod dissolve;
+mod place;
+mod weight;
+
+pub use dissolve::{Dissolve, DissolveOptions, RootBlend, Source, dissolve};
+pub use place::{align_facing, align_onto};
+pub use weight::WeightLaw;
+
+use crate::clip::ClipError;
+use crate::registration::RegistrationError;
+
+/// Why two clips cannot be blended.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BlendError {
+    /// The clips move different bodies.
+    #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
+    Skeletons {
+        /// Name of the outgoing clip.
+        a: String,
+        /// Name of the incoming clip.
+        b: String,
+    },
+    /// The frame rates differ.
+    #[error("the clips run at {a_fps} and {b_fps} frames per second: resample one to the other's rate first")]
+    FrameRates {
+        /// Frame rate of the outgoing clip.
+        a_fps: f64,
+        /// Frame rate of the incoming clip.
+        b_fps: f64,
+    },
+    /// The window does not fit behind the frame where it starts.
+    #[error(
+        "{window} frames from frame {at} do not fit into the {which} clip of {frames} frames: lower the window to {} or start it earlier",
+        frames.saturating_sub(*at)
+    )]
+    Window {
+        /// "outgoing" or "incoming".
+        which: &'static str,
+        /// Frames of that clip.
+        frames: usize,
+        /// The window's first frame.
+        at: usize,
+        /// Frames of the window.
+        window: usize,
+    },
+    /// The windows cannot be laid on each other.
+    #[error(transparent)]
+    Registration(#[from] RegistrationError),
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}

@@ -21,7 +21,13 @@ pub struct ContactOptions {
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { enter_height_m: 0.04, leave_height_m: 0.07, enter_speed_mps: 0.4, leave_speed_mps: 0.8, min_secs: 0.06 }
+        Self {
+            enter_height_m: 0.04,
+            leave_height_m: 0.07,
+            enter_speed_mps: 0.4,
+            leave_speed_mps: 0.8,
+            min_secs: 0.06,
+        }
     }
 }
 
@@ -50,7 +56,9 @@ impl Contacts {
         let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
         for kind in &points {
             let heights: Vec<f32> = kind.iter().flat_map(|(_, way)| way.iter().map(|p| p.y)).collect();
-            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else { continue };
+            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else {
+                continue;
+            };
             for (side, way) in kind {
                 let mut down = false;
                 for (frame, planted) in planted[side.index()].iter_mut().enumerate() {
@@ -72,6 +80,27 @@ impl Contacts {
         Self { planted }
     }
 
+    /// The contacts of a result that plays `outgoing` up to frame `leave`, then `window` overlapped frames, then `incoming`, which is entered at its
+    /// frame `enter`. In the window the first half of the frames has the contacts of the outgoing clip, the second those of the incoming one: the
+    /// clip that has the greater weight.
+    #[must_use]
+    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, window: usize) -> Self {
+        let from_incoming = leave + window / 2;
+        let frames = (leave + incoming.frames()).saturating_sub(enter).max(from_incoming);
+        let planted = Side::BOTH.map(|side| {
+            (0..frames)
+                .map(|frame| {
+                    if frame < from_incoming {
+                        outgoing.planted(side, frame)
+                    } else {
+                        incoming.planted(side, (frame + enter).saturating_sub(leave))
+                    }
+                })
+                .collect()
+        });
+        Self { planted }
+    }
+
     /// The number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
@@ -87,7 +116,10 @@ impl Contacts {
     /// The frames during which the foot of `side` is on the ground, as ranges in order of time.
     #[must_use]
     pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {
-        runs(&self.planted[side.index()]).filter(|(value, _)| *value).map(|(_, range)| range).collect()
+        runs(&self.planted[side.index()])
+            .filter(|(value, _)| *value)
+            .map(|(_, range)| range)
+            .collect()
     }
 }
 

@@ -1,6 +1,9 @@
 //! Clips: frames × joints of a skeleton, and what can be asked of one clip alone.
 
 mod contacts;
+mod curves;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod mirror;
 mod poses;
 mod resample;
@@ -11,6 +14,7 @@ mod storage;
 mod velocity;
 
 pub use contacts::{ContactOptions, Contacts, ground_height};
+pub use curves::{CurveKind, joint_curve};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget};

@@ -18,14 +18,26 @@ impl Clip {
         let mut tracks: Vec<JointTranslations> = Vec::new();
         for pose in poses {
             if pose.rotations.len() != skeleton.len() {
-                return Err(ClipError::Length { what: "rotations of a pose", found: pose.rotations.len(), expected: skeleton.len() });
+                return Err(ClipError::Length {
+                    what: "rotations of a pose",
+                    found: pose.rotations.len(),
+                    expected: skeleton.len(),
+                });
             }
             if root_translations.is_empty() {
-                tracks = pose.translations.iter().map(|&(joint, _)| JointTranslations { joint, values: Vec::new() }).collect();
+                tracks = pose
+                    .translations
+                    .iter()
+                    .map(|&(joint, _)| JointTranslations { joint, values: Vec::new() })
+                    .collect();
             }
             if pose.translations.len() != tracks.len() {
                 let (found, expected) = (pose.translations.len(), tracks.len());
-                return Err(ClipError::Length { what: "translations of a pose", found, expected });
+                return Err(ClipError::Length {
+                    what: "translations of a pose",
+                    found,
+                    expected,
+                });
             }
             for (track, &(joint, value)) in tracks.iter_mut().zip(&pose.translations) {
                 if track.joint != joint {
@@ -39,4 +51,33 @@ impl Clip {
         Self::new(name, skeleton, fps, rotations, root_translations)?.with_translations(tracks)
     }
 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::fixtures::wander;
+    use crate::skeleton::fixtures;
+    use glam::Vec3;
 
+    #[test]
+    fn a_clip_comes_back_from_its_poses() {
+        let clip = wander(&fixtures::cmu_bvh(), 7, 3);
+        let values = (0..7).map(|i| Vec3::X * i as f32).collect();
+        let clip = clip.with_translations(vec![JointTranslations { joint: 4, values }]).unwrap();
+        let poses = (0..clip.frames()).map(|frame| clip.pose(frame));
+        assert_eq!(Clip::from_poses(clip.name(), clip.skeleton().clone(), clip.fps(), poses), Ok(clip));
+    }
+
+    #[test]
+    fn poses_that_do_not_fit_each_other_are_refused() {
+        let clip = wander(&fixtures::cmu_bvh(), 2, 3);
+        let make = |a: Pose, b: Pose| Clip::from_poses("x", clip.skeleton().clone(), 30.0, [a, b]);
+        let (plain, mut short, mut moved) = (clip.pose(0), clip.pose(1), clip.pose(1));
+        short.rotations.pop();
+        moved.translations.push((2, Vec3::ONE));
+        assert!(matches!(make(plain.clone(), short), Err(ClipError::Length { .. })));
+        assert!(matches!(make(plain, moved.clone()), Err(ClipError::Length { .. })));
+        let mut other = moved.clone();
+        other.translations[0].0 = 3;
+        assert_eq!(make(moved, other), Err(ClipError::Translations(3)));
+    }
+}

@@ -17,17 +17,33 @@ pub fn resample(clip: &Clip, fps: f64, interpolation: Interpolation) -> Result<C
     if fps == clip.fps() || clip.frames() == 0 {
         // An empty clip has no poses, but it does have a rate.
         let same = Clip::new(clip.name(), clip.skeleton().clone(), fps, Vec::new(), Vec::new());
-        return if clip.frames() == 0 { Ok(same?.with_provenance(clip.provenance())) } else { Ok(clip.clone()) };
+        return if clip.frames() == 0 {
+            Ok(same?.with_provenance(clip.provenance()))
+        } else {
+            Ok(clip.clone())
+        };
     }
     let duration_secs = clip.duration_secs();
-    let steps = if duration_secs > 0.0 { ((duration_secs * fps).round() as usize).max(1) } else { 0 };
+    let steps = if duration_secs > 0.0 {
+        ((duration_secs * fps).round() as usize).max(1)
+    } else {
+        0
+    };
     let mut rotations = Vec::with_capacity((steps + 1) * clip.skeleton().len());
     let mut root_translations = Vec::with_capacity(steps + 1);
-    let mut tracks: Vec<JointTranslations> =
-        clip.translations().iter().map(|track| JointTranslations { joint: track.joint, values: Vec::with_capacity(steps + 1) }).collect();
+    let mut tracks: Vec<JointTranslations> = clip
+        .translations()
+        .iter()
+        .map(|track| JointTranslations {
+            joint: track.joint,
+            values: Vec::with_capacity(steps + 1),
+        })
+        .collect();
     for step in 0..=steps {
         let time_secs = duration_secs * step as f64 / steps.max(1) as f64;
-        let Some(pose) = clip.sample(time_secs, interpolation) else { continue };
+        let Some(pose) = clip.sample(time_secs, interpolation) else {
+            continue;
+        };
         root_translations.push(pose.root_translation);
         rotations.extend_from_slice(&pose.rotations);
         for (track, (_, value)) in tracks.iter_mut().zip(pose.translations) {

@@ -30,7 +30,11 @@ pub fn motion_root(clip: &Clip, roles: &Roles) -> usize {
         }
     }
     let moves = |bound: &Option<(Vec3, Vec3)>| bound.is_some_and(|(low, high)| (high - low).max_element() > MOVES_M);
-    candidates.iter().zip(&bounds).find(|(_, bound)| moves(bound)).map_or(0, |(&joint, _)| joint)
+    candidates
+        .iter()
+        .zip(&bounds)
+        .find(|(_, bound)| moves(bound))
+        .map_or(0, |(&joint, _)| joint)
 }
 
 /// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or nowhere (a character lying on its side).
@@ -46,10 +50,16 @@ pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
         *world.rotations.first()? * Vec3::Z
     } else {
         // Left × up = forward.
-        (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?.cross(Vec3::Y)
+        (hips.unwrap_or_default() + shoulders.unwrap_or_default())
+            .try_normalize()?
+            .cross(Vec3::Y)
     };
     let forward = Vec3::new(forward.x, 0.0, forward.z);
-    if forward.length() < LEAST_ACROSS { None } else { forward.try_normalize() }
+    if forward.length() < LEAST_ACROSS {
+        None
+    } else {
+        forward.try_normalize()
+    }
 }
 
 /// Where the character stands on the ground and what it faces, frame by frame: `world_from_character`.

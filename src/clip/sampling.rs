@@ -30,17 +30,13 @@ impl Clip {
         // `part > 0` means that there is a next frame.
         let (before, next, after) = (frame.saturating_sub(1), frame + 1, (frame + 2).min(last));
         let position = |of: &dyn Fn(usize) -> Vec3| match interpolation {
-            Interpolation::Cubic => {
-                curve::catmull_rom(of(before), of(frame), of(next), of(after), part)
-            }
+            Interpolation::Cubic => curve::catmull_rom(of(before), of(frame), of(next), of(after), part),
             _ => of(frame).lerp(of(next), part),
         };
         let rotation = |joint: usize| {
             let of = |f: usize| self.rotations(f)[joint];
             match interpolation {
-                Interpolation::Cubic => {
-                    cubic_rotation(of(before), of(frame), of(next), of(after), part)
-                }
+                Interpolation::Cubic => cubic_rotation(of(before), of(frame), of(next), of(after), part),
                 _ => quat::slerp(of(frame), of(next), part),
             }
         };

@@ -5,9 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The axis of a file that points up.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum UpAxis {
     /// +Y is up, as inside Segue.
     #[default]
@@ -127,10 +125,7 @@ impl Clip {
     ///
     /// # Errors
     /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is not the number of frames.
-    pub fn with_translations(
-        mut self,
-        translations: Vec<JointTranslations>,
-    ) -> Result<Self, ClipError> {
+    pub fn with_translations(mut self, translations: Vec<JointTranslations>) -> Result<Self, ClipError> {
         let mut previous = 0;
         for track in &translations {
             if track.joint <= previous || track.joint >= self.skeleton.len() {
@@ -242,11 +237,7 @@ impl Clip {
         Pose {
             root_translation: self.root_translations[frame],
             rotations: self.rotations(frame).to_vec(),
-            translations: self
-                .translations
-                .iter()
-                .map(|track| (track.joint, track.values[frame]))
-                .collect(),
+            translations: self.translations.iter().map(|track| (track.joint, track.values[frame])).collect(),
         }
     }
 
@@ -255,17 +246,8 @@ impl Clip {
     /// # Panics
     /// When there is no such frame.
     pub fn world_pose_into(&self, frame: usize, world: &mut WorldPose) {
-        let moved = self
-            .translations
-            .iter()
-            .map(|track| (track.joint, track.values[frame]));
-        world_pose_into(
-            &self.skeleton,
-            self.root_translations[frame],
-            self.rotations(frame),
-            moved,
-            world,
-        );
+        let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
+        world_pose_into(&self.skeleton, self.root_translations[frame], self.rotations(frame), moved, world);
     }
 
     /// Forward kinematics of one frame.

@@ -21,12 +21,20 @@ pub fn velocities(clip: &Clip, frame: usize) -> Velocities {
     let (before, after) = (frame.saturating_sub(1), (frame + 1).min(clip.frames() - 1));
     let joints = clip.skeleton().len();
     if before == after {
-        return Velocities { linear: vec![Vec3::ZERO; joints], angular: vec![Vec3::ZERO; joints] };
+        return Velocities {
+            linear: vec![Vec3::ZERO; joints],
+            angular: vec![Vec3::ZERO; joints],
+        };
     }
     let dt_secs = (after - before) as f32 * clip.dt_secs();
     let (from, to) = (clip.world_pose(before), clip.world_pose(after));
     Velocities {
         linear: from.positions.iter().zip(&to.positions).map(|(&a, &b)| (b - a) / dt_secs).collect(),
-        angular: from.rotations.iter().zip(&to.rotations).map(|(&a, &b)| quat::angular_velocity(a, b, dt_secs)).collect(),
+        angular: from
+            .rotations
+            .iter()
+            .zip(&to.rotations)
+            .map(|(&a, &b)| quat::angular_velocity(a, b, dt_secs))
+            .collect(),
     }
 }

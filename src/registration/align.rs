@@ -114,7 +114,7 @@ impl PairMoments {
         let ground = |v: DVec3| DVec2::new(v.x, v.z);
         let shift = (p - turned(q)) / w + ground(source_centre) - turned(ground(target_centre));
         let distance = (spread - 2.0 * strength + self.height).max(0.0);
-        if !(distance.is_finite() && shift.is_finite() && yaw.is_finite()) || !spread.is_finite() {
+        if !(distance.is_finite() && spread.is_finite() && shift.is_finite() && yaw.is_finite()) {
             return Err(RegistrationError::NotFinite);
         }
         Ok(Alignment {

@@ -21,7 +21,7 @@ mod transition;
 
 pub use align::{Alignment, align};
 pub use grid::{DistanceGrid, PairSums, Progress};
-pub use points::{REFERENCE_HEIGHT_M, body_height, limb_weights, rms_cm, uniform_weights};
+pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 
 /// Why two motions cannot be laid on each other.

@@ -7,7 +7,7 @@ pub const REFERENCE_HEIGHT_M: f64 = 1.75;
 /// The root-mean-square distance per point, centimetres on a body of [`REFERENCE_HEIGHT_M`].
 ///
 /// `distance` is a weighted sum of squared distances (m²) over points that weigh `weight` in all (section A's D and W), measured on a body
-/// `body_height` metres tall: `100 · √(D / W) · 1.75 / height`. A height or weight that is not above 0 leaves nothing to scale by; the
+/// `body_height` metres tall ([`crate::skeleton::Roles::body_height`]): `100 · √(D / W) · 1.75 / height`. A height or weight that is not above 0 leaves nothing to scale by; the
 /// result is then NaN.
 #[must_use]
 pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
@@ -15,26 +15,6 @@ pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
         return f64::NAN;
     }
     100.0 * (distance.max(0.0) / weight).sqrt() * REFERENCE_HEIGHT_M / body_height
-}
-
-/// How tall a body is, metres: the largest extent of its rest pose along any axis, end sites included.
-///
-/// Rest poses stand upright, lie along another axis, or spread their arms; an adult's arm span is close to the height, so that the largest
-/// extent serves for all of them. `None` for a skeleton without extent.
-#[must_use]
-pub fn body_height(skeleton: &Skeleton) -> Option<f64> {
-    let rest = skeleton.rest_positions();
-    let tips = skeleton
-        .joints()
-        .iter()
-        .zip(&rest)
-        .filter_map(|(joint, &at)| joint.end_site.map(|end| at + end));
-    let (mut low, mut high) = (rest.first().copied()?, rest.first().copied()?);
-    for point in rest.iter().copied().chain(tips) {
-        (low, high) = (low.min(point), high.max(point));
-    }
-    let extent = f64::from((high - low).max_element());
-    (extent.is_finite() && extent > 1e-6).then_some(extent)
 }
 
 /// The same weight for every joint; they add up to 1.
@@ -64,8 +44,7 @@ pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
     if !(total.is_finite() && total > 0.0) {
         return uniform_weights(skeleton);
     }
-    weights.iter_mut().for_each(|weight| *weight /= total);
-    weights
+    weights.into_iter().map(|weight| weight / total).collect()
 }
 
 /// The sum of the weights.
@@ -113,14 +92,12 @@ mod tests {
         for (weight, expected) in weights.iter().zip([3.0 / 9.0, 4.0 / 9.0, 2.0 / 9.0]) {
             assert!((weight - expected).abs() < 1e-6);
         }
-        assert!((body_height(&skeleton).unwrap() - 1.0).abs() < 1e-6);
     }
 
     #[test]
-    fn a_skeleton_without_lengths_has_uniform_weights_and_no_height() {
+    fn a_skeleton_without_lengths_has_uniform_weights() {
         let skeleton = Skeleton::new(vec![joint(None, Vec3::ZERO, None), joint(Some(0), Vec3::ZERO, None)]).unwrap();
         assert_eq!(limb_weights(&skeleton), [0.5, 0.5]);
-        assert_eq!(body_height(&skeleton), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-use super::{Alignment, PairSums, Progress, RegistrationError, body_height, rms_cm};
+use super::{Alignment, PairSums, Progress, RegistrationError, rms_cm};
 use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,6 +19,17 @@ impl Region {
     pub const FIRST_HALF: Self = Self { from: 0.0, to: 0.5 };
     /// The second half.
     pub const SECOND_HALF: Self = Self { from: 0.5, to: 1.0 };
+
+    /// One frame alone, of a clip of `frames`.
+    #[must_use]
+    pub fn frame(frame: usize, frames: usize) -> Self {
+        // Half a frame to both sides, so that rounding cannot move it to a neighbour.
+        let share = |at: f64| at / frames.max(1) as f64;
+        Self {
+            from: share(frame as f64 - 0.5),
+            to: share(frame as f64 + 0.5),
+        }
+    }
 
     /// The frames at which a window of `window` frames may start, and whether the region had to grow to the whole clip because no window that
     /// starts in it ends before the clip does. `None` when the window is longer than the clip.
@@ -63,18 +74,18 @@ pub struct Transition {
     pub enter: usize,
     /// How the incoming window lies best on the outgoing one (`outgoing_from_incoming`), and what distance is left.
     pub alignment: Alignment,
-    /// The root-mean-square distance per point, centimetres on the reference body (NaN for a skeleton without extent).
+    /// The root-mean-square distance per point, centimetres on the reference body.
     pub rms_cm: f64,
     /// A clip was too short for the region asked for, and all of it was searched.
     pub grown: bool,
 }
 
 /// How many minima of the coarse grid are looked at closely.
-const CANDIDATES: usize = 6;
+const CANDIDATES: usize = 4;
 
 /// The search for the best transition between two clips, with everything cached that does not depend on the window.
 ///
-/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)` frames; the six lowest minima of that
+/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)` frames; the four lowest minima of that
 /// grid are searched again at the full frame rate, within one stride. The answer's root-mean-square distance is within 5 % or 0.2 cm of the
 /// smallest over *all* pairs of frames (tested against them); an answer that is refined is exact for the pair it names.
 #[derive(Clone, Debug)]
@@ -82,15 +93,17 @@ pub struct TransitionSearch {
     outgoing: Arc<Clip>,
     incoming: Arc<Clip>,
     weights: Vec<f64>,
+    body_height: f64,
     sums: PairSums,
 }
 
 impl TransitionSearch {
-    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]).
+    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]), `body_height` (metres,
+    /// [`crate::skeleton::Roles::body_height`]) is what distances are scaled by.
     ///
     /// # Errors
     /// [`RegistrationError`] when a clip is empty, the skeletons or frame rates differ, or the weights do not fit.
-    pub fn new(outgoing: Arc<Clip>, incoming: Arc<Clip>, weights: &[f64]) -> Result<Self, RegistrationError> {
+    pub fn new(outgoing: Arc<Clip>, incoming: Arc<Clip>, weights: &[f64], body_height: f64) -> Result<Self, RegistrationError> {
         let (source_fps, target_fps) = (outgoing.fps(), incoming.fps());
         if (source_fps - target_fps).abs() > 1e-4 * source_fps {
             return Err(RegistrationError::FrameRates { source_fps, target_fps });
@@ -102,6 +115,7 @@ impl TransitionSearch {
             outgoing,
             incoming,
             weights: weights.to_vec(),
+            body_height,
             sums,
         })
     }
@@ -149,12 +163,11 @@ impl TransitionSearch {
             return Err(RegistrationError::Empty { which: "outgoing" });
         };
         let alignment = exact(&self.outgoing, i, &self.incoming, j, window, &self.weights)?;
-        let height = body_height(self.outgoing.skeleton()).unwrap_or(f64::NAN);
         Ok(Transition {
             leave: i,
             enter: j,
             alignment,
-            rms_cm: rms_cm(alignment.distance, alignment.weight, height),
+            rms_cm: rms_cm(alignment.distance, alignment.weight, self.body_height),
             grown: leave_grew || enter_grew,
         })
     }
@@ -207,9 +220,10 @@ pub fn best_transition(
     outgoing: &Arc<Clip>,
     incoming: &Arc<Clip>,
     weights: &[f64],
+    body_height: f64,
     options: &SearchOptions,
 ) -> Result<Transition, RegistrationError> {
-    let mut search = TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights)?;
+    let mut search = TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights, body_height)?;
     search.sums.finish();
     search.best(options)
 }

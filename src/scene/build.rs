@@ -2,7 +2,7 @@ use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, View
 use crate::clip::Interpolation;
 use crate::math::Planar;
 use crate::session::{self, Key, Motion, Outcome, Params, Session, Slot, joint_of};
-use crate::skeleton::{Role, Side, Skeleton, WorldPose, world_pose};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
 use glam::Vec3;
 use std::sync::{Arc, Weak};
 
@@ -24,9 +24,9 @@ pub struct Colors {
 /// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their way, and the bodies of skeletons.
 #[derive(Debug, Default)]
 pub struct Director {
-    stage: Stage,
+    stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
-    bodies: Vec<(Weak<Skeleton>, u64, Arc<Body>)>,
+    bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
 /// A ghost fades in before the transition and out behind it, over this long.
@@ -41,25 +41,27 @@ const VIEW_HALF_LIFE_SECS: f32 = 0.06;
 const CUT_METRES: f32 = 1.5;
 
 impl Director {
-    /// Everything that is to be seen now, in panes at `viewports` (physical pixels). `dt_secs` moves the cameras on.
+    /// Everything that is to be seen now: the session's panes that are shown, each with its place (physical pixels). `dt_secs` moves the
+    /// cameras on.
     pub fn stage(
         &mut self,
         session: &Session,
-        viewports: &[Viewport],
+        shown: &[(usize, Viewport)],
         pixels_per_point: f32,
         look: Look,
         colors: &Colors,
         dt_secs: f32,
-    ) -> &Stage {
+    ) -> Arc<Stage> {
         let params = session.params();
         let now = session.now_secs();
-        self.stage.look = look;
-        self.stage.pixels_per_point = pixels_per_point;
-        self.stage.panes.resize_with(viewports.len(), Pane::default);
-        self.rigs.resize_with(viewports.len(), CameraRig::default);
+        let stage = Arc::make_mut(&mut self.stage);
+        stage.look = look;
+        stage.pixels_per_point = pixels_per_point;
+        stage.panes.resize_with(shown.len(), Pane::default);
+        let mut panes = std::mem::take(&mut stage.panes);
+        self.rigs.resize_with(session.panes().len(), CameraRig::default);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
-        let mut panes = std::mem::take(&mut self.stage.panes);
-        for (index, (pane, &viewport)) in panes.iter_mut().zip(viewports).enumerate() {
+        for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
             if let Some(outcome) = session.panes().get(index).and_then(|pane| pane.outcome.as_deref()) {
@@ -67,8 +69,8 @@ impl Director {
                 self.aim(index, outcome, params, now, dt_secs, pane);
             }
         }
-        self.stage.panes = panes;
-        &self.stage
+        Arc::make_mut(&mut self.stage).panes = panes;
+        Arc::clone(&self.stage)
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -85,19 +87,22 @@ impl Director {
 
     fn body(&mut self, motion: &Motion) -> Arc<Body> {
         let skeleton = motion.clip.skeleton();
-        let roles = motion.roles.fingerprint();
-        let known = self.bodies.iter().find(|(known, known_roles, _)| std::ptr::eq(known.as_ptr(), Arc::as_ptr(skeleton)) && *known_roles == roles);
-        if let Some((.., body)) = known {
+        let known =
+            |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles;
+        if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
         let body = Arc::new(Body::new(skeleton, Some(&motion.roles)));
-        self.bodies.push((Arc::downgrade(skeleton), roles, Arc::clone(&body)));
+        self.bodies
+            .push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
         body
     }
 
     fn draw(&mut self, outcome: &Outcome, params: &Params, now: f64, look: &Look, colors: &Colors, pane: &mut Pane) {
         let motion = &outcome.motion;
-        let Some(world) = pose_at(motion, now, &Planar::IDENTITY) else { return };
+        let Some(world) = pose_at(motion, now, &Planar::IDENTITY) else {
+            return;
+        };
         let body = self.body(motion);
         let shape = params.text(Key::Look);
         if shape != "bones" {
@@ -119,7 +124,11 @@ impl Director {
                 && let Some(world) = pose_at(motion, at, &Planar::IDENTITY)
             {
                 let fade = 1.0 - (step.abs() - 1) as f32 / onion as f32;
-                pane.add_ghost(&body, &world, with_alpha(color_at(outcome, at, colors), colors.ghost_alpha * 0.7 * fade));
+                pane.add_ghost(
+                    &body,
+                    &world,
+                    with_alpha(color_at(outcome, at, colors), colors.ghost_alpha * 0.7 * fade),
+                );
             }
         }
         if params.is_on(Key::Trail) {
@@ -161,27 +170,39 @@ impl Director {
     /// Brings the pane's camera to where the parameters want it, after the followed joint.
     fn aim(&mut self, index: usize, outcome: &Outcome, params: &Params, now: f64, dt_secs: f32, pane: &mut Pane) {
         let followed = followed_point(outcome, params, now);
-        let pan = Vec3::new(params.number(Key::PanX) as f32, params.number(Key::PanY) as f32, params.number(Key::PanZ) as f32);
+        let pan = Vec3::new(
+            params.number(Key::PanX) as f32,
+            params.number(Key::PanY) as f32,
+            params.number(Key::PanZ) as f32,
+        );
         let from_above = params.text(Key::Camera) == "top";
         let goal = Camera {
             target: followed.unwrap_or_else(|| resting_point(outcome)) + pan,
             yaw: params.number(Key::CameraYaw).to_radians() as f32,
-            pitch: if from_above { std::f32::consts::FRAC_PI_2 } else { params.number(Key::CameraPitch).to_radians() as f32 },
+            pitch: if from_above {
+                std::f32::consts::FRAC_PI_2
+            } else {
+                params.number(Key::CameraPitch).to_radians() as f32
+            },
             distance: params.number(Key::CameraDistance) as f32,
             lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
             ..Camera::default()
         };
-        let rig = &mut self.rigs[index];
+        let Some(rig) = self.rigs.get_mut(index) else { return };
         let first = *rig == CameraRig::default();
         let cut = goal.target.distance(rig.goal.target) > CUT_METRES;
         rig.goal = goal;
         if first || cut {
             rig.jump();
         } else {
-            let half_life = if followed.is_some() { params.number(Key::FollowHalfLife) as f32 } else { VIEW_HALF_LIFE_SECS };
+            let half_life = if followed.is_some() {
+                params.number(Key::FollowHalfLife) as f32
+            } else {
+                VIEW_HALF_LIFE_SECS
+            };
             // The hand turns and zooms at once; only what the camera follows is smoothed.
             rig.update(half_life, dt_secs);
-            rig.snap_view();
+            rig.turn_at_once();
         }
         pane.camera = *rig.camera();
         pane.focus = goal.target.with_y(0.0);
@@ -216,11 +237,16 @@ fn followed_point(outcome: &Outcome, params: &Params, now: f64) -> Option<Vec3> 
     let point = *world.positions.get(joint)?;
     let hips = motion.roles.get(Role::Hips).unwrap_or(0);
     // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the height of a standing body's middle.
-    Some(if joint == hips { point.with_y(middle_height(motion)) } else { point })
+    Some(if joint == hips {
+        point.with_y(middle_height(motion))
+    } else {
+        point
+    })
 }
 
 /// What an unbound camera looks at: where the motion begins.
-fn resting_point(outcome: &Outcome) -> Vec3 {
+#[must_use]
+pub fn resting_point(outcome: &Outcome) -> Vec3 {
     let start = outcome.motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
     start.with_y(middle_height(&outcome.motion))
 }
@@ -242,9 +268,11 @@ fn add_ground_path(outcome: &Outcome, colors: &Colors, pane: &mut Pane) {
     let frames = &outcome.motion.ground_frames;
     let fps = outcome.motion.clip.fps();
     let stride = frames.len().div_ceil(PATH_POINTS).max(1);
-    let points = frames.iter().enumerate().step_by(stride).map(|(frame, place)| {
-        (place.origin().with_y(0.004), color_at(outcome, frame as f64 / fps, colors))
-    });
+    let points = frames
+        .iter()
+        .enumerate()
+        .step_by(stride)
+        .map(|(frame, place)| (place.origin().with_y(0.004), color_at(outcome, frame as f64 / fps, colors)));
     pane.add_path(points, 2.0, Layer::Ground);
 }
 
@@ -268,7 +296,13 @@ fn add_bones(skeleton: &Skeleton, world: &WorldPose, color: Color, pane: &mut Pa
             pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
         }
         if let Some(end) = joint.end_site {
-            pane.add_line(world.positions[index], world.point(index, end), with_alpha(color, 0.6), 2.0, Layer::Over);
+            pane.add_line(
+                world.positions[index],
+                world.point(index, end),
+                with_alpha(color, 0.6),
+                2.0,
+                Layer::Over,
+            );
         }
     }
 }
@@ -292,7 +326,9 @@ fn add_contacts(motion: &Motion, now: f64, world: &WorldPose, colors: &Colors, p
         }
         let Some(foot) = motion.roles.get(Role::foot(side)) else { continue };
         let joint = motion.roles.get(Role::toe(side)).unwrap_or(foot);
-        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else { continue };
+        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else {
+            continue;
+        };
         let earlier = pose_at(motion, now - f64::from(dt), &Planar::IDENTITY);
         let before = earlier.and_then(|world| world.positions.get(joint).copied()).unwrap_or(toe);
         let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;

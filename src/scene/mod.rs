@@ -7,12 +7,14 @@
 
 mod body;
 mod bounds;
+mod build;
 mod camera;
 mod rig;
 mod stage;
 
 pub use body::Body;
 pub use bounds::Bounds;
+pub use build::{Colors, Director, pose_at, resting_point};
 pub use camera::{Camera, Lens, Ray};
 pub use rig::CameraRig;
 pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Stage, Stroke, Viewport, rgb, with_alpha};

@@ -53,6 +53,16 @@ impl CameraRig {
         self.shown == self.goal
     }
 
+    /// Takes direction, distance and lens of the goal at once; only the target stays on its way. For a hand that turns the camera: what it
+    /// does is not to be smoothed, what the camera follows is.
+    pub fn turn_at_once(&mut self) {
+        self.shown = Camera {
+            target: self.shown.target,
+            ..self.goal
+        };
+        (self.yaw_velocity, self.pitch_velocity, self.zoom_velocity) = (0.0, 0.0, 0.0);
+    }
+
     /// Moves on by `dt_secs`; the distance to the goal halves about every `half_life_secs`. A half-life of 0 jumps.
     pub fn update(&mut self, half_life_secs: f32, dt_secs: f32) {
         if self.is_still() || half_life_secs <= 0.0 || !dt_secs.is_finite() {

@@ -28,11 +28,7 @@ impl Compare {
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
         let key = Key::from_name(name.trim())
             .filter(|key| key.param().is_comparable())
-            .ok_or_else(|| {
-                refuse(format!(
-                    "a numeric parameter of a lab before the colon, not `{name}`"
-                ))
-            })?;
+            .ok_or_else(|| refuse(format!("a numeric parameter of a lab before the colon, not `{name}`")))?;
         let values = list
             .split(',')
             .map(|value| match key.param().parse(value.trim())? {
@@ -41,10 +37,7 @@ impl Compare {
             })
             .collect::<Result<Vec<f64>, ValueError>>()?;
         if !(2..=MAX_PANES).contains(&values.len()) {
-            return Err(refuse(format!(
-                "2 to {MAX_PANES} values, not {}",
-                values.len()
-            )));
+            return Err(refuse(format!("2 to {MAX_PANES} values, not {}", values.len())));
         }
         Ok(Self { key, values })
     }
@@ -56,14 +49,9 @@ impl Compare {
         let Kind::Number { min, max, .. } = key.param().kind else {
             return None;
         };
-        let values = [1.0, 2.0, 3.0].map(|share| {
-            match key
-                .param()
-                .check(Value::Number((full / share).clamp(min, max)))
-            {
-                Ok(Value::Number(number)) => number,
-                _ => full,
-            }
+        let values = [1.0, 2.0, 3.0].map(|share| match key.param().check(Value::Number((full / share).clamp(min, max))) {
+            Ok(Value::Number(number)) => number,
+            _ => full,
         });
         key.param().is_comparable().then(|| Self {
             key,
@@ -78,11 +66,7 @@ impl fmt::Display for Compare {
         let Kind::Number { step, .. } = param.kind else {
             return f.write_str(param.name);
         };
-        let values: Vec<String> = self
-            .values
-            .iter()
-            .map(|&value| format_number(value, step))
-            .collect();
+        let values: Vec<String> = self.values.iter().map(|&value| format_number(value, step)).collect();
         write!(f, "{}:{}", param.name, values.join(","))
     }
 }
@@ -95,10 +79,7 @@ mod tests {
     fn reads_what_it_writes() {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
-        assert_eq!(
-            Compare::full_half_third(Key::BlendWindow, 30.0),
-            Some(compare)
-        );
+        assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0), Some(compare));
     }
 
     #[test]

@@ -45,7 +45,8 @@ pub struct Sample {
 }
 
 /// The credit that goes with the bundled takes.
-pub const SAMPLES_CREDIT: &str = "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
+pub const SAMPLES_CREDIT: &str =
+    "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
 
 /// A clip in the library.
 #[derive(Clone, Debug)]
@@ -109,19 +110,13 @@ impl Library {
         }
         let (name, sha, index) = split_reference(reference);
         let mut matching = self.entries.iter().filter(|entry| match &entry.origin {
-            Origin::File(file) if !sha.is_empty() => {
-                file.sha256.starts_with(sha) && file.index == index
-            }
+            Origin::File(file) if !sha.is_empty() => file.sha256.starts_with(sha) && file.index == index,
             Origin::File(file) => file_stem(&file.name) == file_stem(name) && file.index == index,
             _ => false,
         });
         let found = matching.next();
         // Two files of one name are not told apart by it.
-        if sha.is_empty() && matching.next().is_some() {
-            None
-        } else {
-            found
-        }
+        if sha.is_empty() && matching.next().is_some() { None } else { found }
     }
 
     /// Adds a clip at the end, or puts it in the place of the one with the same id.
@@ -154,11 +149,7 @@ impl Library {
 #[must_use]
 pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
     let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
-    let suffix = if index == 0 {
-        String::new()
-    } else {
-        format!(".{}", index + 1)
-    };
+    let suffix = if index == 0 { String::new() } else { format!(".{}", index + 1) };
     format!("{}~{sha}{suffix}", file_stem(name))
 }
 
@@ -169,11 +160,7 @@ pub fn split_reference(reference: &str) -> (&str, &str, usize) {
         return (reference, "", 0);
     };
     match rest.split_once('.') {
-        Some((sha, number)) => (
-            name,
-            sha,
-            number.parse::<usize>().map_or(0, |n| n.saturating_sub(1)),
-        ),
+        Some((sha, number)) => (name, sha, number.parse::<usize>().map_or(0, |n| n.saturating_sub(1))),
         None => (name, rest, 0),
     }
 }
@@ -217,28 +204,11 @@ mod tests {
         library.put(dropped("walk.bvh", "11111111aa"));
         library.put(dropped("walk.bvh", "22222222aa"));
         assert_eq!(library.entries()[0].id, "01_01~3fa9c1d2");
-        for reference in [
-            "01_01~3fa9c1d2",
-            "renamed~3fa9c1d2",
-            "x~3fa9",
-            "01_01",
-            "01_01.bvh",
-        ] {
-            assert_eq!(
-                library.find(reference).map(|e| e.name.as_str()),
-                Some("a/01_01.bvh"),
-                "{reference}"
-            );
+        for reference in ["01_01~3fa9c1d2", "renamed~3fa9c1d2", "x~3fa9", "01_01", "01_01.bvh"] {
+            assert_eq!(library.find(reference).map(|e| e.name.as_str()), Some("a/01_01.bvh"), "{reference}");
         }
-        assert_eq!(
-            library.find("walk").map(|e| &e.id),
-            None,
-            "two files have that name"
-        );
-        assert_eq!(
-            library.find("walk~2222").map(|e| e.id.as_str()),
-            Some("walk~22222222")
-        );
+        assert_eq!(library.find("walk").map(|e| &e.id), None, "two files have that name");
+        assert_eq!(library.find("walk~2222").map(|e| e.id.as_str()), Some("walk~22222222"));
         assert!(library.find("01_01~3fa9c1d2.2").is_none());
     }
 

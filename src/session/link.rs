@@ -39,9 +39,7 @@ pub fn read(query: &str) -> Link {
                 Err(error) => link.problems.push(error.to_string()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => link
-                .problems
-                .push(format!("`{name}` is not a parameter of this version")),
+            None => link.problems.push(format!("`{name}` is not a parameter of this version")),
         }
     }
     link
@@ -88,22 +86,11 @@ mod tests {
                     )
                 })
                 .boxed(),
-            Kind::Switch => any::<bool>()
-                .prop_map(move |on| (key, Value::Switch(on)))
-                .boxed(),
-            Kind::Choice(choices) => (0..choices.len())
-                .prop_map(move |i| (key, Value::Choice(choices[i].key)))
-                .boxed(),
-            Kind::Clip | Kind::Text => "[^\\pC]{0,12}"
-                .prop_map(move |text| (key, Value::Text(text)))
-                .boxed(),
+            Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
+            Kind::Choice(choices) => (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed(),
+            Kind::Clip | Kind::Text => "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed(),
             Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
-                .prop_map(move |(x, y)| {
-                    (
-                        key,
-                        key.param().parse(&format!("blend_window:{x},{y}")).unwrap(),
-                    )
-                })
+                .prop_map(move |(x, y)| (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap()))
                 .boxed(),
         }
     }
@@ -136,16 +123,9 @@ mod tests {
         let mut params = Params::default();
         assert_eq!(write(&params), "");
         params.set(Key::BlendWindow, Value::Number(24.0)).unwrap();
-        params
-            .set(Key::Compare, Value::Text("blend_window:30,15,10".into()))
-            .unwrap();
-        params
-            .set(Key::A, Value::Text("01_01~3fa9c1d2".into()))
-            .unwrap();
-        assert_eq!(
-            write(&params),
-            "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10"
-        );
+        params.set(Key::Compare, Value::Text("blend_window:30,15,10".into())).unwrap();
+        params.set(Key::A, Value::Text("01_01~3fa9c1d2".into())).unwrap();
+        assert_eq!(write(&params), "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10");
     }
 
     #[test]
@@ -153,10 +133,7 @@ mod tests {
         let link = read("?blend_window=24&colour=red&weight_law=steep&align=off");
         assert_eq!(
             link.values,
-            [
-                (Key::BlendWindow, Value::Number(24.0)),
-                (Key::Align, Value::Switch(false))
-            ]
+            [(Key::BlendWindow, Value::Number(24.0)), (Key::Align, Value::Switch(false))]
         );
         assert_eq!(
             link.problems,

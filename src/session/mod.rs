@@ -19,13 +19,9 @@ mod undo;
 pub use command::{Command, CommandError, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Loaded, Pane, Session};
-pub use library::{
-    Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference,
-};
+pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
 pub use motion::{Motion, frame_at, joint_of};
 pub use notice::{Level, Notice, Notices};
-pub use params::{
-    Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,
-};
+pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
 pub use recipe::{Outcome, Slot, Source, Transition};
 pub use saved::{Saved, SavedEntry};

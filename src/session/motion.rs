@@ -1,4 +1,4 @@
-use crate::clip::{Clip, ContactOptions, Contacts, character_frames, detect_contacts};
+use crate::clip::{Clip, ContactOptions, Contacts, character_frames};
 use crate::math::Planar;
 use crate::skeleton::{Role, Roles};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ impl Motion {
     #[must_use]
     pub fn analyze(clip: Clip, roles: Option<Roles>) -> Self {
         let roles = roles.unwrap_or_else(|| Roles::detect(clip.skeleton()));
-        let contacts = detect_contacts(&clip, &roles, &ContactOptions::default());
+        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let ground_frames = character_frames(&clip, &roles);
         Self {
             clip: Arc::new(clip),
@@ -37,7 +37,14 @@ impl Motion {
 pub fn joint_of(motion: &Motion, name: &str) -> Option<usize> {
     let role = Role::ALL.into_iter().find(|role| role.name().eq_ignore_ascii_case(name));
     let by_role = role.and_then(|role| motion.roles.get(role));
-    by_role.or_else(|| motion.clip.skeleton().joints().iter().position(|joint| joint.name.eq_ignore_ascii_case(name)))
+    by_role.or_else(|| {
+        motion
+            .clip
+            .skeleton()
+            .joints()
+            .iter()
+            .position(|joint| joint.name.eq_ignore_ascii_case(name))
+    })
 }
 
 /// The frame that is nearest to a time. 0 for a clip without frames.

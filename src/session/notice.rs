@@ -71,13 +71,8 @@ impl Notices {
     /// Seconds until the next message goes away by itself.
     #[must_use]
     pub fn next_change_secs(&self) -> Option<f64> {
-        let infos = self
-            .list
-            .iter()
-            .filter(|notice| notice.level == Level::Info);
-        infos
-            .map(|notice| (INFO_SECS - notice.age_secs).max(0.0))
-            .min_by(f64::total_cmp)
+        let infos = self.list.iter().filter(|notice| notice.level == Level::Info);
+        infos.map(|notice| (INFO_SECS - notice.age_secs).max(0.0)).min_by(f64::total_cmp)
     }
 
     /// The messages, oldest first.

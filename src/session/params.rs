@@ -187,11 +187,7 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
     }
 }
 
-const LABS: &[Choice] = &[
-    choice("view", "View"),
-    choice("make", "Make"),
-    choice("blend", "Blend"),
-];
+const LABS: &[Choice] = &[choice("view", "View"), choice("make", "Make"), choice("blend", "Blend")];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
     choice("linear", "linear"),
@@ -206,28 +202,11 @@ const GAITS: &[Choice] = &[
     choice("spin", "spin"),
     choice("jump", "jump"),
 ];
-const LOOKS: &[Choice] = &[
-    choice("body", "body"),
-    choice("bones", "bones"),
-    choice("both", "both"),
-];
-const FOLLOW: &[Choice] = &[
-    choice("off", "off"),
-    choice("result", "result"),
-    choice("a", "A"),
-    choice("b", "B"),
-];
+const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
+const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
-const CURVES: &[Choice] = &[
-    choice("speed", "speed"),
-    choice("height", "height"),
-    choice("turn", "turn rate"),
-];
-const THEMES: &[Choice] = &[
-    choice("auto", "auto"),
-    choice("dark", "dark"),
-    choice("light", "light"),
-];
+const CURVES: &[Choice] = &[choice("speed", "speed"), choice("height", "height"), choice("turn", "turn rate")];
+const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
 
 parameters! {
     Lab "lab" "Lab" Page Kind::Choice(LABS), Start::Word("blend"), "", "Which experiment is open.";
@@ -296,10 +275,7 @@ impl Key {
     /// The parameter of that name in the link.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        PARAMS
-            .iter()
-            .find(|param| param.name == name)
-            .map(|param| param.key)
+        PARAMS.iter().find(|param| param.name == name).map(|param| param.key)
     }
 }
 
@@ -353,19 +329,11 @@ pub enum ValueError {
 }
 
 fn of_unit(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" of {unit}")
-    }
+    if unit.is_empty() { String::new() } else { format!(" of {unit}") }
 }
 
 fn unit_suffix(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
-    }
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
 impl Param {
@@ -489,8 +457,7 @@ impl Param {
     /// Whether compare can make panes of it: a number that changes the result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. })
-            && matches!(self.group, Group::View | Group::Make | Group::Blend)
+        matches!(self.kind, Kind::Number { .. }) && matches!(self.group, Group::View | Group::Make | Group::Blend)
     }
 }
 
@@ -521,9 +488,7 @@ pub fn format_number(number: f64, step: f64) -> String {
 #[must_use]
 pub fn decimals_of(step: f64) -> usize {
     (0..6)
-        .find(|&decimals| {
-            ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9
-        })
+        .find(|&decimals| ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9)
         .unwrap_or(6) as usize
 }
 
@@ -540,10 +505,7 @@ impl Default for Params {
 impl fmt::Debug for Params {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_map()
-            .entries(
-                self.changed()
-                    .map(|(param, value)| (param.name, param.format(value))),
-            )
+            .entries(self.changed().map(|(param, value)| (param.name, param.format(value))))
             .finish()
     }
 }
@@ -606,10 +568,7 @@ impl Params {
 
     /// The parameters that differ from their default, in the order of the table.
     pub fn changed(&self) -> impl Iterator<Item = (&'static Param, &Value)> {
-        PARAMS
-            .iter()
-            .zip(&self.0)
-            .filter(|(param, value)| **value != param.default_value())
+        PARAMS.iter().zip(&self.0).filter(|(param, value)| **value != param.default_value())
     }
 }
 
@@ -622,31 +581,15 @@ mod tests {
     fn the_table_is_sound() {
         for (index, param) in PARAMS.iter().enumerate() {
             assert_eq!(param.key as usize, index);
-            assert_eq!(
-                Key::from_name(param.name),
-                Some(param.key),
-                "{} is there twice",
-                param.name
-            );
+            assert_eq!(Key::from_name(param.name), Some(param.key), "{} is there twice", param.name);
             assert_eq!(
                 param.check(param.default_value()).as_ref(),
                 Ok(&param.default_value()),
                 "{}",
                 param.name
             );
-            assert!(
-                param.help.ends_with('.') && !param.label.is_empty(),
-                "{}",
-                param.name
-            );
-            assert!(
-                param
-                    .name
-                    .bytes()
-                    .all(|b| b.is_ascii_lowercase() || b == b'_'),
-                "{}",
-                param.name
-            );
+            assert!(param.help.ends_with('.') && !param.label.is_empty(), "{}", param.name);
+            assert!(param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'), "{}", param.name);
         }
     }
 

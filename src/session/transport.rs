@@ -31,11 +31,7 @@ impl Span {
         if length <= 0.0 {
             return (self.start, false);
         }
-        let now = if (self.start..=self.end).contains(&now) {
-            now
-        } else {
-            self.start
-        };
+        let now = if (self.start..=self.end).contains(&now) { now } else { self.start };
         let next = now + dt_secs * speed;
         if next <= self.end {
             (next, true)
@@ -58,27 +54,12 @@ mod tests {
         assert_eq!(span.advance(2.5, 1.0, 1.0, true), (1.5, true));
         assert_eq!(span.advance(2.5, 1.0, 1.0, false), (3.0, false));
         assert_eq!(span.advance(2.0, 0.5, 0.5, false), (2.25, true));
-        assert_eq!(
-            Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true),
-            (0.0, false)
-        );
+        assert_eq!(Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true), (0.0, false));
     }
 
     #[test]
     fn marks_in_the_wrong_order_are_taken_the_other_way_round() {
-        assert_eq!(
-            Span::between(Some(2.0), Some(1.0), 3.0),
-            Span {
-                start: 1.0,
-                end: 2.0
-            }
-        );
-        assert_eq!(
-            Span::between(Some(9.0), None, 3.0),
-            Span {
-                start: 3.0,
-                end: 3.0
-            }
-        );
+        assert_eq!(Span::between(Some(2.0), Some(1.0), 3.0), Span { start: 1.0, end: 2.0 });
+        assert_eq!(Span::between(Some(9.0), None, 3.0), Span { start: 3.0, end: 3.0 });
     }
 }

@@ -52,33 +52,15 @@ impl History {
 
     /// Swaps the present for the state before the last step; says whether there was one.
     pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
-        Self::swap(
-            &mut self.past,
-            &mut self.future,
-            &mut self.open,
-            params,
-            library,
-        )
+        Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
     /// Swaps the present for the state that was last taken back.
     pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
-        Self::swap(
-            &mut self.future,
-            &mut self.past,
-            &mut self.open,
-            params,
-            library,
-        )
+        Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }
 
-    fn swap(
-        from: &mut Vec<State>,
-        to: &mut Vec<State>,
-        open: &mut Option<Key>,
-        params: &mut Params,
-        library: &mut Library,
-    ) -> bool {
+    fn swap(from: &mut Vec<State>, to: &mut Vec<State>, open: &mut Option<Key>, params: &mut Params, library: &mut Library) -> bool {
         let Some(state) = from.pop() else {
             return false;
         };

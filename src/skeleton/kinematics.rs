@@ -69,10 +69,7 @@ pub fn world_pose_into(
             None => (root_translation, local),
             Some(parent) => {
                 let parent_rotation = world.rotations[parent];
-                (
-                    world.positions[parent] + parent_rotation * translation,
-                    parent_rotation * local,
-                )
+                (world.positions[parent] + parent_rotation * translation, parent_rotation * local)
             }
         };
         world.positions.push(position);

@@ -40,7 +40,11 @@ impl Mirror {
         let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoSides)?;
         let pairing = Pairing::new(skeleton, roles, &rest, normal);
         let counterparts = pairing.counterparts();
-        if !counterparts.iter().enumerate().any(|(joint, other)| other.is_some_and(|other| other != joint)) {
+        if !counterparts
+            .iter()
+            .enumerate()
+            .any(|(joint, other)| other.is_some_and(|other| other != joint))
+        {
             return Err(NoSides);
         }
         let mut mirror = Self {
@@ -87,21 +91,33 @@ impl Mirror {
             }
             (None, Some(_)) => local(joint),
         });
-        let mut translations: Vec<(usize, Vec3)> =
-            pose.translations.iter().map(|&(joint, value)| self.translation(joint, value)).collect();
+        let mut translations: Vec<(usize, Vec3)> = pose
+            .translations
+            .iter()
+            .map(|&(joint, value)| self.translation(joint, value))
+            .collect();
         translations.sort_by_key(|&(joint, _)| joint);
-        Pose { root_translation: pose.root_translation * Vec3::new(-1.0, 1.0, 1.0), rotations: rotations.collect(), translations }
+        Pose {
+            root_translation: pose.root_translation * Vec3::new(-1.0, 1.0, 1.0),
+            rotations: rotations.collect(),
+            translations,
+        }
     }
 
     /// The mirror image of a translation of `joint` against its parent, and whose it is then.
     fn translation(&self, joint: usize, value: Vec3) -> (usize, Vec3) {
-        let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint)) else { return (joint, value) };
+        let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint)) else {
+            return (joint, value);
+        };
         let into_parent = self.parents[other].map_or(Quat::IDENTITY, |parent| self.corrections[parent].conjugate());
         if other == joint {
             return (joint, self.corrections[*parent].conjugate() * self.reflected(value));
         }
         // What differs from rest is mirrored, so that a bone at its rest length keeps its own length.
-        (other, self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]))
+        (
+            other,
+            self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]),
+        )
     }
 
     /// M · v.
@@ -116,7 +132,6 @@ impl Mirror {
     }
 }
 
-
 /// From the right to the left of the rest pose, unit length: by roles, else by names.
 fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
@@ -125,14 +140,25 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
     if differences.is_empty() {
         let joints = skeleton.joints();
         for (a, first) in joints.iter().enumerate() {
-            let second = joints.iter().enumerate().skip(a + 1).find(|(_, second)| are_counterparts(&first.name, &second.name));
+            let second = joints
+                .iter()
+                .enumerate()
+                .skip(a + 1)
+                .find(|(_, second)| are_counterparts(&first.name, &second.name));
             differences.extend(second.map(|(b, _)| rest[a] - rest[b]));
         }
     }
     // Which of a pair is the left one does not matter for a plane, but they must not cancel out.
     let longest = differences.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length()))?;
-    let axis = differences.iter().map(|&d| if d.dot(longest) < 0.0 { -d } else { d }).sum::<Vec3>().try_normalize().unwrap_or(Vec3::X);
-    let snapped = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
+    let axis = differences
+        .iter()
+        .map(|&d| if d.dot(longest) < 0.0 { -d } else { d })
+        .sum::<Vec3>()
+        .try_normalize()
+        .unwrap_or(Vec3::X);
+    let snapped = [Vec3::X, Vec3::Y, Vec3::Z]
+        .into_iter()
+        .find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
     Some(snapped.unwrap_or(axis))
 }
 
@@ -169,8 +195,18 @@ impl<'a> Pairing<'a> {
             }
         }
         let from = |index: usize| joints[index].parent.map_or(Vec3::ZERO, |parent| rest[parent]);
-        let centres = sums.iter().enumerate().map(|(index, (sum, count))| *sum / *count - from(index)).collect();
-        Self { skeleton, children, roles_below, centres, normal }
+        let centres = sums
+            .iter()
+            .enumerate()
+            .map(|(index, (sum, count))| *sum / *count - from(index))
+            .collect();
+        Self {
+            skeleton,
+            children,
+            roles_below,
+            centres,
+            normal,
+        }
     }
 
     /// The counterpart of every joint, from the root down: children of counterparts are compared with each other.
@@ -179,7 +215,9 @@ impl<'a> Pairing<'a> {
         counterparts[0] = Some(0);
         for joint in 0..self.skeleton.len() {
             // Parents come before children, so a joint's own counterpart is known when its children's turn comes.
-            let Some(other) = counterparts[joint].filter(|&other| joint <= other) else { continue };
+            let Some(other) = counterparts[joint].filter(|&other| joint <= other) else {
+                continue;
+            };
             let mut candidates: Vec<(u8, f32, usize, usize)> = Vec::new();
             for &a in &self.children[joint] {
                 for &b in self.children[other].iter().filter(|&&b| joint != other || a <= b) {
@@ -205,7 +243,11 @@ impl<'a> Pairing<'a> {
         if below_a != 0 || below_b != 0 {
             // Roles decide where there are any, though one side may lack some of them.
             let mirrored = mirrored_roles(below_a);
-            return if mirrored & below_b != 0 { Some((0, cost)) } else { (a == b).then_some((3, cost)) };
+            return if mirrored & below_b != 0 {
+                Some((0, cost))
+            } else {
+                (a == b).then_some((3, cost))
+            };
         }
         let joints = self.skeleton.joints();
         if a != b && are_counterparts(&joints[a].name, &joints[b].name) {
@@ -213,7 +255,11 @@ impl<'a> Pairing<'a> {
         }
         let fits = cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
         // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a tail.
-        if fits { Some((2, cost)) } else { (in_the_middle && a == b).then_some((3, cost)) }
+        if fits {
+            Some((2, cost))
+        } else {
+            (in_the_middle && a == b).then_some((3, cost))
+        }
     }
 
     /// The direction of the bone that starts at a joint, not of unit length: to the only child, or the only one that leads to a role; for a
@@ -240,7 +286,10 @@ impl<'a> Pairing<'a> {
 }
 
 fn mirrored_roles(bits: u32) -> u32 {
-    Role::ALL.into_iter().filter(|role| bits & (1 << role.index()) != 0).fold(0, |sum, role| sum | 1 << role.mirrored().index())
+    Role::ALL
+        .into_iter()
+        .filter(|role| bits & (1 << role.index()) != 0)
+        .fold(0, |sum, role| sum | 1 << role.mirrored().index())
 }
 
 #[cfg(test)]

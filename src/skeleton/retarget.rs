@@ -25,7 +25,10 @@ impl JointMap {
     pub fn between(target: &Skeleton, target_roles: &Roles, source: &Skeleton, source_roles: &Roles) -> Self {
         let mut sources: Vec<Option<usize>> = vec![None; target.len()];
         for role in Role::ALL {
-            if let (Some(to), Some(from)) = (target_roles.get_within(role, target.len()), source_roles.get_within(role, source.len())) {
+            if let (Some(to), Some(from)) = (
+                target_roles.get_within(role, target.len()),
+                source_roles.get_within(role, source.len()),
+            ) {
                 sources[to] = Some(from);
             }
         }
@@ -62,9 +65,7 @@ fn by_name(target: &Skeleton, joint: usize, source: &Skeleton, source_roles: &Ro
     let name = &target.joints()[joint].name;
     let above = std::iter::successors(target.parent(joint), |&j| target.parent(j)).find_map(|j| sources[j]);
     let fits = |from: usize| {
-        source_roles.role_of(from).is_none()
-            && !sources.contains(&Some(from))
-            && above.is_none_or(|above| is_below(source, from, above))
+        source_roles.role_of(from).is_none() && !sources.contains(&Some(from)) && above.is_none_or(|above| is_below(source, from, above))
     };
     (0..source.len()).find(|&from| source.joints()[from].name == *name && fits(from))
 }
@@ -85,8 +86,16 @@ impl Landmarks {
         };
         // A chest that is the hips says nothing about a back.
         let chest = chest.filter(|&chest| roles.role_of(chest) != Some(Role::Hips) && chest > 0);
-        let collar = |arm: Option<usize>| above(arm?).take_while(|&joint| Some(joint) != chest).last().filter(|_| chest.is_some());
-        Self { chest, collars: arms.map(collar) }
+        let collar = |arm: Option<usize>| {
+            above(arm?)
+                .take_while(|&joint| Some(joint) != chest)
+                .last()
+                .filter(|_| chest.is_some())
+        };
+        Self {
+            chest,
+            collars: arms.map(collar),
+        }
     }
 
     fn pairs(&self, source: &Self) -> impl Iterator<Item = (usize, usize)> {
@@ -129,7 +138,11 @@ impl Retargeting {
         let same_rig = is_same_rig(source, target, &map);
         let (from_body, to_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
         let whole_body = from_body.rotation * to_body.rotation.conjugate();
-        let scale = if same_rig { 1.0 } else { scale(source, source_roles, target, target_roles) };
+        let scale = if same_rig {
+            1.0
+        } else {
+            scale(source, source_roles, target, target_roles)
+        };
         let hips_of = |skeleton: &Skeleton, roles: &Roles| roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0);
         let mut retargeting = Self {
             corrections: vec![Quat::IDENTITY; target.len()],
@@ -175,17 +188,27 @@ impl Retargeting {
         }
         let long = |v: Vec3| v.length() > 1e-4;
         // Toes of a foot come before its heel, the forearm before a muscle: joints with roles first, then the nearest in the tree.
-        let mut below: Vec<usize> = (joint + 1..self.target.len()).filter(|&j| is_below(&self.target, j, joint)).collect();
+        let mut below: Vec<usize> = (joint + 1..self.target.len())
+            .filter(|&j| is_below(&self.target, j, joint))
+            .collect();
         below.sort_by_key(|&j| (target_roles.role_of(j).is_none(), j));
         for below in below {
-            let Some(end) = self.map.source_of(below).filter(|&end| is_below(&self.source, end, from)) else { continue };
+            let Some(end) = self.map.source_of(below).filter(|&end| is_below(&self.source, end, from)) else {
+                continue;
+            };
             let (ours, theirs) = (target_rest[below] - target_rest[joint], source_rest[end] - source_rest[from]);
             if long(ours) && long(theirs) {
-                return Bone::Direction { target: ours, source: theirs };
+                return Bone::Direction {
+                    target: ours,
+                    source: theirs,
+                };
             }
         }
         match (self.target.joints()[joint].end_site, self.source.joints()[from].end_site) {
-            (Some(ours), Some(theirs)) if long(ours) && long(theirs) => Bone::Direction { target: ours, source: theirs },
+            (Some(ours), Some(theirs)) if long(ours) && long(theirs) => Bone::Direction {
+                target: ours,
+                source: theirs,
+            },
             _ => Bone::None,
         }
     }
@@ -226,16 +249,25 @@ impl Retargeting {
         for (joint, parent) in self.target.joints().iter().map(|j| j.parent).enumerate() {
             let above = parent.map_or(Quat::IDENTITY, |parent| worlds[parent]);
             let turned = self.world_rotation(joint, &world);
-            let local = self.local_copy(joint, parent, pose).or_else(|| turned.map(|turned| above.conjugate() * turned));
+            let local = self
+                .local_copy(joint, parent, pose)
+                .or_else(|| turned.map(|turned| above.conjugate() * turned));
             // The root has no rest rotation of its own where the whole body lies another way.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
             let local = quat::renormalize(local.unwrap_or(rest));
             rotations.push(local);
             worlds.push(quat::renormalize(above * local));
         }
-        let standing = Pose { root_translation: Vec3::ZERO, rotations, translations: Vec::new() };
+        let standing = Pose {
+            root_translation: Vec3::ZERO,
+            rotations,
+            translations: Vec::new(),
+        };
         let hips = world_pose(&self.target, &standing).positions[self.hips.1];
-        Pose { root_translation: world.positions[self.hips.0] * self.scale - hips, ..standing }
+        Pose {
+            root_translation: world.positions[self.hips.0] * self.scale - hips,
+            ..standing
+        }
     }
 
     /// The world rotation of a joint that is driven or shares the bend of its neighbours.
@@ -256,12 +288,21 @@ impl Retargeting {
             None => from == 0,
             Some(parent) => self.map.source_of(parent).is_some() && self.map.source_of(parent) == self.source.parent(from) && plain(parent),
         };
-        if same_parent && plain(joint) { pose.rotations.get(from).copied() } else { None }
+        if same_parent && plain(joint) {
+            pose.rotations.get(from).copied()
+        } else {
+            None
+        }
     }
 
     /// The pose of the same rig with its joints in another order.
     fn copied(&self, pose: &Pose) -> Pose {
-        let rotation = |joint| self.map.source_of(joint).and_then(|from| pose.rotations.get(from).copied()).unwrap_or(Quat::IDENTITY);
+        let rotation = |joint| {
+            self.map
+                .source_of(joint)
+                .and_then(|from| pose.rotations.get(from).copied())
+                .unwrap_or(Quat::IDENTITY)
+        };
         let joints = 0..self.target.len();
         let translation = |joint: usize| {
             let from = self.map.source_of(joint)?;
@@ -321,8 +362,18 @@ impl BodyAxes {
         let high = at(Role::Head).or_else(|| middle(Role::upper_arm)).or_else(|| at(Role::Spine));
         let left = snapped(across(Role::thigh).or_else(|| across(Role::upper_arm)));
         let up = snapped(low.zip(high).map(|(low, high)| high - low));
-        let (Some(left), Some(up)) = (left, up) else { return Self { left: Vec3::X, rotation: Quat::IDENTITY } };
-        let Some(up) = (up - left * left.dot(up)).try_normalize() else { return Self { left, rotation: Quat::IDENTITY } };
+        let (Some(left), Some(up)) = (left, up) else {
+            return Self {
+                left: Vec3::X,
+                rotation: Quat::IDENTITY,
+            };
+        };
+        let Some(up) = (up - left * left.dot(up)).try_normalize() else {
+            return Self {
+                left,
+                rotation: Quat::IDENTITY,
+            };
+        };
         let rotation = quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up))));
         Self { left, rotation }
     }
@@ -331,7 +382,13 @@ impl BodyAxes {
 /// A unit vector, exactly along an axis of the world where it is within 15° of one.
 fn snapped(v: Option<Vec3>) -> Option<Vec3> {
     let v = v?.try_normalize()?;
-    Some(Vec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).find(|axis| axis.dot(v) > 0.966).unwrap_or(v))
+    Some(
+        Vec3::AXES
+            .into_iter()
+            .flat_map(|axis| [axis, -axis])
+            .find(|axis| axis.dot(v) > 0.966)
+            .unwrap_or(v),
+    )
 }
 
 /// Whether the map keeps parents and offsets.
@@ -339,14 +396,20 @@ fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     if map.source_of(0) != Some(0) {
         return false;
     }
-    target.joints().iter().enumerate().skip(1).all(|(joint, ours)| match map.source_of(joint) {
-        // What nothing drives may hang at the ends only.
-        None => !target.children(joint).any(|child| map.source_of(child).is_some()),
-        Some(from) => {
-            let theirs = &source.joints()[from];
-            ours.parent.map(|parent| map.source_of(parent)) == Some(theirs.parent) && ours.offset.distance(theirs.offset) < SAME_OFFSET_M
-        }
-    })
+    target
+        .joints()
+        .iter()
+        .enumerate()
+        .skip(1)
+        .all(|(joint, ours)| match map.source_of(joint) {
+            // What nothing drives may hang at the ends only.
+            None => !target.children(joint).any(|child| map.source_of(child).is_some()),
+            Some(from) => {
+                let theirs = &source.joints()[from];
+                ours.parent.map(|parent| map.source_of(parent)) == Some(theirs.parent)
+                    && ours.offset.distance(theirs.offset) < SAME_OFFSET_M
+            }
+        })
 }
 
 /// The ratio of the legs' lengths, else that of the bodies' heights.
@@ -361,10 +424,15 @@ fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_role
 /// For the joints between hips and head that nothing drives: between which driven joints they lie, and how far along.
 fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(usize, usize, f32)>> {
     let mut shares = vec![None; target.len()];
-    let (Some(hips), Some(head)) = (roles.get_within(Role::Hips, target.len()), roles.get_within(Role::Head, target.len())) else {
+    let (Some(hips), Some(head)) = (
+        roles.get_within(Role::Hips, target.len()),
+        roles.get_within(Role::Head, target.len()),
+    ) else {
         return shares;
     };
-    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| target.parent(j)).take_while(|&joint| joint != hips).collect();
+    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| target.parent(j))
+        .take_while(|&joint| joint != hips)
+        .collect();
     back.push(hips);
     back.reverse();
     let driven: Vec<usize> = (0..back.len()).filter(|&i| map.source_of(back[i]).is_some()).collect();

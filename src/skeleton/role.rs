@@ -120,13 +120,9 @@ impl Role {
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Hips | Self::Spine | Self::Head => None,
-            Self::LeftThigh
-            | Self::LeftShin
-            | Self::LeftFoot
-            | Self::LeftToe
-            | Self::LeftUpperArm
-            | Self::LeftForearm
-            | Self::LeftHand => Some(Side::Left),
+            Self::LeftThigh | Self::LeftShin | Self::LeftFoot | Self::LeftToe | Self::LeftUpperArm | Self::LeftForearm | Self::LeftHand => {
+                Some(Side::Left)
+            }
             _ => Some(Side::Right),
         }
     }

@@ -111,8 +111,7 @@ impl Skeleton {
 
     /// The children of `joint`, in order.
     pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        (joint + 1..self.joints.len())
-            .filter(move |&child| self.joints[child].parent == Some(joint))
+        (joint + 1..self.joints.len()).filter(move |&child| self.joints[child].parent == Some(joint))
     }
 
     /// The first joint of that name.
@@ -126,11 +125,7 @@ impl Skeleton {
     pub fn rest_positions(&self) -> Vec<Vec3> {
         let mut positions: Vec<Vec3> = Vec::with_capacity(self.joints.len());
         for joint in &self.joints {
-            positions.push(
-                joint
-                    .parent
-                    .map_or(Vec3::ZERO, |parent| positions[parent] + joint.offset),
-            );
+            positions.push(joint.parent.map_or(Vec3::ZERO, |parent| positions[parent] + joint.offset));
         }
         positions
     }
@@ -165,13 +160,7 @@ mod tests {
             Skeleton::new(vec![joint(None), joint(Some(1))]),
             Err(SkeletonError::ParentAfterChild { index: 1, .. })
         ));
-        let skeleton = Skeleton::new(vec![
-            joint(None),
-            joint(Some(0)),
-            joint(Some(0)),
-            joint(Some(1)),
-        ])
-        .unwrap();
+        let skeleton = Skeleton::new(vec![joint(None), joint(Some(0)), joint(Some(0)), joint(Some(1))]).unwrap();
         assert_eq!(skeleton.children(0).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(skeleton.rest_positions()[3], Vec3::Y * 2.0);
     }

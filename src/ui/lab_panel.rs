@@ -1,6 +1,6 @@
 //! The parameters of the lab that is open, and below them those of the stage.
 
-use super::kit;
+use super::kit::{self, Button, Icon};
 use super::out::{Action, Out};
 use super::param_row::{Detail, param_row_ui};
 use super::text;
@@ -42,7 +42,7 @@ fn view_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             kit::fact_row_ui(label, &value, unit, ui);
         }
         ui.add_space(space::S);
-        if kit::button_ui(text::EXPORT_BVH, kit::Emphasis::Secondary, ui).clicked() {
+        if kit::button_ui(Button::new(text::EXPORT_BVH).icon(Icon::Download), ui).clicked() {
             out.actions.push(Action::SaveBvh(entry.id.clone()));
         }
     }
@@ -62,7 +62,7 @@ fn make_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     compare_ui(Key::GaitSpeed, session, out, ui);
     ui.add_space(space::S);
-    if kit::button_ui(text::KEEP, kit::Emphasis::Primary, ui).clicked() {
+    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).primary(), ui).clicked() {
         out.commands.push(Command::KeepMade);
     }
 }
@@ -103,7 +103,7 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
-    if kit::button_ui(text::EXPORT_RESULT, kit::Emphasis::Secondary, ui).clicked() {
+    if kit::button_ui(Button::new(text::EXPORT_RESULT).icon(Icon::Download), ui).clicked() {
         out.actions.push(Action::SaveBvh("result".to_owned()));
     }
 }
@@ -136,7 +136,7 @@ fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
 fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
     let label = if on { text::COMPARE_OFF } else { text::FULL_HALF_THIRD };
-    let response = kit::button_ui(label, kit::Emphasis::Quiet, ui).on_hover_text(text::COMPARE_HELP);
+    let response = kit::button_ui(Button::new(label).hint(text::COMPARE_HELP), ui);
     if response.clicked() {
         if on {
             out.set_once(Key::Compare, Value::Text(String::new()));
@@ -168,5 +168,25 @@ fn lab_label(session: &Session) -> &'static str {
         "make" => "Make",
         "blend" => "Blend",
         _ => "View",
+    }
+}
+
+/// The lab's parameters that the link names: what an embedding page wants its readers to try.
+fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
+    let compared = session.compare().map(|compare| compare.key);
+    let named = session.params().changed().map(|(param, _)| param);
+    let named = named.filter(|param| matches!(param.group, Group::Make | Group::Blend)).map(|param| param.key);
+    named.chain(compared.into_iter().filter(|key| session.params().get(*key) == &key.param().default_value()))
+}
+
+/// Whether the link names a parameter of the lab.
+pub(crate) fn has_named_params(session: &Session) -> bool {
+    named_params(session).next().is_some()
+}
+
+/// Their rows.
+pub(crate) fn named_params_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    for key in named_params(session) {
+        param_row_ui(key, &Detail::default(), session, out, ui);
     }
 }

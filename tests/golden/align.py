@@ -31,25 +31,30 @@ def minimised(source, target, weights):
     return (turn + np.pi) % (2 * np.pi) - np.pi, x0, z0, 2 * best.cost
 
 
-rng = np.random.default_rng(20)
-cases = []
-for frames, joints, turn, noise, away in [(1, 5, 0.3, 0.05, 1), (5, 7, 2.9, 0.1, 3), (12, 6, -1.8, 0.3, 40), (3, 9, -3.1, 0.6, 2), (4, 4, 1.2, 3.0, 1)]:
-    joint_weights = rng.uniform(0.1, 2.0, joints)
-    weights = np.tile(joint_weights, frames)
-    # f32 inputs, as the program has them.
-    target = (rng.normal(0, 0.6, (frames * joints, 3)) + rng.normal(0, away, 3)).astype(np.float32).astype(float)
-    source = laid((turn, rng.normal(0, away), rng.normal(0, away)), target) + rng.normal(0, noise, target.shape)
-    source = source.astype(np.float32).astype(float)
-    yaw, x0, z0, distance = minimised(source, target, weights)
-    cases.append(
-        {
-            "weights": joint_weights.tolist(),
-            "source": source.tolist(),
-            "target": target.tolist(),
-            "yaw": yaw,
-            "x0": x0,
-            "z0": z0,
-            "distance": distance,
-        }
-    )
-pathlib.Path(__file__).with_suffix(".json").write_text(json.dumps({"cases": cases}))
+def main():
+    rng = np.random.default_rng(20)
+    cases = []
+    for frames, joints, turn, noise, away in [(1, 5, 0.3, 0.05, 1), (5, 7, 2.9, 0.1, 3), (12, 6, -1.8, 0.3, 40), (3, 9, -3.1, 0.6, 2), (4, 4, 1.2, 3.0, 1)]:
+        joint_weights = rng.uniform(0.1, 2.0, joints)
+        weights = np.tile(joint_weights, frames)
+        # f32 inputs, as the program has them.
+        target = (rng.normal(0, 0.6, (frames * joints, 3)) + rng.normal(0, away, 3)).astype(np.float32).astype(float)
+        source = laid((turn, rng.normal(0, away), rng.normal(0, away)), target) + rng.normal(0, noise, target.shape)
+        source = source.astype(np.float32).astype(float)
+        yaw, x0, z0, distance = minimised(source, target, weights)
+        cases.append(
+            {
+                "weights": joint_weights.tolist(),
+                "source": source.tolist(),
+                "target": target.tolist(),
+                "yaw": yaw,
+                "x0": x0,
+                "z0": z0,
+                "distance": distance,
+            }
+        )
+    pathlib.Path(__file__).with_suffix(".json").write_text(json.dumps({"cases": cases}))
+
+
+if __name__ == "__main__":
+    main()

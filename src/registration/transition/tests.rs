@@ -48,7 +48,7 @@ fn close_to_the_best_of_all_pairs() {
             );
             let weights = limb_weights(a.skeleton());
             let options = SearchOptions::new(window);
-            let found = best_transition(&a, &b, &weights, &options).unwrap();
+            let found = best_transition(&a, &b, &weights, 1.75, &options).unwrap();
             let best = brute_force(&a, &b, &weights, &options);
             let rms = found.alignment.rms_m();
             assert!(rms >= best - 1e-5);
@@ -84,7 +84,7 @@ fn long_clips_are_searched_in_two_passes() {
         .clip(),
     );
     let weights = uniform_weights(a.skeleton());
-    let found = best_transition(&a, &b, &weights, &SearchOptions::new(30)).unwrap();
+    let found = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(30)).unwrap();
     // The same walk with another phase and heading: nothing is left but a fraction of a frame.
     assert!(found.rms_cm < 1.0, "{found:?}");
 }
@@ -106,6 +106,7 @@ fn a_clip_that_continues_another_is_entered_where_it_does() {
         &a,
         &b,
         &limb_weights(a.skeleton()),
+        1.75,
         &SearchOptions {
             window: 25,
             leave: Region::SECOND_HALF,
@@ -138,10 +139,10 @@ fn short_clips_grow_the_region_or_say_why_not() {
     );
     let weights = limb_weights(a.skeleton());
     // In the second half of a, no window of 25 frames ends before the clip does.
-    let found = best_transition(&a, &b, &weights, &SearchOptions::new(25)).unwrap();
+    let found = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(25)).unwrap();
     assert!(found.grown && found.leave + 25 <= 40 && found.enter + 25 <= 30);
-    assert!(!best_transition(&a, &b, &weights, &SearchOptions::new(20)).unwrap().grown);
-    let error = best_transition(&a, &b, &weights, &SearchOptions::new(31)).unwrap_err();
+    assert!(!best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(20)).unwrap().grown);
+    let error = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(31)).unwrap_err();
     assert_eq!(
         error,
         RegistrationError::TooShort {
@@ -152,7 +153,10 @@ fn short_clips_grow_the_region_or_say_why_not() {
     );
     assert!(error.to_string().contains("lower the window to 30"));
     assert_eq!(
-        best_transition(&a, &b, &weights, &SearchOptions::new(0)).unwrap().alignment.weight,
+        best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(0))
+            .unwrap()
+            .alignment
+            .weight,
         1.0
     );
 }
@@ -180,10 +184,10 @@ fn clips_that_do_not_fit_are_refused() {
     );
     let weights = limb_weights(a.skeleton());
     assert!(matches!(
-        best_transition(&a, &b, &weights, &SearchOptions::new(5)),
+        best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(5)),
         Err(RegistrationError::FrameRates { .. })
     ));
-    let search = TransitionSearch::new(Arc::clone(&a), Arc::clone(&a), &weights).unwrap();
+    let search = TransitionSearch::new(Arc::clone(&a), Arc::clone(&a), &weights, 1.75).unwrap();
     assert!(matches!(
         search.best(&SearchOptions::new(5)),
         Err(RegistrationError::Unfinished { done: 0, .. })

@@ -1,12 +1,10 @@
 use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
-use crate::clip::{Interpolation, resample};
+use crate::clip::{Contacts, Interpolation, resample, retarget};
 use crate::math::Planar;
-use crate::metrics::TransitionMetrics;
 use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
-use crate::skeleton::retarget;
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -19,9 +17,7 @@ pub(in crate::session) struct BlendInputs {
 
 impl PartialEq for BlendInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pair, &other.pair)
-            && self.place == other.place
-            && self.options == other.options
+        Arc::ptr_eq(&self.pair, &other.pair) && self.place == other.place && self.options == other.options
     }
 }
 
@@ -40,36 +36,32 @@ struct Pair {
     b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
     incoming: Arc<Motion>,
+    sources: [blend::Source; 2],
 }
 
 impl Pair {
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
-        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton())
-            || a.clip.skeleton() == b.clip.skeleton();
+        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
         let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
         let incoming = if same_skeleton && same_rate {
             Arc::clone(b)
         } else {
             let mut clip = (*b.clip).clone();
             if !same_skeleton {
-                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles)
-                    .map_err(|error| error.to_string())?;
+                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
             }
             if !same_rate {
-                clip = resample(&clip, a.clip.fps(), Interpolation::Linear)
-                    .map_err(|error| error.to_string())?;
+                clip = resample(&clip, a.clip.fps(), Interpolation::Linear).map_err(|error| error.to_string())?;
             }
-            let roles = if same_skeleton {
-                b.roles.clone()
-            } else {
-                a.roles.clone()
-            };
+            let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
             Arc::new(Motion::analyze(clip, Some(roles)))
         };
+        let sources = [a, &incoming].map(|m| blend::Source::with_frames(Arc::clone(&m.clip), &m.roles, m.ground_frames.clone()));
         Ok(Self {
             a: Arc::clone(a),
             b: Arc::clone(b),
             incoming,
+            sources,
         })
     }
 }
@@ -98,9 +90,7 @@ impl Blender {
     ) -> Result<BlendInputs, String> {
         let pair = self.pair(a, b)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
-        let window = (params.number(Key::BlendWindow) as usize)
-            .min(frames_a)
-            .min(frames_b);
+        let window = (params.number(Key::BlendWindow) as usize).min(frames_a).min(frames_b);
         let fps = pair.a.clip.fps();
         let frame = |key, frames: usize| {
             params
@@ -108,12 +98,7 @@ impl Blender {
                 .map(|secs| ((secs * fps).round() as usize).min(frames.saturating_sub(window)))
         };
         let match_window = match_window.min(frames_a).min(frames_b);
-        let place = self.place(
-            &pair,
-            match_window,
-            frame(Key::LeaveA, frames_a),
-            frame(Key::EnterB, frames_b),
-        )?;
+        let place = self.place(&pair, match_window, frame(Key::LeaveA, frames_a), frame(Key::EnterB, frames_b))?;
         let law = match params.text(Key::WeightLaw) {
             "linear" => WeightLaw::Linear,
             "smoother" => WeightLaw::Smoother,
@@ -145,10 +130,12 @@ impl Blender {
         }
         let pair = Arc::new(Pair::new(a, b)?);
         let weights = limb_weights(pair.a.clip.skeleton());
+        let body_height = pair.a.roles.body_height(pair.a.clip.skeleton());
         let search = TransitionSearch::new(
             Arc::clone(&pair.a.clip),
             Arc::clone(&pair.incoming.clip),
             &weights,
+            body_height.into(),
         );
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(&pair));
@@ -168,13 +155,7 @@ impl Blender {
     }
 
     /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
-    fn place(
-        &self,
-        pair: &Pair,
-        window: usize,
-        leave: Option<usize>,
-        enter: Option<usize>,
-    ) -> Result<Place, String> {
+    fn place(&self, pair: &Pair, window: usize, leave: Option<usize>, enter: Option<usize>) -> Result<Place, String> {
         let search = self.search.as_ref().ok_or("there are no clips to match")?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let mut options = SearchOptions::new(window);
@@ -223,13 +204,44 @@ impl Blender {
 impl BlendInputs {
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        let Self {
-            pair,
-            place,
-            options,
-        } = self;
-        let (a, b) = (&pair.a, &pair.incoming);
-        let _ = (a, b, place, options);
-        todo!()
+        let Self { pair, place, options } = self;
+        let [a, b] = &pair.sources;
+        let made = blend::dissolve(a, place.leave, b, place.enter, options).map_err(|error| error.to_string())?;
+        let fps = made.clip.fps();
+        let secs = |frame: usize| frame as f64 / fps;
+        let window = made.transition.clone();
+        let transition = Transition {
+            start_secs: secs(window.start),
+            end_secs: secs(window.end.max(window.start)),
+            leave_a_secs: secs(place.leave),
+            enter_b_secs: secs(place.enter),
+            window_frames: window.len(),
+            distance_cm: place.distance_cm,
+        };
+        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, window.len());
+        let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
+        let motion = Motion {
+            clip: Arc::new(made.clip.with_name(name)),
+            roles: pair.a.roles.clone(),
+            contacts,
+            ground_frames: made.frames,
+        };
+        let metrics = Vec::new();
+        let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        };
+        let sources = vec![
+            source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            source(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
+        ];
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources,
+            transition: Some(transition),
+            metrics,
+        })
     }
 }

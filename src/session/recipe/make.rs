@@ -19,9 +19,7 @@ fn synth_params(params: &Params) -> synth::Params {
     let of = |key| params.number(key) as f32;
     let natural = synth::Params::new(synth_action(params));
     synth::Params {
-        speed_mps: params
-            .optional(Key::GaitSpeed)
-            .map_or(natural.speed_mps, |speed| speed as f32),
+        speed_mps: params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32),
         turn_rate_dps: of(Key::TurnRate),
         height_m: of(Key::BodyHeight),
         style: synth::Style {
@@ -71,10 +69,7 @@ pub(in crate::session) fn made_params(id: &str) -> Option<Params> {
     set(Key::Gait, gait)?;
     for pair in list.split(',').filter(|pair| !pair.is_empty()) {
         let (name, value) = pair.split_once(':')?;
-        set(
-            Key::from_name(name).filter(|key| key.param().group == Group::Make)?,
-            value,
-        )?;
+        set(Key::from_name(name).filter(|key| key.param().group == Group::Make)?, value)?;
     }
     Some(params)
 }

@@ -7,8 +7,8 @@ mod tests;
 mod tokens;
 
 use super::{Role, Side, Skeleton};
-pub(crate) use tokens::are_counterparts;
 use std::collections::BTreeMap;
+pub(crate) use tokens::are_counterparts;
 
 /// How the joint of a role was found; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -60,7 +60,10 @@ impl From<BTreeMap<Role, Assigned>> for Roles {
 
 impl From<Roles> for BTreeMap<Role, Assigned> {
     fn from(roles: Roles) -> Self {
-        Role::ALL.into_iter().filter_map(|role| Some((role, roles.assigned[role.index()]?))).collect()
+        Role::ALL
+            .into_iter()
+            .filter_map(|role| Some((role, roles.assigned[role.index()]?)))
+            .collect()
     }
 }
 
@@ -84,7 +87,10 @@ impl Roles {
     fn fill(&mut self, skeleton: &Skeleton, other: &Self) {
         for role in Role::ALL {
             let Some(candidate) = other.assigned[role.index()] else { continue };
-            if self.assigned[role.index()].is_none() && self.role_of(candidate.joint).is_none() && self.fits(skeleton, role, candidate.joint) {
+            if self.assigned[role.index()].is_none()
+                && self.role_of(candidate.joint).is_none()
+                && self.fits(skeleton, role, candidate.joint)
+            {
                 self.assigned[role.index()] = Some(candidate);
             }
         }
@@ -126,7 +132,10 @@ impl Roles {
         if let Some(previous) = joint.and_then(|joint| self.role_of(joint)) {
             self.assigned[previous.index()] = None;
         }
-        self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found: Found::ByHand });
+        self.assigned[role.index()] = joint.map(|joint| Assigned {
+            joint,
+            found: Found::ByHand,
+        });
     }
 
     fn assign(&mut self, role: Role, joint: Option<usize>, found: Found) {
@@ -156,11 +165,17 @@ impl Roles {
         let Some(Assigned { joint, found }) = self.assigned[role.index()] else {
             return format!("no joint was found for the {}: choose one by hand", role.name());
         };
-        let name = skeleton.joints().get(joint).map_or("a joint that this skeleton does not have", |j| j.name.as_str());
+        let name = skeleton
+            .joints()
+            .get(joint)
+            .map_or("a joint that this skeleton does not have", |j| j.name.as_str());
         match found {
             Found::ByHand => format!("`{name}` is the {}: chosen by hand", role.name()),
             Found::ByName => format!("`{name}` is the {}: by its name", role.name()),
-            Found::ByShape => format!("`{name}` is the {}: by where it lies in the body, its name does not tell", role.name()),
+            Found::ByShape => format!(
+                "`{name}` is the {}: by where it lies in the body, its name does not tell",
+                role.name()
+            ),
         }
     }
 

@@ -7,8 +7,22 @@ type Vocabulary = &'static [&'static [&'static str]];
 
 const HIPS: Vocabulary = &[&["hips", "pelvis", "hip"], &["root"]];
 const SPINE: Vocabulary = &[&[
-    "spine", "lowerback", "lowerspine", "spinelower", "back", "abdomen", "abdomenlower", "ab", "waist", "torso", "stomach", "belly", "chest", "thorax",
-    "upperback", "upperspine",
+    "spine",
+    "lowerback",
+    "lowerspine",
+    "spinelower",
+    "back",
+    "abdomen",
+    "abdomenlower",
+    "ab",
+    "waist",
+    "torso",
+    "stomach",
+    "belly",
+    "chest",
+    "thorax",
+    "upperback",
+    "upperspine",
 ]];
 const HEAD: Vocabulary = &[&["head", "skull"]];
 // A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU); "LeftLeg" is the shin, unless it is
@@ -25,7 +39,11 @@ const HAND: Vocabulary = &[&["wrist"], &["hand"]];
 
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let names: Vec<Tokens> = skeleton.joints().iter().map(|j| tokens::read(&j.name)).collect();
-    let search = Search { skeleton, names: &names, depths: depths(skeleton) };
+    let search = Search {
+        skeleton,
+        names: &names,
+        depths: depths(skeleton),
+    };
     let mut roles = Roles::default();
     let hips = search.best(HIPS, None, None);
     roles.assign(Role::Hips, hips, Found::ByName);
@@ -64,7 +82,11 @@ impl Search<'_> {
             // "torso_head" is read as the joint where the head starts, if no joint is called "head" outright.
             group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
         };
-        let ranked = self.names.iter().enumerate().filter_map(|(joint, tokens)| Some((rank(joint, tokens)?, self.depths[joint], joint)));
+        let ranked = self
+            .names
+            .iter()
+            .enumerate()
+            .filter_map(|(joint, tokens)| Some((rank(joint, tokens)?, self.depths[joint], joint)));
         ranked.min().map(|(_, _, joint)| joint)
     }
 

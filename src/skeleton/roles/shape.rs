@@ -17,7 +17,9 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let Some((hips, legs)) = shape.legs() else { return roles };
     roles.assign(Role::Hips, Some(hips), Found::ByShape);
     let legs: Vec<Leg> = legs.into_iter().map(|tip| shape.leg(hips, tip)).collect();
-    let [Some(a), Some(b)] = [legs[0].thigh, legs[1].thigh] else { return roles };
+    let [Some(a), Some(b)] = [legs[0].thigh, legs[1].thigh] else {
+        return roles;
+    };
     // Left × up = forward, so left = up × forward.
     let forward = legs.iter().filter_map(|leg| leg.forward).sum::<Vec3>();
     let forward = if forward.length() > 0.01 * shape.height { forward } else { Vec3::Z };
@@ -64,7 +66,12 @@ impl<'a> Shape<'a> {
             has_child[parent] = true;
         }
         let leaves: Vec<usize> = (0..skeleton.len()).filter(|&joint| !has_child[joint]).collect();
-        let mut shape = Self { skeleton, rest, leaves, height: 0.0 };
+        let mut shape = Self {
+            skeleton,
+            rest,
+            leaves,
+            height: 0.0,
+        };
         let heights = || (0..skeleton.len()).map(|joint| shape.tip(joint).y);
         shape.height = heights().fold(f32::MIN, f32::max) - heights().fold(f32::MAX, f32::min);
         shape
@@ -77,8 +84,9 @@ impl<'a> Shape<'a> {
 
     /// The joints from below `top` down to `bottom`.
     fn path(&self, top: usize, bottom: usize) -> Vec<usize> {
-        let mut path: Vec<usize> =
-            std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j)).take_while(|&joint| joint != top).collect();
+        let mut path: Vec<usize> = std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j))
+            .take_while(|&joint| joint != top)
+            .collect();
         path.reverse();
         path
     }
@@ -108,34 +116,52 @@ impl<'a> Shape<'a> {
 
     /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower, the joint at the lower one's end).
     fn limb(&self, top: usize, tip: usize) -> Option<(usize, usize, Option<usize>)> {
-        let mut path = self.path(top, tip);
-        // Joints at one place (bones without length) count as one: the last of them turns what comes next.
-        path.dedup_by(|later, earlier| {
-            let same = self.rest[*later].distance(self.rest[*earlier]) < 1e-4 * self.height;
-            if same {
-                *earlier = *later;
+        // Joints at one place (bones without length) count as one. The last of them turns the bone that starts there, and the first one
+        // carries all that hangs on the end of the bone before.
+        let mut places: Vec<(usize, usize)> = Vec::new();
+        for joint in self.path(top, tip) {
+            match places.last_mut() {
+                Some((_, last)) if self.rest[*last].distance(self.rest[joint]) < 1e-4 * self.height => *last = joint,
+                _ => places.push((joint, joint)),
             }
-            same
-        });
-        let bone = |i: usize| match path.get(i + 1) {
-            Some(&next) => self.rest[path[i]].distance(self.rest[next]),
-            None => self.rest[path[i]].distance(self.tip(path[i])),
+        }
+        let bone = |i: usize| match places.get(i + 1) {
+            Some(&(next, _)) => self.rest[places[i].1].distance(self.rest[next]),
+            None => self.rest[places[i].1].distance(self.tip(places[i].1)),
         };
-        let longest = (0..path.len()).map(bone).fold(0.0, f32::max);
-        let mut long = (0..path.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
+        let longest = (0..places.len()).map(bone).fold(0.0, f32::max);
+        let mut long = (0..places.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
         let (lower, upper) = (long.next()?, long.next()?);
-        Some((path[upper], path[lower], path.get(lower + 1).copied()))
+        Some((places[upper].1, places[lower].1, places.get(lower + 1).map(|&(first, _)| first)))
     }
 
     fn leg(&self, hips: usize, tip: usize) -> Leg {
-        let Some((thigh, shin, foot)) = self.limb(hips, tip) else { return Leg::default() };
-        let Some(ankle) = foot else { return Leg { thigh: Some(thigh), shin: Some(shin), ..Leg::default() } };
+        let Some((thigh, shin, foot)) = self.limb(hips, tip) else {
+            return Leg::default();
+        };
+        let Some(ankle) = foot else {
+            return Leg {
+                thigh: Some(thigh),
+                shin: Some(shin),
+                ..Leg::default()
+            };
+        };
         let over_ground = |leaf: usize| (self.tip(leaf) - self.rest[ankle]) * Vec3::new(1.0, 0.0, 1.0);
         // A heel may be the lowest point; the toes are what is farthest from the ankle.
-        let leaves = self.leaves.iter().copied().filter(|&leaf| leaf == ankle || is_below(self.skeleton, leaf, ankle));
+        let leaves = self
+            .leaves
+            .iter()
+            .copied()
+            .filter(|&leaf| leaf == ankle || is_below(self.skeleton, leaf, ankle));
         let farthest = leaves.max_by(|&a, &b| over_ground(a).length().total_cmp(&over_ground(b).length()));
         let toe = farthest.and_then(|leaf| self.path(ankle, leaf).first().copied());
-        Leg { thigh: Some(thigh), shin: Some(shin), foot: Some(ankle), toe: toe.filter(|&t| t != ankle), forward: farthest.map(over_ground) }
+        Leg {
+            thigh: Some(thigh),
+            shin: Some(shin),
+            foot: Some(ankle),
+            toe: toe.filter(|&t| t != ankle),
+            forward: farthest.map(over_ground),
+        }
     }
 
     /// Assigns the arms and returns the joint where they meet.
@@ -160,12 +186,24 @@ impl<'a> Shape<'a> {
     fn back_and_head(&self, leaves: &[usize], hips: usize, chest: Option<usize>, roles: &mut Roles) {
         let arms: Vec<usize> = Side::BOTH.into_iter().filter_map(|side| roles.get(Role::upper_arm(side))).collect();
         let in_arm = |leaf: usize| arms.iter().any(|&arm| leaf == arm || is_below(self.skeleton, leaf, arm));
-        let highest = (leaves.iter().copied()).filter(|&leaf| !in_arm(leaf)).max_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
-        let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else { return };
+        let highest = (leaves.iter().copied())
+            .filter(|&leaf| !in_arm(leaf))
+            .max_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else {
+            return;
+        };
         // A leaf without a bone of its own marks where the head ends.
-        let marks_the_end = self.skeleton.joints()[highest].end_site.is_none_or(|end| end.length() < 1e-4 * self.height);
-        let head = if marks_the_end { self.skeleton.parent(highest) } else { Some(highest) };
-        let head = head.filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips)).unwrap_or(highest);
+        let marks_the_end = self.skeleton.joints()[highest]
+            .end_site
+            .is_none_or(|end| end.length() < 1e-4 * self.height);
+        let head = if marks_the_end {
+            self.skeleton.parent(highest)
+        } else {
+            Some(highest)
+        };
+        let head = head
+            .filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips))
+            .unwrap_or(highest);
         roles.assign(Role::Head, Some(head), Found::ByShape);
         let spine = self.path(hips, chest.unwrap_or(head)).first().copied();
         roles.assign(Role::Spine, spine.filter(|&spine| spine != head), Found::ByShape);

@@ -1,1 +1,157 @@
 use super::*;
+use crate::skeleton::{Joint, fixtures};
+use glam::Vec3;
+
+fn names(skeleton: &Skeleton, roles: &Roles) -> Vec<String> {
+    Role::ALL
+        .iter()
+        .map(|&role| roles.get(role).map_or(String::new(), |joint| skeleton.joints()[joint].name.clone()))
+        .collect()
+}
+
+#[test]
+fn common_rigs_are_known_by_name() {
+    for (rig, skeleton, wanted) in fixtures::all() {
+        let roles = Roles::detect(&skeleton);
+        assert_eq!(names(&skeleton, &roles), wanted, "{rig}");
+        for role in Role::ALL {
+            assert_eq!(roles.found(role), Some(Found::ByName), "{rig}: {role:?}");
+        }
+    }
+}
+
+#[test]
+fn names_count_whatever_the_order_of_joints() {
+    for (rig, skeleton, wanted) in fixtures::all() {
+        for seed in 0..8 {
+            let (shuffled, _) = fixtures::shuffled(&skeleton, seed);
+            assert_eq!(names(&shuffled, &Roles::detect(&shuffled)), wanted, "{rig}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn case_does_not_count() {
+    for (rig, skeleton, wanted) in fixtures::all() {
+        let lower = skeleton.joints().iter().map(|joint| Joint {
+            name: joint.name.to_lowercase(),
+            ..joint.clone()
+        });
+        let lower = Skeleton::new(lower.collect()).unwrap();
+        let wanted = wanted.map(str::to_lowercase);
+        assert_eq!(names(&lower, &names::detect(&lower)), wanted, "{rig}");
+    }
+}
+
+#[test]
+fn the_shape_tells_what_names_do_not() {
+    for (rig, skeleton, mut wanted) in fixtures::all() {
+        if rig == "biped" {
+            // Without names, the joint on which the legs hang is the hips, and the next one above it the spine.
+            (wanted[0], wanted[1]) = ("Bip01 Spine", "Bip01 Spine1");
+        }
+        for seed in 0..4 {
+            let (shuffled, _) = fixtures::shuffled(&fixtures::uneven(&skeleton, 1.3, 0.03, 0.05, seed), seed);
+            let roles = Roles::detect(&fixtures::nameless(&shuffled));
+            assert_eq!(names(&shuffled, &roles), wanted, "{rig}, seed {seed}");
+            assert!(Role::ALL.iter().all(|&role| roles.found(role) == Some(Found::ByShape)));
+        }
+    }
+}
+
+#[test]
+fn left_and_right_follow_from_the_toes() {
+    let half_turn = glam::Quat::from_rotation_y(std::f32::consts::PI);
+    for (rig, skeleton, wanted) in fixtures::all().into_iter().filter(|(rig, ..)| *rig != "biped") {
+        let turned = skeleton.joints().iter().enumerate().map(|(i, joint)| Joint {
+            name: format!("j{i}"),
+            offset: half_turn * joint.offset,
+            end_site: joint.end_site.map(|end| half_turn * end),
+            ..joint.clone()
+        });
+        let turned = Skeleton::new(turned.collect()).unwrap();
+        assert_eq!(names(&skeleton, &Roles::detect(&turned)), wanted, "{rig}");
+    }
+}
+
+#[test]
+fn shape_fills_the_gaps_between_names() {
+    let skeleton = fixtures::mixamo();
+    let joints = skeleton.joints().iter().map(|joint| {
+        let strange = joint.name.ends_with("RightLeg") || joint.name.ends_with("Head");
+        Joint {
+            name: if strange { "xyz".into() } else { joint.name.clone() },
+            ..joint.clone()
+        }
+    });
+    let roles = Roles::detect(&Skeleton::new(joints.collect()).unwrap());
+    let all_named = Roles::detect(&skeleton);
+    for role in Role::ALL {
+        assert_eq!(roles.get(role), all_named.get(role), "{role:?}");
+        let found = if [Role::RightShin, Role::Head].contains(&role) {
+            Found::ByShape
+        } else {
+            Found::ByName
+        };
+        assert_eq!(roles.found(role), Some(found), "{role:?}");
+    }
+}
+
+#[test]
+fn strange_trees_have_few_roles_and_no_panic() {
+    let joint = |parent, offset| Joint {
+        name: "Joint".into(),
+        parent,
+        offset,
+        end_site: None,
+        channels: vec![],
+    };
+    assert_eq!(Roles::detect(&Skeleton::new(vec![joint(None, Vec3::ZERO)]).unwrap()).count(), 0);
+    let snake: Vec<Joint> = (0..3000).map(|i: usize| joint(i.checked_sub(1), Vec3::Z)).collect();
+    assert_eq!(Roles::detect(&Skeleton::new(snake).unwrap()).count(), 0);
+    let star: Vec<Joint> = (0..100).map(|i: usize| joint((i > 0).then_some(0), Vec3::ZERO)).collect();
+    assert_eq!(Roles::detect(&Skeleton::new(star).unwrap()).count(), 0);
+    let not_numbers: Vec<Joint> = (0..20)
+        .map(|i: usize| joint((i > 0).then_some(i / 2), Vec3::splat(f32::NAN)))
+        .collect();
+    let _ = Roles::detect(&Skeleton::new(not_numbers).unwrap());
+}
+
+#[test]
+fn a_correction_by_hand_takes_the_joint_from_its_old_role() {
+    let skeleton = fixtures::lafan();
+    let mut roles = fixtures::roles(&skeleton);
+    let (foot, toe) = (roles.get(Role::LeftFoot), roles.get(Role::LeftToe));
+    roles.set(Role::LeftFoot, toe);
+    assert_eq!((roles.get(Role::LeftFoot), roles.get(Role::LeftToe)), (toe, None));
+    assert_eq!(roles.found(Role::LeftFoot), Some(Found::ByHand));
+    assert!(
+        roles
+            .explain(Role::LeftFoot, &skeleton)
+            .contains("`LeftToe` is the left foot: chosen by hand")
+    );
+    assert!(roles.explain(Role::LeftToe, &skeleton).contains("choose one"));
+    roles.set(Role::LeftFoot, foot);
+    roles.set(Role::LeftFoot, None);
+    assert_eq!(roles.missing().collect::<Vec<_>>(), [Role::LeftFoot, Role::LeftToe]);
+}
+
+#[test]
+fn roles_are_stored_by_name() {
+    let roles = fixtures::roles(&fixtures::cmu_asf());
+    let stored = serde_json::to_string(&roles).unwrap();
+    assert!(stored.contains(r#""LeftThigh":{"joint":"#), "{stored}");
+    assert_eq!(serde_json::from_str::<Roles>(&stored).unwrap(), roles);
+}
+
+#[test]
+fn body_measures_come_from_the_legs() {
+    let skeleton = fixtures::lafan();
+    let roles = fixtures::roles(&skeleton);
+    let leg = roles.leg_length(&skeleton).unwrap();
+    let wanted = Vec3::new(0.0, 0.41, 0.01).length() + Vec3::new(0.0, 0.41, 0.03).length();
+    assert!((leg - wanted).abs() < 1e-5);
+    assert!((roles.body_height(&skeleton) - leg / 0.491).abs() < 1e-5);
+    // Without roles the extent at rest: arms stretched out from -0.83 to 0.83 m end at the wrists at 0.7 m.
+    assert!((Roles::default().body_height(&skeleton) - 1.51).abs() < 1e-4);
+}

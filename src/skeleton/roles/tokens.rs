@@ -2,20 +2,45 @@ use crate::skeleton::Side;
 
 /// Words of which joint names are composed. Only runs that consist of these words entirely are split (`leftupleg`, `lowerback`).
 const WORDS: &[&str] = &[
-    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f", "femur",
-    "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee", "left", "leg",
-    "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin", "shldr", "shoulder",
-    "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up", "upper", "waist", "wrist",
+    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f",
+    "femur", "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee",
+    "left", "leg", "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin",
+    "shldr", "shoulder", "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up",
+    "upper", "waist", "wrist",
 ];
 
 /// Words that say nothing about what a joint is for.
 const NOISE: &[&str] = &[
-    "avg", "b", "base", "bend", "bind", "bip", "biped", "bn", "bone", "c", "cc", "character", "def", "j", "jnt", "joint", "jt", "m", "mixamorig",
-    "mot", "org", "rig", "sk", "skel",
+    "avg",
+    "b",
+    "base",
+    "bend",
+    "bind",
+    "bip",
+    "biped",
+    "bn",
+    "bone",
+    "c",
+    "cc",
+    "character",
+    "def",
+    "j",
+    "jnt",
+    "joint",
+    "jt",
+    "m",
+    "mixamorig",
+    "mot",
+    "org",
+    "rig",
+    "sk",
+    "skel",
 ];
 
 /// Words of joints that move nothing of the body itself.
-const HELPERS: &[&str] = &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
+const HELPERS: &[&str] = &[
+    "effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist",
+];
 
 /// A joint's name, read.
 #[derive(Debug, PartialEq, Eq)]
@@ -68,7 +93,13 @@ pub(super) fn read(name: &str) -> Tokens {
         }
     }
     let side = sides.first().copied().filter(|first| sides.iter().all(|s| s == first));
-    Tokens { side, core, last, numbers, helper }
+    Tokens {
+        side,
+        core,
+        last,
+        numbers,
+        helper,
+    }
 }
 
 /// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.

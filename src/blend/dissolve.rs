@@ -1,0 +1,388 @@
+use super::{BlendError, WeightLaw, align_onto};
+use crate::clip::{Clip, JointTranslations, character_frames, motion_root};
+use crate::math::{Planar, quat, wrap_angle};
+use crate::registration::limb_weights;
+use crate::skeleton::{Roles, Skeleton, WorldPose, world_pose_into};
+use glam::{DVec2, Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How the way over the ground is blended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum RootBlend {
+    /// Forward speed, sideways speed and yaw rate are blended in the character's own frame and integrated from where A leaves.
+    #[default]
+    Velocity,
+    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways part, the feet slide.
+    World,
+}
+
+/// What a dissolve is made with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub struct DissolveOptions {
+    /// Frames that overlap. 0 and 1 are a cut.
+    pub window: usize,
+    /// How A's weight falls.
+    pub law: WeightLaw,
+    /// Whether B is first laid on A. Without, B stays where its file put it, and the way over the ground is blended in the world whatever `root`
+    /// says: the character flies to B's place during the window, or flashes there at a cut.
+    pub align: bool,
+    /// How the way over the ground is blended.
+    pub root: RootBlend,
+}
+
+impl Default for DissolveOptions {
+    fn default() -> Self {
+        Self {
+            window: 30,
+            law: WeightLaw::default(),
+            align: true,
+            root: RootBlend::default(),
+        }
+    }
+}
+
+/// A clip with what is measured on it once, not once for every blend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    clip: Arc<Clip>,
+    frames: Vec<Planar>,
+    motion_root: usize,
+    weights: Vec<f64>,
+}
+
+impl Source {
+    /// Measures where the character stands and faces in every frame, and the joint that carries it. O(frames × joints).
+    #[must_use]
+    pub fn new(clip: Arc<Clip>, roles: &Roles) -> Self {
+        let frames = character_frames(&clip, roles);
+        Self::with_frames(clip, roles, frames)
+    }
+
+    /// Likewise, where `frames` ([`character_frames`] of the clip) are known already.
+    #[must_use]
+    pub fn with_frames(clip: Arc<Clip>, roles: &Roles, frames: Vec<Planar>) -> Self {
+        let motion_root = motion_root(&clip, roles);
+        let weights = limb_weights(clip.skeleton());
+        Self { clip, frames, motion_root, weights }
+    }
+
+    /// The clip.
+    #[must_use]
+    pub fn clip(&self) -> &Arc<Clip> {
+        &self.clip
+    }
+
+    /// `world_from_character`, one per frame.
+    #[must_use]
+    pub fn frames(&self) -> &[Planar] {
+        &self.frames
+    }
+
+    /// The joint that carries the character through the world.
+    #[must_use]
+    pub fn motion_root(&self) -> usize {
+        self.motion_root
+    }
+
+    /// The step of the character into `frame`, in its own frame at the frame before; into frame 0 the step that follows it (no other is known).
+    fn step_into(&self, frame: usize) -> Planar {
+        let frame = frame.max(1);
+        match (self.frames.get(frame - 1), self.frames.get(frame)) {
+            (Some(before), Some(here)) => before.inverse().after(here),
+            _ => Planar::IDENTITY,
+        }
+    }
+}
+
+/// What comes out of a dissolve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dissolve {
+    /// A up to the window, the window, B from its end on; B's part lies in A's world.
+    pub clip: Clip,
+    /// The window's frames in the result; empty for a cut, whose first frame of B is `transition.start`.
+    pub transition: Range<usize>,
+    /// Where B was laid on A for the window: `result_world_from_b_world`. The identity when B is not laid on A.
+    pub aligned_b: Planar,
+    /// Where B lies in every frame of the window. The same everywhere when roots are blended in the world; with blended velocities B
+    /// drifts from lying on A's place to [`world_from_b`](Self::world_from_b).
+    pub b_during: Vec<Planar>,
+    /// Where B lies from the end of the window on.
+    pub world_from_b: Planar,
+    /// Where the character stands and faces in every frame of the result, as it was blended (`world_from_character`).
+    pub frames: Vec<Planar>,
+}
+
+/// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of `options.window` overlapped frames.
+///
+/// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window is all A, its last frame is all B (Kovar,
+/// Gleicher, Pighin 2002, section 4.2). Local rotations slerp by the shorter way, translations and heights lerp. With
+/// [`RootBlend::Velocity`], poses are blended in the character's frame, and the character's steps (forward, sideways, yaw; each step at the
+/// weight of its middle) are blended and integrated from A's last frame; B then goes on rigidly from where that ends, without a jump. With
+/// [`RootBlend::World`] root positions and orientations are interpolated in the world after B was laid on A.
+///
+/// # Errors
+/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), or a window crosses the end of
+/// its clip.
+pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &DissolveOptions) -> Result<Dissolve, BlendError> {
+    let window = if options.window < 2 { 0 } else { options.window };
+    check(a, leave, b, enter, window)?;
+    // A cut right behind A's last frame is aligned by that frame.
+    let meets = leave.min(a.clip.frames().saturating_sub(1));
+    let aligned_b = if options.align {
+        let facing = a.frames[meets].yaw - b.frames[enter].yaw;
+        align_onto(&a.clip, meets, &b.clip, enter, window.max(1), &a.weights, facing)?.transform
+    } else {
+        Planar::IDENTITY
+    };
+    let blend = Blend {
+        a,
+        leave,
+        b,
+        enter,
+        window,
+        law: options.law,
+    };
+    let by_velocity = options.align && options.root == RootBlend::Velocity;
+    let frames_during = if by_velocity {
+        blend.integrated()
+    } else {
+        blend.between(&aligned_b)
+    };
+    let (b_during, world_from_b) = if by_velocity {
+        let during: Vec<Planar> = frames_during
+            .iter()
+            .zip(&b.frames[enter..])
+            .map(|(here, in_b)| here.after(&in_b.inverse()))
+            .collect();
+        let end = during
+            .last()
+            .copied()
+            .unwrap_or_else(|| blend.start().after(&b.frames[enter].inverse()));
+        (during, end)
+    } else {
+        (vec![aligned_b; window], aligned_b)
+    };
+    let placing = if by_velocity {
+        Placing::Character(&frames_during)
+    } else {
+        Placing::World(aligned_b)
+    };
+    let clip = blend.clip(&placing, &world_from_b)?;
+    let mut frames = a.frames[..leave].to_vec();
+    frames.extend(frames_during);
+    frames.extend(b.frames[enter + window..].iter().map(|frame| world_from_b.after(frame)));
+    Ok(Dissolve {
+        clip,
+        transition: leave..leave + window,
+        aligned_b,
+        b_during,
+        world_from_b,
+        frames,
+    })
+}
+
+fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: usize) -> Result<(), BlendError> {
+    let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
+    if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
+        return Err(BlendError::Skeletons {
+            a: a.clip.name().into(),
+            b: b.clip.name().into(),
+        });
+    }
+    if (a_fps - b_fps).abs() > 1e-4 * a_fps {
+        return Err(BlendError::FrameRates { a_fps, b_fps });
+    }
+    // B gives at least one frame, A may end right before a cut.
+    for (which, clip, at, window) in [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))] {
+        let frames = clip.frames();
+        if frames == 0 || at > frames || frames - at < window {
+            return Err(BlendError::Window { which, frames, at, window });
+        }
+    }
+    Ok(())
+}
+
+/// Whether the joints have the same names and parents, and offsets that agree to a tenth of a millimetre.
+fn same_body(a: &Arc<Skeleton>, b: &Arc<Skeleton>) -> bool {
+    Arc::ptr_eq(a, b)
+        || (a.len() == b.len()
+            && a.joints().iter().zip(b.joints()).enumerate().all(|(index, (a, b))| {
+                // The root's rest offset is never used: its translation is given in every frame.
+                a.parent == b.parent && a.name == b.name && (index == 0 || a.offset.abs_diff_eq(b.offset, 1e-4))
+            }))
+}
+
+struct Blend<'a> {
+    a: &'a Source,
+    leave: usize,
+    b: &'a Source,
+    enter: usize,
+    window: usize,
+    law: WeightLaw,
+}
+
+/// How the poses of the window get their place.
+enum Placing<'a> {
+    /// Blended in the character's frame, then put where the character is.
+    Character(&'a [Planar]),
+    /// Blended in the world, with B moved by this.
+    World(Planar),
+}
+
+impl Blend<'_> {
+    /// A's weight in frame `p` of the window, or at a time between frames.
+    fn weight(&self, p: f64) -> f64 {
+        self.law.alpha((p + 1.0) / self.window as f64)
+    }
+
+    /// Where the character is in the frame after A's last one, if it makes B's step: where a cut goes on.
+    fn start(&self) -> Planar {
+        match self.leave.checked_sub(1) {
+            Some(last) => self.a.frames[last].after(&self.b.step_into(self.enter)),
+            None => self.a.frames[0],
+        }
+    }
+
+    /// The character's frames in the window: steps blended in the character's frame, integrated from A's last frame before it.
+    fn integrated(&self) -> Vec<Planar> {
+        let mut here = self.leave.checked_sub(1).map(|last| self.a.frames[last]);
+        (0..self.window)
+            .map(|p| {
+                let next = match here {
+                    // The window starts with A's first frame.
+                    None => self.a.frames[0],
+                    Some(here) => {
+                        let (a, b) = (self.a.step_into(self.leave + p), self.b.step_into(self.enter + p));
+                        here.after(&mixed(&a, &b, self.weight(p as f64 - 0.5)))
+                    }
+                };
+                here = Some(next);
+                next
+            })
+            .collect()
+    }
+
+    /// The character's frames in the window, interpolated in the world.
+    fn between(&self, world_from_b: &Planar) -> Vec<Planar> {
+        (0..self.window)
+            .map(|p| {
+                mixed(
+                    &self.a.frames[self.leave + p],
+                    &world_from_b.after(&self.b.frames[self.enter + p]),
+                    self.weight(p as f64),
+                )
+            })
+            .collect()
+    }
+
+    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation.
+    fn root(&self, p: usize, placing: &Placing<'_>) -> (f32, Vec3, Quat) {
+        let weight = self.weight(p as f64) as f32;
+        let (fa, fb) = (self.leave + p, self.enter + p);
+        let (a_from, b_from) = match placing {
+            Placing::Character(_) => (self.a.frames[fa].inverse(), self.b.frames[fb].inverse()),
+            Placing::World(world_from_b) => (Planar::IDENTITY, *world_from_b),
+        };
+        let a = a_from.apply(self.a.clip.root_translations()[fa]);
+        let b = b_from.apply(self.b.clip.root_translations()[fb]);
+        let translation = b.lerp(a, weight);
+        let a_rotation = a_from.rotation() * self.a.clip.rotations(fa)[0];
+        let b_rotation = b_from.rotation() * self.b.clip.rotations(fb)[0];
+        let rotation = quat::slerp(b_rotation, a_rotation, weight);
+        match placing {
+            Placing::Character(frames) => (
+                weight,
+                frames[p].apply(translation),
+                quat::renormalize(frames[p].rotation() * rotation),
+            ),
+            Placing::World(_) => (weight, translation, rotation),
+        }
+    }
+
+    fn clip(&self, placing: &Placing<'_>, world_from_b: &Planar) -> Result<Clip, BlendError> {
+        let (a, b) = (&self.a.clip, &self.b.clip);
+        let skeleton = a.skeleton();
+        let joints = skeleton.len();
+        let after = self.enter + self.window;
+        let frames = self.leave + self.window + (b.frames() - after);
+        let mut rotations = Vec::with_capacity(frames * joints);
+        let mut roots = Vec::with_capacity(frames);
+        for frame in 0..self.leave {
+            rotations.extend_from_slice(a.rotations(frame));
+        }
+        roots.extend_from_slice(&a.root_translations()[..self.leave]);
+        let translations = self.translations();
+        let mut world = WorldPose::default();
+        for p in 0..self.window {
+            let (weight, mut translation, rotation) = self.root(p, placing);
+            let first = rotations.len();
+            rotations.push(rotation);
+            let (from, to) = (a.rotations(self.leave + p), b.rotations(self.enter + p));
+            rotations.extend(from.iter().zip(to).skip(1).map(|(&a, &b)| quat::slerp(b, a, weight)));
+            if let Placing::Character(frames) = placing {
+                // Where the root stands still and a joint below it carries the character, that joint is to be where the character is: the root
+                // is then a long lever, and blended angles alone would swing it.
+                let carrier = self.a.motion_root;
+                if carrier != 0 && carrier == self.b.motion_root {
+                    let moved = translations.iter().map(|track| (track.joint, track.values[self.leave + p]));
+                    world_pose_into(skeleton, translation, &rotations[first..], moved, &mut world);
+                    let off = frames[p].origin() - world.positions[carrier];
+                    translation += Vec3::new(off.x, 0.0, off.z);
+                }
+            }
+            roots.push(translation);
+        }
+        let turn = world_from_b.rotation();
+        for frame in after..b.frames() {
+            let local = b.rotations(frame);
+            rotations.extend(local.first().map(|&root| quat::renormalize(turn * root)));
+            rotations.extend_from_slice(&local[1..]);
+        }
+        roots.extend(b.root_translations()[after..].iter().map(|&p| world_from_b.apply(p)));
+        let name = format!("{} → {}", a.name(), b.name());
+        let clip = Clip::new(name, Arc::clone(skeleton), a.fps(), rotations, roots)?;
+        Ok(clip.with_translations(translations)?.with_provenance(a.provenance()))
+    }
+
+    /// Translations of every joint that moves against its parent in either clip; it rests in the other.
+    fn translations(&self) -> Vec<JointTranslations> {
+        let (a, b) = (&self.a.clip, &self.b.clip);
+        let mut joints: Vec<usize> = a.translations().iter().chain(b.translations()).map(|track| track.joint).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let of = |clip: &Clip, joint: usize| {
+            let rest = clip.skeleton().joints()[joint].offset;
+            let track = clip.translations().iter().position(|track| track.joint == joint);
+            (track, rest)
+        };
+        let at =
+            |clip: &Clip, (track, rest): (Option<usize>, Vec3), frame: usize| track.map_or(rest, |t| clip.translations()[t].values[frame]);
+        let blended = |joint: usize| {
+            let (in_a, in_b) = (of(a, joint), of(b, joint));
+            let before = (0..self.leave).map(|frame| at(a, in_a, frame));
+            let during = (0..self.window).map(|p| {
+                let weight = self.weight(p as f64) as f32;
+                at(b, in_b, self.enter + p).lerp(at(a, in_a, self.leave + p), weight)
+            });
+            let after = (self.enter + self.window..b.frames()).map(|frame| at(b, in_b, frame));
+            JointTranslations {
+                joint,
+                values: before.chain(during).chain(after).collect(),
+            }
+        };
+        joints.into_iter().map(blended).collect()
+    }
+}
+
+/// `weight` of `a`, the rest of `b`; the turn goes the shorter way.
+fn mixed(a: &Planar, b: &Planar, weight: f64) -> Planar {
+    let shift: DVec2 = b.shift + (a.shift - b.shift) * weight;
+    Planar {
+        yaw: wrap_angle(a.yaw + wrap_angle(b.yaw - a.yaw) * (1.0 - weight)),
+        shift,
+    }
+}
+
+#[cfg(test)]
+mod tests;

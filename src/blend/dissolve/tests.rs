@@ -1,0 +1,444 @@
+use super::*;
+use crate::registration::fixtures::{Walk, body};
+use crate::skeleton::Joint;
+use proptest::prelude::*;
+use std::f32::consts::PI;
+
+fn source(walk: Walk) -> Source {
+    let clip = walk.clip();
+    let roles = Roles::detect(clip.skeleton());
+    Source::new(Arc::new(clip), &roles)
+}
+
+fn two() -> (Source, Source) {
+    let a = source(Walk {
+        frames: 100,
+        ..Walk::default()
+    });
+    let b = source(Walk {
+        frames: 80,
+        speed: 2.2,
+        cadence: 1.3,
+        swing: 0.7,
+        phase: 0.3,
+        heading: 2.5,
+        start: (7.0, -5.0),
+        ..Walk::default()
+    });
+    (a, b)
+}
+
+fn worst_distance(a: &Clip, b: &Clip) -> f32 {
+    assert_eq!(a.frames(), b.frames());
+    let (p, q) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
+    p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max)
+}
+
+fn laws() -> impl Strategy<Value = (WeightLaw, RootBlend)> {
+    (0usize..3, any::<bool>()).prop_map(|(law, world)| (WeightLaw::ALL[law], if world { RootBlend::World } else { RootBlend::Velocity }))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn a_clip_dissolved_into_itself_is_itself((law, root) in laws(), window in 0usize..60, at in 0usize..59, turning in -1.0f32..1.0) {
+        let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
+        let out = dissolve(&a, at, &a, at, &DissolveOptions { window, law, align: true, root }).unwrap();
+        let worst = worst_distance(&out.clip, a.clip());
+        prop_assert!(worst < 1e-5, "{worst}");
+        let angle = (0..120).flat_map(|f| out.clip.rotations(f).iter().zip(a.clip().rotations(f))).map(|(p, q)| quat::angle_between(*p, *q));
+        prop_assert!(angle.fold(0.0, f32::max) < 1e-5 * PI);
+    }
+
+    #[test]
+    fn where_b_lies_at_first_does_not_matter(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0, (law, root) in laws()) {
+        let (a, b) = two();
+        let roles = Roles::detect(b.clip().skeleton());
+        let moved = Source::new(Arc::new(b.clip().transformed(&Planar::new(yaw, x, z))), &roles);
+        let options = DissolveOptions { window: 20, law, align: true, root };
+        let (here, there) = (dissolve(&a, 50, &b, 10, &options).unwrap(), dissolve(&a, 50, &moved, 10, &options).unwrap());
+        let worst = worst_distance(&here.clip, &there.clip);
+        prop_assert!(worst < 2e-4, "{worst}");
+    }
+
+    #[test]
+    fn before_the_window_is_a_and_its_last_frame_and_all_after_is_b((law, root) in laws(), window in 0usize..40, align in any::<bool>()) {
+        let (a, b) = two();
+        let out = dissolve(&a, 55, &b, 7, &DissolveOptions { window, law, align, root }).unwrap();
+        let overlap = if window < 2 { 0 } else { window };
+        prop_assert_eq!(out.transition.clone(), 55..55 + overlap);
+        prop_assert_eq!(out.clip.frames(), 55 + 80 - 7);
+        prop_assert_eq!(out.frames.len(), out.clip.frames());
+        for f in 0..55 {
+            prop_assert_eq!(out.clip.pose(f), a.clip().pose(f));
+        }
+        let from = overlap.saturating_sub(1);
+        for f in from..80 - 7 {
+            let mut expected = b.clip().world_pose(7 + f);
+            expected.apply(&out.world_from_b);
+            let found = out.clip.world_pose(55 + f);
+            for (p, q) in found.positions.iter().zip(&expected.positions) {
+                prop_assert!(p.distance(*q) < 2e-5, "frame {} {} {}", f, p, q);
+            }
+        }
+        prop_assert!(out.clip.root_translations().iter().all(|p| p.is_finite()));
+    }
+}
+
+#[derive(serde::Deserialize)]
+struct Golden {
+    fps: f64,
+    offset: Vec3,
+    cases: Vec<Case>,
+}
+
+#[derive(serde::Deserialize)]
+struct Case {
+    root: RootBlend,
+    leave: usize,
+    enter: usize,
+    window: usize,
+    a: Motion,
+    b: Motion,
+    during: Motion,
+    last_root: Vec3,
+    last_rotation: Quat,
+}
+
+#[derive(serde::Deserialize)]
+struct Motion {
+    roots: Vec<Vec3>,
+    rotations: Vec<[Quat; 2]>,
+}
+
+#[test]
+fn agrees_with_numpy() {
+    let golden: Golden = serde_json::from_str(include_str!("../../../tests/golden/dissolve.json")).unwrap();
+    let joint = |parent, offset| Joint {
+        name: "joint".into(),
+        parent,
+        offset,
+        end_site: None,
+        channels: vec![],
+    };
+    let skeleton = Arc::new(Skeleton::new(vec![joint(None, Vec3::ZERO), joint(Some(0), golden.offset)]).unwrap());
+    let source = |motion: &Motion| {
+        let clip = Clip::new(
+            "golden",
+            Arc::clone(&skeleton),
+            golden.fps,
+            motion.rotations.concat(),
+            motion.roots.clone(),
+        )
+        .unwrap();
+        Source::new(Arc::new(clip), &Roles::default())
+    };
+    assert_eq!(golden.cases.len(), 6);
+    for case in &golden.cases {
+        let options = DissolveOptions {
+            window: case.window,
+            root: case.root,
+            ..DissolveOptions::default()
+        };
+        let out = dissolve(&source(&case.a), case.leave, &source(&case.b), case.enter, &options).unwrap();
+        for p in 0..case.window {
+            let (found, expected) = (out.clip.root_translations()[case.leave + p], case.during.roots[p]);
+            assert!(
+                found.distance(expected) < 2e-5,
+                "{:?} {} frame {p}: {found} {expected}",
+                case.root,
+                case.window
+            );
+            for (found, expected) in out.clip.rotations(case.leave + p).iter().zip(case.during.rotations[p]) {
+                assert!(quat::angle_between(*found, expected) < 2e-5);
+            }
+        }
+        let last = out.clip.frames() - 1;
+        assert!(out.clip.root_translations()[last].distance(case.last_root) < 5e-5);
+        assert!(quat::angle_between(out.clip.rotations(last)[0], case.last_rotation) < 2e-5);
+    }
+}
+
+#[test]
+fn blended_velocities_neither_turn_nor_stray_where_neither_source_does() {
+    // Two straight walks, far apart and 143° off each other.
+    let (a, b) = two();
+    let out = dissolve(
+        &a,
+        50,
+        &b,
+        10,
+        &DissolveOptions {
+            window: 30,
+            ..DissolveOptions::default()
+        },
+    )
+    .unwrap();
+    // The body sways about its heading by what the sources sway, and A's heading goes on.
+    let sway = |s: &Source, heading: f64| s.frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max);
+    let most = sway(&a, 0.0).max(sway(&b, 2.5)) * 2.0 + 0.02;
+    for frame in &out.frames {
+        assert!(frame.yaw.abs() < most, "{} {most}", frame.yaw);
+    }
+    // And the steps grow from 1.3 m/s to 2.2 m/s, without ever being outside (10 % more or less within a stride).
+    for pair in out.frames.windows(2) {
+        let speed = (pair[1].shift - pair[0].shift).length() * 60.0;
+        assert!((1.1..2.5).contains(&speed), "{speed}");
+    }
+}
+
+#[test]
+fn without_alignment_the_character_flies_to_b() {
+    let (a, b) = two();
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        let jump = |window: usize, align: bool| {
+            let out = dissolve(
+                &a,
+                50,
+                &b,
+                10,
+                &DissolveOptions {
+                    window,
+                    align,
+                    root,
+                    law: WeightLaw::Smooth,
+                },
+            )
+            .unwrap();
+            let roots = out.clip.root_translations();
+            (49..55 + window).map(|f| roots[f].distance(roots[f + 1])).fold(0.0, f32::max)
+        };
+        let apart = a.clip().root_translations()[49].distance(b.clip().root_translations()[10]);
+        assert!(apart > 5.0 && (jump(0, false) - apart).abs() < 1e-6, "a flash over the whole way");
+        assert!(jump(20, false) > 0.3, "a flight of a metre per tenth of a second");
+        assert!(
+            jump(0, true) < 0.15 && jump(20, true) < 0.05,
+            "{} {}",
+            jump(0, true),
+            jump(20, true)
+        );
+    }
+}
+
+#[test]
+fn windows_of_0_and_1_are_the_same_cut() {
+    let (a, b) = two();
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        let cut = |window| {
+            dissolve(
+                &a,
+                50,
+                &b,
+                10,
+                &DissolveOptions {
+                    window,
+                    root,
+                    ..DissolveOptions::default()
+                },
+            )
+            .unwrap()
+        };
+        assert_eq!(cut(0), cut(1));
+        assert!(cut(0).transition.is_empty() && cut(0).b_during.is_empty());
+        // Right behind A's last frame, and before its first.
+        for leave in [0, 100] {
+            let out = dissolve(
+                &a,
+                leave,
+                &b,
+                0,
+                &DissolveOptions {
+                    window: 0,
+                    root,
+                    ..DissolveOptions::default()
+                },
+            )
+            .unwrap();
+            assert_eq!(out.clip.frames(), leave + 80);
+            let start = out.clip.root_translations()[leave];
+            assert!(
+                (start - a.clip().root_translations()[leave.min(99)]).length() < 0.12,
+                "{leave} {start}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_cut_goes_on_with_the_step_of_b() {
+    let (a, b) = two();
+    let out = dissolve(
+        &a,
+        50,
+        &b,
+        10,
+        &DissolveOptions {
+            window: 0,
+            ..DissolveOptions::default()
+        },
+    )
+    .unwrap();
+    let step = out.frames[49].inverse().after(&out.frames[50]);
+    let own = b.frames()[9].inverse().after(&b.frames()[10]);
+    assert!((step.shift - own.shift).length() < 1e-9 && wrap_angle(step.yaw - own.yaw).abs() < 1e-9);
+}
+
+#[test]
+fn joints_that_move_against_their_parent_are_blended_too() {
+    let clip = Walk {
+        frames: 30,
+        ..Walk::default()
+    }
+    .clip();
+    let roles = Roles::detect(clip.skeleton());
+    let tracked = |joint: usize, at: Vec3| {
+        let track = JointTranslations {
+            joint,
+            values: vec![at; 30],
+        };
+        Source::new(Arc::new(clip.clone().with_translations(vec![track]).unwrap()), &roles)
+    };
+    let (a, b) = (tracked(2, Vec3::X), tracked(4, Vec3::Z));
+    let out = dissolve(
+        &a,
+        10,
+        &b,
+        10,
+        &DissolveOptions {
+            window: 4,
+            law: WeightLaw::Linear,
+            ..DissolveOptions::default()
+        },
+    )
+    .unwrap();
+    let rest = body();
+    let at = |frame: usize| out.clip.pose(frame).translations;
+    assert_eq!(at(9), [(2, Vec3::X), (4, rest.joints()[4].offset)]);
+    assert_eq!(at(13), [(2, rest.joints()[2].offset), (4, Vec3::Z)]);
+    let half = |joint: usize, other: Vec3| (joint, (rest.joints()[joint].offset + other) * 0.5);
+    assert_eq!(at(11), [half(2, Vec3::X), half(4, Vec3::Z)]);
+}
+
+#[test]
+fn a_root_that_stands_still_above_moving_hips_does_not_swing_them() {
+    // The same two walks, carried by the hips below a root that stays at the world's origin.
+    let below = |walk: Walk| {
+        let clip = walk.clip();
+        let mut joints = vec![Joint {
+            name: "Reference".into(),
+            parent: None,
+            offset: Vec3::ZERO,
+            end_site: None,
+            channels: vec![],
+        }];
+        joints.extend(clip.skeleton().joints().iter().map(|joint| {
+            let mut joint = joint.clone();
+            joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+            joint
+        }));
+        let skeleton = Arc::new(Skeleton::new(joints).unwrap());
+        let rotations = (0..clip.frames())
+            .flat_map(|f| std::iter::once(Quat::IDENTITY).chain(clip.rotations(f).iter().copied()))
+            .collect();
+        let hips = JointTranslations {
+            joint: 1,
+            values: clip.root_translations().to_vec(),
+        };
+        let still = Clip::new(
+            "below",
+            Arc::clone(&skeleton),
+            clip.fps(),
+            rotations,
+            vec![Vec3::ZERO; clip.frames()],
+        )
+        .unwrap();
+        let still = still.with_translations(vec![hips]).unwrap();
+        let roles = Roles::detect(&skeleton);
+        Source::new(Arc::new(still), &roles)
+    };
+    let walk = Walk {
+        frames: 100,
+        heading: 0.8,
+        turning: 0.3,
+        start: (4.0, 1.0),
+        ..Walk::default()
+    };
+    let other = Walk {
+        frames: 90,
+        speed: 1.9,
+        heading: -2.0,
+        turning: -0.5,
+        start: (-6.0, 8.0),
+        ..Walk::default()
+    };
+    let options = DissolveOptions {
+        window: 24,
+        ..DissolveOptions::default()
+    };
+    let plain = dissolve(&source(walk), 40, &source(other), 12, &options).unwrap();
+    let (a, b) = (below(walk), below(other));
+    assert_eq!((a.motion_root(), b.motion_root()), (1, 1));
+    let carried = dissolve(&a, 40, &b, 12, &options).unwrap();
+    for frame in 0..plain.clip.frames() {
+        let (p, q) = (plain.clip.root_translations()[frame], carried.clip.world_pose(frame).positions[1]);
+        let ground = Vec3::new(1.0, 0.0, 1.0);
+        assert!(((p - q) * ground).length() < 1e-4, "frame {frame}: {p} {q}");
+        assert!((p.y - q.y).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn what_cannot_be_blended_is_refused() {
+    let (a, b) = two();
+    let options = DissolveOptions {
+        window: 30,
+        ..DissolveOptions::default()
+    };
+    let refused = |leave, enter, options: &DissolveOptions| dissolve(&a, leave, &b, enter, options).unwrap_err();
+    assert_eq!(
+        refused(71, 0, &options),
+        BlendError::Window {
+            which: "outgoing",
+            frames: 100,
+            at: 71,
+            window: 30
+        }
+    );
+    assert!(refused(71, 0, &options).to_string().contains("lower the window to 29"));
+    assert_eq!(
+        refused(10, 51, &options),
+        BlendError::Window {
+            which: "incoming",
+            frames: 80,
+            at: 51,
+            window: 30
+        }
+    );
+    let cut = DissolveOptions { window: 0, ..options };
+    assert!(matches!(refused(100, 80, &cut), BlendError::Window { which: "incoming", .. }));
+    assert!(matches!(refused(usize::MAX, 0, &cut), BlendError::Window { which: "outgoing", .. }));
+    let slow = source(Walk {
+        fps: 30.0,
+        ..Walk::default()
+    });
+    assert!(matches!(dissolve(&a, 0, &slow, 0, &options), Err(BlendError::FrameRates { .. })));
+    let joint = Joint {
+        name: "Hips".into(),
+        parent: None,
+        offset: Vec3::ZERO,
+        end_site: None,
+        channels: vec![],
+    };
+    let other = Clip::new(
+        "point",
+        Arc::new(Skeleton::new(vec![joint]).unwrap()),
+        60.0,
+        vec![Quat::IDENTITY; 50],
+        vec![Vec3::ZERO; 50],
+    )
+    .unwrap();
+    let other = Source::new(Arc::new(other), &Roles::default());
+    assert!(matches!(dissolve(&a, 0, &other, 0, &options), Err(BlendError::Skeletons { .. })));
+    let empty = Source::new(Arc::new(a.clip().crop(0..0).unwrap()), &Roles::default());
+    assert!(dissolve(&empty, 0, &b, 0, &cut).is_err() && dissolve(&b, 0, &empty, 0, &cut).is_err());
+}

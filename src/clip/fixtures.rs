@@ -1,0 +1,33 @@
+//! Motions for the skeletons of `skeleton::fixtures`, for tests.
+
+use super::Clip;
+use crate::skeleton::{Skeleton, fixtures::noise};
+use glam::{Quat, Vec3};
+use std::sync::Arc;
+
+/// A smooth motion of every joint that looks random, with angles of up to half a radian, 30 frames per second.
+pub(crate) fn wander(skeleton: &Arc<Skeleton>, frames: usize, seed: u64) -> Clip {
+    wander_by(skeleton, frames, seed, 0.5)
+}
+
+/// The same with angles of up to about `radians`.
+pub(crate) fn wander_by(skeleton: &Arc<Skeleton>, frames: usize, seed: u64, radians: f32) -> Clip {
+    let mut next = noise(seed);
+    let joints = skeleton.len();
+    let mut vectors = |count: usize| (0..count).map(|_| Vec3::new(next(), next(), next())).collect::<Vec<_>>();
+    let (middle, swing, way) = (vectors(joints), vectors(joints), vectors(1)[0]);
+    let (mut rotations, mut roots) = (Vec::new(), Vec::new());
+    for frame in 0..frames {
+        let t = frame as f32 / 30.0;
+        roots.push(Vec3::new(0.3, 0.95, -0.2) + Vec3::new(way.x, 0.05 * (5.0 * t).sin(), way.z) * t);
+        rotations.extend((0..joints).map(|j| Quat::from_scaled_axis((middle[j] + swing[j] * (3.0 * t).sin()) * 0.5 * radians)));
+    }
+    Clip::new("wander", Arc::clone(skeleton), 30.0, rotations, roots).unwrap()
+}
+
+/// The largest distance between the same joint of two clips of one skeleton, metres.
+pub(crate) fn largest_distance(a: &Clip, b: &Clip) -> f32 {
+    let (a, b) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}

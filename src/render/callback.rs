@@ -1,0 +1,60 @@
+use super::StageRenderer;
+use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
+use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use eframe::wgpu;
+use segue::scene::Stage;
+use std::sync::Arc;
+
+/// Makes the renderer and leaves it with egui's. Call it once, when the app is created.
+pub(crate) fn install(render_state: &RenderState) {
+    let renderer = StageRenderer::new(&render_state.device, &render_state.adapter, render_state.target_format);
+    render_state.renderer.write().callback_resources.insert(renderer);
+}
+
+/// A shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
+///
+/// Keep the `Arc` and change the stage with `Arc::make_mut` in the next frame: egui has let go of it by then, so that nothing is copied.
+pub(crate) fn paint_callback(id: u64, rect: egui::Rect, stage: Arc<Stage>) -> egui::Shape {
+    egui::Shape::Callback(Callback::new_paint_callback(rect, StageCallback { id, rect, stage }))
+}
+
+/// The size in physical pixels of the target for a stage in `rect`: what its panes' viewports divide.
+pub(crate) fn stage_pixels(ctx: &egui::Context, rect: egui::Rect) -> [u32; 2] {
+    let pixels_per_point = ctx.pixels_per_point();
+    let screen = ctx.content_rect().size() * pixels_per_point;
+    in_pixels(rect, pixels_per_point, [screen.x.round() as u32, screen.y.round() as u32])
+}
+
+fn in_pixels(rect: egui::Rect, pixels_per_point: f32, screen: [u32; 2]) -> [u32; 2] {
+    let pixels = ViewportInPixels::from_points(&rect, pixels_per_point, screen);
+    [pixels.width_px.max(0) as u32, pixels.height_px.max(0) as u32]
+}
+
+struct StageCallback {
+    id: u64,
+    rect: egui::Rect,
+    stage: Arc<Stage>,
+}
+
+impl CallbackTrait for StageCallback {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        screen: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if let Some(renderer) = resources.get_mut::<StageRenderer>() {
+            let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
+            renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
+        }
+        Vec::new()
+    }
+
+    fn paint(&self, _info: PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, resources: &CallbackResources) {
+        if let Some(renderer) = resources.get::<StageRenderer>() {
+            renderer.paint(pass, self.id);
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
+
+use glam::{Vec3, Vec4};
+use segue::scene::{Color, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
+use std::ops::Range;
+
+/// Limbs of one body that shade the others.
+const OCCLUDERS: usize = 32;
+/// From this radius in pixels on a limb is drawn with the fine mesh.
+const FINE_FROM_PIXELS: f32 = 9.0;
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct LimbInstance {
+    a: [f32; 4],
+    b: [f32; 4],
+    flat: [f32; 4],
+    color: [u8; 4],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct StrokeInstance {
+    points: [[f32; 3]; 4],
+    colors: [[u8; 4]; 2],
+    width: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct RingInstance {
+    place: [f32; 4],
+    color: [u8; 4],
+    fill: f32,
+}
+
+/// `View` of view.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct ViewUniform {
+    clip_from_world: [f32; 16],
+    eye: [f32; 4],
+    right: [f32; 4],
+    up: [f32; 4],
+    forward: [f32; 4],
+    viewport: [f32; 4],
+    key: [f32; 4],
+    background_top: Color,
+    background_bottom: Color,
+    floor: [f32; 4],
+    focus: [f32; 4],
+    grid: Color,
+    edge: Color,
+    style: [f32; 4],
+}
+
+impl ViewUniform {
+    /// Whether edges are to be seen.
+    pub(super) fn has_edges(&self) -> bool {
+        self.edge[3] > 0.0 && self.style[0] > 0.0
+    }
+}
+
+/// `Figure` of limb.wgsl and shadow.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct FigureUniform {
+    about: [f32; 4],
+    occluders: [[f32; 4]; 2 * OCCLUDERS],
+}
+
+/// One body in the instance buffers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FigureDraw {
+    pub(super) fine: Range<u32>,
+    pub(super) coarse: Range<u32>,
+    pub(super) casts: bool,
+    pub(super) ghost: bool,
+    depth: f32,
+}
+
+impl FigureDraw {
+    /// All its limbs.
+    pub(super) fn limbs(&self) -> Range<u32> {
+        self.fine.start..self.coarse.end
+    }
+}
+
+/// One pane in the instance buffers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct PaneDraw {
+    pub(super) viewport: Viewport,
+    /// Into [`Frame::figures`]: solid ones first, then ghosts from far to near.
+    pub(super) figures: Range<usize>,
+    /// Strokes on the ground, in space, and over everything.
+    pub(super) strokes: [Range<u32>; 3],
+    pub(super) rings: Range<u32>,
+}
+
+/// A stage, ready for the GPU.
+#[derive(Clone, Default, PartialEq)]
+pub(super) struct Frame {
+    pub(super) clear: Color,
+    pub(super) views: Vec<ViewUniform>,
+    pub(super) figures: Vec<FigureDraw>,
+    pub(super) figure_uniforms: Vec<FigureUniform>,
+    pub(super) limbs: Vec<LimbInstance>,
+    pub(super) strokes: Vec<StrokeInstance>,
+    pub(super) rings: Vec<RingInstance>,
+    pub(super) panes: Vec<PaneDraw>,
+}
+
+fn bytes(color: Color) -> [u8; 4] {
+    color.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
+}
+
+/// The viewport's part inside a stage of that size.
+fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
+    let (x, y) = (viewport.x.min(width), viewport.y.min(height));
+    Viewport { x, y, width: viewport.width.min(width - x), height: viewport.height.min(height - y) }
+}
+
+impl Frame {
+    /// Fills the frame from a stage that is drawn into `size` pixels.
+    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2]) {
+        self.clear = stage.look.background_top;
+        self.views.clear();
+        self.figures.clear();
+        self.figure_uniforms.clear();
+        self.limbs.clear();
+        self.strokes.clear();
+        self.rings.clear();
+        self.panes.clear();
+        for pane in &stage.panes {
+            let viewport = clip(pane.viewport, size);
+            if viewport.width == 0 || viewport.height == 0 {
+                continue;
+            }
+            let figures = self.add_figures(pane, viewport);
+            let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
+                let start = self.strokes.len() as u32;
+                self.strokes.extend(pane.strokes.iter().filter(|s| s.layer == layer).filter_map(stroke_instance));
+                start..self.strokes.len() as u32
+            });
+            let rings = self.rings.len() as u32;
+            self.rings.extend(pane.rings.iter().filter_map(ring_instance));
+            self.views.push(view_uniform(pane, viewport, stage));
+            self.panes.push(PaneDraw { viewport, figures, strokes, rings: rings..self.rings.len() as u32 });
+        }
+    }
+
+    fn add_figures(&mut self, pane: &Pane, viewport: Viewport) -> Range<usize> {
+        let first = self.figures.len();
+        let height = viewport.height as f32;
+        let [_, _, back] = pane.camera.axes();
+        for figure in &pane.figures {
+            let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else { continue };
+            let is_fine = |limb: &Limb| {
+                limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+            };
+            let start = self.limbs.len() as u32;
+            self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
+            let middle = self.limbs.len() as u32;
+            self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(limb_instance));
+            // Limbs come with the biggest first: the trunk says where the body is.
+            let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
+            self.figures.push(FigureDraw {
+                fine: start..middle,
+                coarse: middle..self.limbs.len() as u32,
+                casts: figure.shadow > 0.0,
+                ghost: figure.ghost,
+                depth: if depth.is_finite() { depth } else { 0.0 },
+            });
+            self.figure_uniforms.push(figure_uniform(if figure.ghost { &[] } else { limbs }, figure.shadow));
+        }
+        self.sort_figures(first);
+        first..self.figures.len()
+    }
+
+    /// Solid ones first, then ghosts from far to near; their uniforms go along. A handful of bodies: insertion keeps both lists in step.
+    fn sort_figures(&mut self, first: usize) {
+        let key = |f: &FigureDraw| if f.ghost { (true, -f.depth) } else { (false, 0.0) };
+        for i in first + 1..self.figures.len() {
+            let mut at = i;
+            while at > first && key(&self.figures[at]) < key(&self.figures[at - 1]) {
+                self.figures.swap(at, at - 1);
+                self.figure_uniforms.swap(at, at - 1);
+                at -= 1;
+            }
+        }
+    }
+}
+
+fn limb_instance(limb: &Limb) -> Option<LimbInstance> {
+    let finite = limb.a.is_finite() && limb.b.is_finite() && limb.radius_a.is_finite() && limb.radius_b.is_finite();
+    (finite && limb.radius_a >= 0.0 && limb.radius_b >= 0.0).then(|| LimbInstance {
+        a: limb.a.extend(limb.radius_a).to_array(),
+        b: limb.b.extend(limb.radius_b).to_array(),
+        flat: limb.flat.extend(limb.flatness).to_array(),
+        color: bytes(limb.color),
+    })
+}
+
+fn stroke_instance(stroke: &Stroke) -> Option<StrokeInstance> {
+    let points = [stroke.before, stroke.from, stroke.to, stroke.after];
+    (points.iter().all(|p| p.is_finite()) && stroke.width > 0.0).then(|| StrokeInstance {
+        points: points.map(|p| p.to_array()),
+        colors: [bytes(stroke.color_from), bytes(stroke.color_to)],
+        width: stroke.width,
+    })
+}
+
+fn ring_instance(ring: &Ring) -> Option<RingInstance> {
+    (ring.center.is_finite() && ring.radius > 0.0 && ring.width >= 0.0).then(|| RingInstance {
+        place: [ring.center.x, ring.center.z, ring.radius, ring.width],
+        color: bytes(ring.color),
+        fill: ring.fill,
+    })
+}
+
+fn figure_uniform(limbs: &[Limb], shadow: f32) -> FigureUniform {
+    let mut uniform = FigureUniform { about: [0.0, 0.0, shadow, 0.0], occluders: [[0.0; 4]; 2 * OCCLUDERS] };
+    let mut count = 0;
+    for (limb, pair) in limbs.iter().zip(uniform.occluders.chunks_exact_mut(2)) {
+        // Between the half width and the half depth of a flattened limb.
+        let mean = 0.5 + 0.5 * limb.flatness;
+        pair[0] = limb.a.extend(limb.radius_a * mean).to_array();
+        pair[1] = limb.b.extend(limb.radius_b * mean).to_array();
+        count += 1;
+    }
+    uniform.about[0] = count as f32;
+    uniform
+}
+
+fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {
+    let camera = &pane.camera;
+    let look = &stage.look;
+    let [right, up, back] = camera.axes();
+    let aspect = viewport.aspect();
+    let orthographic = camera.lens == Lens::Orthographic;
+    let half_height = if orthographic { camera.half_height() } else { (camera.fov_y * 0.5).tan() };
+    let scale = if stage.pixels_per_point > 0.0 { stage.pixels_per_point } else { 1.0 };
+    // The main light stands over the camera's left shoulder, so that the body is modelled from all sides.
+    let level_back = Vec3::new(camera.yaw.sin(), 0.0, camera.yaw.cos());
+    let key = (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y);
+    ViewUniform {
+        clip_from_world: (camera.projection(aspect) * camera.view()).to_cols_array(),
+        eye: camera.eye().extend(if orthographic { 1.0 } else { 0.0 }).to_array(),
+        right: (right * (half_height * aspect)).extend(0.0).to_array(),
+        up: (up * half_height).extend(0.0).to_array(),
+        forward: (-back).extend(if orthographic { 0.0 } else { camera.depth_range()[0] }).to_array(),
+        viewport: [viewport.x, viewport.y, viewport.width, viewport.height].map(|v| v as f32),
+        key: key.extend(scale).to_array(),
+        background_top: look.background_top,
+        background_bottom: look.background_bottom,
+        floor: Vec4::from(look.floor).with_w(look.floor_radius.max(0.1)).to_array(),
+        focus: pane.focus.extend(look.shadow).to_array(),
+        grid: look.grid,
+        edge: look.edge,
+        style: [look.edge_width * scale, look.rim, 0.0, 0.0],
+    }
+}

@@ -1,0 +1,203 @@
+// Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
+
+struct Figure {
+    // Number of occluders, unused, strength of the shadow, unused.
+    about: vec4f,
+    // Two for each limb that shades the others: centre and radius of its first ball, then of its second.
+    occluders: array<vec4f, 64>,
+}
+
+@group(1) @binding(0) var<uniform> figure: Figure;
+
+struct Limb {
+    // Cosine and sine about the axis; from the seam (0) to the pole (1); which ball.
+    @location(0) mesh: vec4f,
+    // Centre and radius of the two balls.
+    @location(1) a: vec4f,
+    @location(2) b: vec4f,
+    // Direction and scale of the flattening.
+    @location(3) flat_axis: vec4f,
+    @location(4) color: vec4f,
+}
+
+struct Surface {
+    @builtin(position) @invariant clip: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) color: vec4f,
+}
+
+struct Bent {
+    world: vec3f,
+    normal: vec3f,
+}
+
+fn bend(limb: Limb) -> Bent {
+    let span = limb.b.xyz - limb.a.xyz;
+    let len = length(span);
+    let has_axis = len > 1e-6;
+    var axis = vec3f(0.0, 1.0, 0.0);
+    if has_axis {
+        axis = span / len;
+    }
+    // The flattening is across the axis; a ball is flattened as it is told.
+    var flat_axis = limb.flat_axis.xyz;
+    if has_axis {
+        flat_axis = flat_axis - axis * dot(flat_axis, axis);
+    }
+    let flat_length = length(flat_axis);
+    var squash = limb.flat_axis.w;
+    if flat_length > 1e-3 {
+        flat_axis = flat_axis / flat_length;
+    } else {
+        flat_axis = vec3f(0.0);
+        squash = 1.0;
+    }
+    var side = cross(axis, select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), abs(axis.x) > 0.7));
+    if has_axis && flat_length > 1e-3 {
+        side = flat_axis;
+    }
+    side = normalize(side);
+    let other = cross(side, axis);
+
+    // Both balls touch the hull where its normal stands `tilt` over the cross-section: there the caps begin.
+    let tilt = asin(clamp((limb.a.w - limb.b.w) / max(len, 1e-6), -1.0, 1.0));
+    let pole = select(-1.5707963, 1.5707963, limb.mesh.w > 0.5);
+    let angle = mix(tilt, pole, limb.mesh.z);
+    let unit = (side * limb.mesh.x + other * limb.mesh.y) * cos(angle) + axis * sin(angle);
+    let ball = select(limb.a, limb.b, limb.mesh.w > 0.5);
+    let offset = ball.xyz - limb.a.xyz + unit * ball.w;
+    var out: Bent;
+    out.world = limb.a.xyz + offset + flat_axis * dot(offset, flat_axis) * (squash - 1.0);
+    out.normal = normalize(unit + flat_axis * dot(unit, flat_axis) * (1.0 / max(squash, 0.05) - 1.0));
+    return out;
+}
+
+@vertex
+fn vs_limb(limb: Limb) -> Surface {
+    let bent = bend(limb);
+    var out: Surface;
+    out.world = bent.world;
+    out.normal = bent.normal;
+    out.clip = view.clip_from_world * vec4f(bent.world, 1.0);
+    out.color = limb.color;
+    return out;
+}
+
+// The hull, grown by the width of an edge; its back shows around the limb.
+@vertex
+fn vs_edge(limb: Limb) -> Surface {
+    let bent = bend(limb);
+    var out: Surface;
+    out.world = bent.world + bent.normal * pixel_size(bent.world) * view.style.x;
+    out.normal = bent.normal;
+    out.clip = view.clip_from_world * vec4f(out.world, 1.0);
+    out.color = limb.color;
+    return out;
+}
+
+// How much of the sky and of the main light reaches a point past the body's other limbs.
+//
+// Sky: the closed form of a ball over a horizon, for the nearest ball of each rounded cone. Main light: the angle between the light and the
+// edge of that ball, softened by the width of the light.
+fn light_reaching(world: vec3f, normal: vec3f) -> vec2f {
+    var sky = 1.0;
+    var key = 1.0;
+    let count = i32(figure.about.x);
+    for (var i = 0; i < count; i++) {
+        let a = figure.occluders[2 * i];
+        let b = figure.occluders[2 * i + 1];
+        let span = b.xyz - a.xyz;
+        let t = clamp(dot(world - a.xyz, span) / max(dot(span, span), 1e-9), 0.0, 1.0);
+        let to_ball = a.xyz + span * t - world;
+        let radius = mix(a.w, b.w, t);
+        let distance = max(length(to_ball), 1e-5);
+        let ratio = min(radius / distance, 1.0);
+        let facing = max(dot(normal, to_ball) / distance, 0.0);
+        sky *= 1.0 - facing * ratio * ratio;
+
+        // Along the light: the point of the axis that the ray from here passes nearest.
+        let along_light = dot(span, view.key.xyz);
+        let across = max(dot(span, span) - along_light * along_light, 1e-9);
+        let from_a = world - a.xyz;
+        let u = clamp((dot(from_a, span) - dot(from_a, view.key.xyz) * along_light) / across, 0.0, 1.0);
+        let to_light_ball = a.xyz + span * u - world;
+        let reach = max(length(to_light_ball), 1e-5);
+        let size = min(mix(a.w, b.w, u) / reach, 1.0);
+        let toward = dot(to_light_ball, view.key.xyz) / reach;
+        // A light 35 degrees wide; a limb that the point lies on or beneath does not count.
+        let hidden = smoothstep(-0.3, 0.3, toward - sqrt(1.0 - size * size)) * smoothstep(0.0, 0.25, dot(normal, to_light_ball) / reach);
+        key *= 1.0 - hidden * 0.8;
+    }
+    return vec2f(sky, key);
+}
+
+struct Shade {
+    linear: vec3f,
+    // 0 where the surface faces the camera, 1 at the silhouette.
+    rim: f32,
+}
+
+fn shade(albedo: vec3f, world: vec3f, normal: vec3f, reaching: vec2f) -> Shade {
+    let to_eye = towards_eye(world);
+    let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
+    let base = to_linear(albedo);
+
+    // A broad main light from over the camera's shoulder, wrapped softly around; sky from above, the floor's light from below.
+    let key = pow(clamp((dot(normal, view.key.xyz) + 0.4) / 1.4, 0.0, 1.0), 1.5) * reaching.y;
+    let upward = normal.y * 0.5 + 0.5;
+    let near_floor = exp(-max(world.y, 0.0) * 5.0);
+    let under = mix(0.26, 0.16, near_floor) * vec3f(1.0, 0.985, 0.97);
+    let sky = mix(under, vec3f(0.50, 0.52, 0.56), upward) * reaching.x;
+    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.10 * reaching.x;
+    var light = sky + fill * vec3f(0.9, 0.96, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.96);
+
+    let half_way = normalize(view.key.xyz + to_eye);
+    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 26.0) * 0.075 * reaching.y;
+
+    var out: Shade;
+    let rim = 1.0 - facing;
+    out.rim = rim * rim * rim;
+    out.linear = base * light + gloss;
+    return out;
+}
+
+// What has sunk into the ground is seen through it, faintly.
+fn sink(color: vec3f, world: vec3f) -> vec3f {
+    let depth = smoothstep(0.0, -0.012, world.y + 0.004);
+    return mix(color, to_linear(view.floor.rgb), depth * 0.72);
+}
+
+@fragment
+fn fs_solid(in: Surface) -> @location(0) vec4f {
+    let normal = normalize(in.normal);
+    let reaching = light_reaching(in.world, normal);
+    let lit = shade(in.color.rgb, in.world, normal, reaching);
+    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.05, 0.9, lit.rim));
+    return vec4f(to_srgb(sink(rimmed, in.world)) + dither(in.clip.xy), 1.0);
+}
+
+@fragment
+fn fs_edge(in: Surface) -> @location(0) vec4f {
+    // Edges end softly where the body enters the ground.
+    let over_ground = smoothstep(-0.02, 0.0, in.world.y);
+    return vec4f(view.edge.rgb, view.edge.a * over_ground);
+}
+
+@fragment
+fn fs_ghost(in: Surface) -> @location(0) vec4f {
+    let normal = normalize(in.normal);
+    let lit = shade(in.color.rgb, in.world, normal, vec2f(1.0));
+    // Flat in the middle and denser at the rim, like a shell of tinted glass.
+    let base = to_linear(in.color.rgb);
+    let tinted = mix(base, lit.linear * 1.15, 0.45);
+    let density = clamp(in.color.a * (0.82 + 0.9 * lit.rim), 0.0, 1.0);
+    let over_ground = mix(0.45, 1.0, smoothstep(-0.02, 0.0, in.world.y));
+    return vec4f(to_srgb(tinted), density * over_ground);
+}
+
+// For the pass that only finds the front of a ghost.
+@fragment
+fn fs_depth() -> @location(0) vec4f {
+    return vec4f(0.0);
+}

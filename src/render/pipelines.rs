@@ -1,0 +1,277 @@
+//! The render pipelines, made once per device.
+
+use super::frame::{FigureUniform, LimbInstance, RingInstance, StrokeInstance, ViewUniform};
+use super::mesh::ConeVertex;
+use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
+use eframe::wgpu;
+
+/// The shaders as they are compiled: what all share comes first.
+pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("limb.wgsl"));
+pub(super) const SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("shadow.wgsl"));
+pub(super) const GROUND: &str = concat!(include_str!("view.wgsl"), include_str!("ground.wgsl"));
+pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("line.wgsl"));
+pub(super) const RING: &str = concat!(include_str!("view.wgsl"), include_str!("ring.wgsl"));
+pub(super) const COMPOSITE: &str = include_str!("composite.wgsl");
+
+pub(super) struct Pipelines {
+    pub(super) view_layout: wgpu::BindGroupLayout,
+    pub(super) figure_layout: wgpu::BindGroupLayout,
+    pub(super) composite_layout: wgpu::BindGroupLayout,
+    pub(super) ground: wgpu::RenderPipeline,
+    pub(super) shadow: wgpu::RenderPipeline,
+    pub(super) shade: wgpu::RenderPipeline,
+    pub(super) ring: wgpu::RenderPipeline,
+    /// On the ground and over everything: no depth.
+    pub(super) flat_line: wgpu::RenderPipeline,
+    pub(super) space_line: wgpu::RenderPipeline,
+    pub(super) solid: wgpu::RenderPipeline,
+    pub(super) edge: wgpu::RenderPipeline,
+    pub(super) ghost_depth: wgpu::RenderPipeline,
+    pub(super) ghost: wgpu::RenderPipeline,
+    pub(super) composite: wgpu::RenderPipeline,
+    pub(super) sample_count: u32,
+}
+
+/// What differs between the pipelines of the stage.
+struct Recipe<'a> {
+    label: &'a str,
+    shader: &'a wgpu::ShaderModule,
+    layout: &'a wgpu::PipelineLayout,
+    entries: [&'a str; 2],
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    blend: Option<wgpu::BlendState>,
+    writes: wgpu::ColorWrites,
+    /// Compare and write.
+    depth: Option<(wgpu::CompareFunction, bool)>,
+    topology: wgpu::PrimitiveTopology,
+    cull: Option<wgpu::Face>,
+}
+
+const OVER: wgpu::BlendState = wgpu::BlendState::ALPHA_BLENDING;
+
+/// Takes light away: the target's alpha is what is left of it.
+const DARKEN: wgpu::BlendState = wgpu::BlendState {
+    color: wgpu::BlendComponent { src_factor: wgpu::BlendFactor::Zero, dst_factor: wgpu::BlendFactor::One, operation: wgpu::BlendOperation::Add },
+    alpha: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    },
+};
+
+/// Between full shadow (what is drawn) and full light (what is there), by the light that is left.
+const SHADE: wgpu::BlendState = wgpu::BlendState {
+    color: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
+        dst_factor: wgpu::BlendFactor::DstAlpha,
+        operation: wgpu::BlendOperation::Add,
+    },
+    alpha: wgpu::BlendComponent::REPLACE,
+};
+
+fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: wgpu::BufferSize::new(size as u64),
+            },
+            count: None,
+        }],
+    })
+}
+
+impl Pipelines {
+    pub(super) fn new(device: &wgpu::Device, output_format: wgpu::TextureFormat, sample_count: u32) -> Self {
+        let view_layout = uniform_layout(device, "stage view", size_of::<ViewUniform>());
+        let figure_layout = uniform_layout(device, "stage figure", size_of::<FigureUniform>());
+        let layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label: Some(label), bind_group_layouts: groups, immediate_size: 0 })
+        };
+        let plain = layout("stage", &[Some(&view_layout)]);
+        let bodily = layout("stage bodies", &[Some(&view_layout), Some(&figure_layout)]);
+        let shader = |label, source: &'static str| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(source.into()) })
+        };
+        let (limb, shadow, ground) = (shader("limb", LIMB), shader("shadow", SHADOW), shader("ground", GROUND));
+        let (line, ring) = (shader("line", LINE), shader("ring", RING));
+
+        let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
+        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4];
+        let line_attributes = wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
+        ];
+        let ring_attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Unorm8x4, 2 => Float32];
+        let mesh_buffer = wgpu::VertexBufferLayout {
+            array_stride: size_of::<ConeVertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &mesh_attributes,
+        };
+        let instances = |stride: usize, attributes| wgpu::VertexBufferLayout {
+            array_stride: stride as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes,
+        };
+        let limb_buffer = instances(size_of::<LimbInstance>(), &limb_attributes[..]);
+        let limb_buffers = [Some(mesh_buffer), Some(limb_buffer.clone())];
+        // The shadow reads the limbs, but for their colour.
+        let shadow_buffers = [Some(wgpu::VertexBufferLayout { attributes: &limb_attributes[..3], ..limb_buffer })];
+        let line_buffers = [Some(instances(size_of::<StrokeInstance>(), &line_attributes[..]))];
+        let ring_buffers = [Some(instances(size_of::<RingInstance>(), &ring_attributes[..]))];
+
+        let make = |recipe: &Recipe<'_>| stage_pipeline(device, recipe, sample_count);
+        let ground_recipe = |label, entry, blend| Recipe {
+            label,
+            shader: &ground,
+            layout: &plain,
+            entries: ["vs_ground", entry],
+            buffers: &[],
+            blend,
+            writes: wgpu::ColorWrites::ALL,
+            depth: None,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: None,
+        };
+        let quad = wgpu::PrimitiveTopology::TriangleStrip;
+        let line_recipe = |label, depth| Recipe {
+            shader: &line,
+            entries: ["vs_line", "fs_line"],
+            buffers: &line_buffers,
+            topology: quad,
+            depth,
+            ..ground_recipe(label, "", Some(OVER))
+        };
+        let limb_recipe = |label, entries, depth, blend, cull| Recipe {
+            label,
+            shader: &limb,
+            layout: &bodily,
+            entries,
+            buffers: &limb_buffers,
+            blend,
+            writes: wgpu::ColorWrites::ALL,
+            depth: Some(depth),
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: Some(cull),
+        };
+        use wgpu::CompareFunction::{Less, LessEqual};
+        use wgpu::Face::{Back, Front};
+        let (composite_layout, composite) = composite_pipeline(device, output_format);
+        Self {
+            ground: make(&ground_recipe("ground", "fs_ground", None)),
+            shade: make(&ground_recipe("shade", "fs_shade", Some(SHADE))),
+            shadow: make(&Recipe {
+                shader: &shadow,
+                layout: &bodily,
+                entries: ["vs_shadow", "fs_shadow"],
+                buffers: &shadow_buffers,
+                writes: wgpu::ColorWrites::ALPHA,
+                topology: quad,
+                ..ground_recipe("shadow", "", Some(DARKEN))
+            }),
+            ring: make(&Recipe {
+                shader: &ring,
+                entries: ["vs_ring", "fs_ring"],
+                buffers: &ring_buffers,
+                topology: quad,
+                ..ground_recipe("ring", "", Some(OVER))
+            }),
+            flat_line: make(&line_recipe("line", None)),
+            space_line: make(&line_recipe("line in space", Some((LessEqual, true)))),
+            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (Less, true), None, Back)),
+            edge: make(&limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)),
+            ghost_depth: make(&Recipe {
+                writes: wgpu::ColorWrites::empty(),
+                ..limb_recipe("ghost depth", ["vs_limb", "fs_depth"], (Less, true), None, Back)
+            }),
+            ghost: make(&limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)),
+            view_layout,
+            figure_layout,
+            composite_layout,
+            composite,
+            sample_count,
+        }
+    }
+}
+
+fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32) -> wgpu::RenderPipeline {
+    let (compare, write) = recipe.depth.unwrap_or((wgpu::CompareFunction::Always, false));
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(recipe.label),
+        layout: Some(recipe.layout),
+        vertex: wgpu::VertexState {
+            module: recipe.shader,
+            entry_point: Some(recipe.entries[0]),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: recipe.buffers,
+        },
+        primitive: wgpu::PrimitiveState { topology: recipe.topology, cull_mode: recipe.cull, ..wgpu::PrimitiveState::default() },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(write),
+            depth_compare: Some(compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: sample_count, ..wgpu::MultisampleState::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: recipe.shader,
+            entry_point: Some(recipe.entries[1]),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: recipe.blend, write_mask: recipe.writes })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
+    let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("stage composite"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    });
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("composite"),
+        source: wgpu::ShaderSource::Wgsl(COMPOSITE.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("stage composite"),
+        bind_group_layouts: &[Some(&group)],
+        immediate_size: 0,
+    });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("stage composite"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &shader,
+            entry_point: Some("vs_composite"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        // egui's pass has neither depth nor samples unless the app asks for them.
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &shader,
+            entry_point: Some(if output_format.is_srgb() { "fs_linear" } else { "fs_encoded" }),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState { format: output_format, blend: None, write_mask: wgpu::ColorWrites::ALL })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    (group, pipeline)
+}

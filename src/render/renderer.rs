@@ -1,0 +1,327 @@
+use super::frame::{FigureUniform, Frame, PaneDraw, ViewUniform};
+use super::mesh::ConeMesh;
+use super::pipelines::Pipelines;
+use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
+use eframe::wgpu;
+use segue::scene::Stage;
+use wgpu::util::DeviceExt as _;
+
+/// Draws stages. One per device; every stage on the page has an id of its own.
+pub(crate) struct StageRenderer {
+    pipelines: Pipelines,
+    fine: Mesh,
+    coarse: Mesh,
+    /// Distance between uniform blocks in their buffers.
+    alignment: usize,
+    largest_side: u32,
+    views: Vec<(u64, View)>,
+    /// The frame in the making; it takes turns with the one last drawn.
+    scratch: Frame,
+    bytes: Vec<u8>,
+}
+
+struct Mesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    index_count: u32,
+}
+
+/// What belongs to one stage.
+pub(super) struct View {
+    pub(super) targets: Targets,
+    drawn: Frame,
+    is_drawn: bool,
+    limbs: GrowingBuffer,
+    strokes: GrowingBuffer,
+    rings: GrowingBuffer,
+    view_uniforms: GrowingBuffer,
+    figure_uniforms: GrowingBuffer,
+    view_group: Option<wgpu::BindGroup>,
+    figure_group: Option<wgpu::BindGroup>,
+    /// Frames since it was last asked for.
+    idle: u32,
+}
+
+/// A stage that was not asked for in so many frames of others gives its memory back.
+const FORGET_AFTER: u32 = 240;
+
+/// A buffer that is made anew only to become larger.
+struct GrowingBuffer {
+    label: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: Option<wgpu::Buffer>,
+}
+
+impl GrowingBuffer {
+    fn new(label: &'static str, usage: wgpu::BufferUsages) -> Self {
+        Self { label, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None }
+    }
+
+    /// Writes `bytes`; `true` where the buffer was made anew.
+    fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        let needed = bytes.len().max(256) as u64;
+        let grown = self.buffer.as_ref().is_none_or(|b| b.size() < needed);
+        if grown {
+            self.buffer = Some(device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(self.label),
+                size: needed.next_power_of_two(),
+                usage: self.usage,
+                mapped_at_creation: false,
+            }));
+        }
+        if let Some(buffer) = &self.buffer
+            && !bytes.is_empty()
+        {
+            queue.write_buffer(buffer, 0, bytes);
+        }
+        grown
+    }
+}
+
+impl View {
+    fn new(targets: Targets) -> Self {
+        let (vertex, uniform) = (wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::UNIFORM);
+        Self {
+            targets,
+            drawn: Frame::default(),
+            is_drawn: false,
+            limbs: GrowingBuffer::new("limbs", vertex),
+            strokes: GrowingBuffer::new("strokes", vertex),
+            rings: GrowingBuffer::new("rings", vertex),
+            view_uniforms: GrowingBuffer::new("views", uniform),
+            figure_uniforms: GrowingBuffer::new("figures", uniform),
+            view_group: None,
+            figure_group: None,
+            idle: 0,
+        }
+    }
+}
+
+/// `blocks` one after the other, each at a multiple of `stride`, and one block of zeros more so that no window reaches past the end.
+fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
+    out.clear();
+    out.resize(stride * (blocks.len() + 1), 0);
+    for (slot, block) in out.chunks_exact_mut(stride).zip(blocks) {
+        slot[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(block));
+    }
+}
+
+fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &GrowingBuffer, size: usize) -> Option<wgpu::BindGroup> {
+    let buffer = buffer.buffer.as_ref()?;
+    Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(if size == size_of::<ViewUniform>() { "stage view" } else { "stage figure" }),
+        layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size: wgpu::BufferSize::new(size as u64) }),
+        }],
+    }))
+}
+
+impl StageRenderer {
+    /// Makes what all stages share. `output_format` is the format of the page's target.
+    pub(crate) fn new(device: &wgpu::Device, adapter: &wgpu::Adapter, output_format: wgpu::TextureFormat) -> Self {
+        let smooth = [COLOR_FORMAT, DEPTH_FORMAT].iter().all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(4));
+        let mesh = |sides, rings| {
+            let mesh = ConeMesh::new(sides, rings);
+            let buffer = |label, contents: &[u8], usage| {
+                device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+            };
+            Mesh {
+                vertices: buffer("cone", bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
+                indices: buffer("cone", bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+                index_count: mesh.indices.len() as u32,
+            }
+        };
+        let limits = device.limits();
+        Self {
+            pipelines: Pipelines::new(device, output_format, if smooth { 4 } else { 1 }),
+            fine: mesh(40, 8),
+            coarse: mesh(16, 4),
+            alignment: limits.min_uniform_buffer_offset_alignment.max(16) as usize,
+            largest_side: limits.max_texture_dimension_2d,
+            views: Vec::new(),
+            scratch: Frame::default(),
+            bytes: Vec::new(),
+        }
+    }
+
+    /// The view of that id.
+    pub(super) fn view(&self, id: u64) -> Option<&View> {
+        self.views.iter().find(|(key, _)| *key == id).map(|(_, view)| view)
+    }
+
+    /// Forgets a stage and gives its memory back.
+    pub(super) fn forget(&mut self, id: u64) {
+        self.views.retain(|(key, _)| *key != id);
+    }
+
+    /// Draws `stage` into its own target of `size` pixels, unless nothing changed. `true` where it was drawn.
+    pub(crate) fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        id: u64,
+        stage: &Stage,
+        size: [u32; 2],
+    ) -> bool {
+        if size.contains(&0) {
+            return false;
+        }
+        let size = size.map(|side| side.min(self.largest_side));
+        for (_, view) in &mut self.views {
+            view.idle += 1;
+        }
+        self.views.retain(|(key, view)| *key == id || view.idle < FORGET_AFTER);
+        let mut view = match self.views.iter().position(|(key, _)| *key == id) {
+            Some(index) => self.views.swap_remove(index).1,
+            None => View::new(Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count)),
+        };
+        view.idle = 0;
+        if view.targets.size != size {
+            view.targets = Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count);
+            view.is_drawn = false;
+        }
+        self.scratch.build(stage, size);
+        let draw = !view.is_drawn || view.drawn != self.scratch;
+        if draw {
+            std::mem::swap(&mut view.drawn, &mut self.scratch);
+            self.upload(device, queue, &mut view);
+            self.encode(encoder, &view);
+            view.is_drawn = true;
+        }
+        self.views.push((id, view));
+        draw
+    }
+
+    fn view_stride(&self) -> usize {
+        size_of::<ViewUniform>().next_multiple_of(self.alignment)
+    }
+
+    fn figure_stride(&self) -> usize {
+        size_of::<FigureUniform>().next_multiple_of(self.alignment)
+    }
+
+    fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, view: &mut View) {
+        let (view_stride, figure_stride) = (self.view_stride(), self.figure_stride());
+        let View { drawn, limbs, strokes, rings, view_uniforms, figure_uniforms, view_group, figure_group, .. } = view;
+        limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
+        strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));
+        rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
+        spaced(&drawn.views, view_stride, &mut self.bytes);
+        if view_uniforms.write(device, queue, &self.bytes) {
+            *view_group = uniform_group(device, &self.pipelines.view_layout, view_uniforms, size_of::<ViewUniform>());
+        }
+        spaced(&drawn.figure_uniforms, figure_stride, &mut self.bytes);
+        if figure_uniforms.write(device, queue, &self.bytes) {
+            *figure_group = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
+        }
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
+        let targets = &view.targets;
+        let clear = view.drawn.clear.map(f64::from);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("stage"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: targets.samples.as_ref().unwrap_or(&targets.color_view),
+                depth_slice: None,
+                resolve_target: targets.samples.as_ref().map(|_| &targets.color_view),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r: clear[0], g: clear[1], b: clear[2], a: 1.0 }),
+                    // The samples are done with once they are resolved.
+                    store: if targets.samples.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        for (index, pane) in view.drawn.panes.iter().enumerate() {
+            let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
+            pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+            pass.set_scissor_rect(x, y, width, height);
+            pass.set_bind_group(0, view.view_group.as_ref(), &[(index * self.view_stride()) as u32]);
+            self.encode_pane(&mut pass, view, pane);
+        }
+    }
+
+    fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) {
+        let Pipelines { ground, shadow, shade, ring, flat_line, space_line, solid, edge, ghost_depth, ghost, .. } = &self.pipelines;
+        let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else { return };
+        let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
+        let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
+            pass.set_bind_group(1, view.figure_group.as_ref(), &[(index * self.figure_stride()) as u32]);
+        };
+
+        // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
+        pass.set_pipeline(ground);
+        pass.draw(0..3, 0..1);
+        if figures().any(|(_, figure)| figure.casts) {
+            pass.set_pipeline(shadow);
+            pass.set_vertex_buffer(0, limbs.slice(..));
+            for (index, figure) in figures().filter(|(_, figure)| figure.casts) {
+                set_figure(pass, index);
+                pass.draw(0..4, figure.limbs());
+            }
+            pass.set_pipeline(shade);
+            pass.draw(0..3, 0..1);
+        }
+        let quads = |pass: &mut wgpu::RenderPass<'_>, pipeline, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
+            if !range.is_empty() {
+                pass.set_pipeline(pipeline);
+                pass.set_vertex_buffer(0, buffer.slice(..));
+                pass.draw(0..4, range.clone());
+            }
+        };
+        quads(pass, flat_line, strokes, &pane.strokes[0]);
+        quads(pass, ring, rings, &pane.rings);
+
+        let solids = || figures().filter(|(_, figure)| !figure.ghost);
+        pass.set_vertex_buffer(1, limbs.slice(..));
+        for (pipeline, wanted) in [(solid, true), (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges))] {
+            if wanted && solids().next().is_some() {
+                pass.set_pipeline(pipeline);
+                for (index, figure) in solids() {
+                    set_figure(pass, index);
+                    self.draw_limbs(pass, figure);
+                }
+            }
+        }
+        quads(pass, space_line, strokes, &pane.strokes[1]);
+        // Each ghost first finds its front, then colours it: far ones first.
+        for (index, figure) in figures().filter(|(_, figure)| figure.ghost) {
+            set_figure(pass, index);
+            for pipeline in [ghost_depth, ghost] {
+                pass.set_pipeline(pipeline);
+                self.draw_limbs(pass, figure);
+            }
+        }
+        quads(pass, flat_line, strokes, &pane.strokes[2]);
+    }
+
+    fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &super::frame::FigureDraw) {
+        for (mesh, range) in [(&self.fine, &figure.fine), (&self.coarse, &figure.coarse)] {
+            if !range.is_empty() {
+                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+                pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint16);
+                pass.draw_indexed(0..mesh.index_count, 0, range.clone());
+            }
+        }
+    }
+
+    /// Copies the finished stage into the page; the pass' viewport is where it goes.
+    pub(crate) fn paint(&self, pass: &mut wgpu::RenderPass<'_>, id: u64) {
+        if let Some(view) = self.view(id)
+            && view.is_drawn
+        {
+            pass.set_pipeline(&self.pipelines.composite);
+            pass.set_bind_group(0, &view.targets.composite, &[]);
+            pass.draw(0..3, 0..1);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+// The shadow of one limb on the ground, under a wide light overhead.
+//
+// The limb's outline from above, blurred by a normal distribution that widens with the height over the ground: crisp under a planted foot, a
+// breath under the head. The target's alpha starts at 1 and keeps what light is left.
+
+struct Figure {
+    about: vec4f,
+    occluders: array<vec4f, 64>,
+}
+
+@group(1) @binding(0) var<uniform> figure: Figure;
+
+struct Limb {
+    @builtin(vertex_index) corner: u32,
+    @location(1) a: vec4f,
+    @location(2) b: vec4f,
+    @location(3) flat_axis: vec4f,
+}
+
+struct Blot {
+    @builtin(position) clip: vec4f,
+    // Along and across the limb, metres from `a`.
+    @location(0) at: vec2f,
+    // Length on the ground, radius of a and b, unused.
+    @location(1) @interpolate(flat) size: vec4f,
+    // Width of the blur at a and b, and of the blur of an upright limb.
+    @location(2) @interpolate(flat) blur: vec4f,
+}
+
+fn blur_at(height: f32) -> f32 {
+    return 0.014 + 0.34 * max(height, 0.0);
+}
+
+@vertex
+fn vs_shadow(limb: Limb) -> Blot {
+    let thin = mix(0.55, 1.0, limb.flat_axis.w);
+    let radius = vec2f(limb.a.w, limb.b.w) * thin;
+    let low = vec2f(limb.a.y - radius.x, limb.b.y - radius.y);
+    let blur = vec2f(blur_at(low.x), blur_at(low.y));
+    let span = limb.b.xz - limb.a.xz;
+    let len = length(span);
+    var along = vec2f(1.0, 0.0);
+    if len > 1e-5 {
+        along = span / len;
+    }
+    let across = vec2f(-along.y, along.x);
+    let margin = max(radius.x + 2.6 * blur.x, radius.y + 2.6 * blur.y);
+    // Two triangles.
+    let corner = vec2f(f32(limb.corner & 1u), f32((limb.corner >> 1u) & 1u));
+    let at = vec2f(mix(-margin, len + margin, corner.x), mix(-margin, margin, corner.y));
+    let ground = limb.a.xz + along * at.x + across * at.y;
+    var out: Blot;
+    out.clip = view.clip_from_world * vec4f(ground.x, 0.0, ground.y, 1.0);
+    out.at = at;
+    out.size = vec4f(len, radius, 0.0);
+    out.blur = vec4f(blur, mix(min(blur.x, blur.y), max(blur.x, blur.y), 0.3), 0.0);
+    return out;
+}
+
+// Error function, to 4e-4.
+fn erf(x: f32) -> f32 {
+    let y = clamp(x, -3.0, 3.0);
+    return tanh(1.1283792 * y + 0.1009 * y * y * y);
+}
+
+// A box from `low` to `high`, blurred by `sigma`, at 0.
+fn blurred_box(low: f32, high: f32, sigma: f32) -> f32 {
+    let scale = 0.70710678 / sigma;
+    return 0.5 * (erf(high * scale) - erf(low * scale));
+}
+
+@fragment
+fn fs_shadow(in: Blot) -> @location(0) vec4f {
+    let len = in.size.x;
+    let t = clamp(in.at.x / max(len, 1e-5), 0.0, 1.0);
+    let radius = mix(in.size.y, in.size.z, t);
+    // An upright limb darkens most through its lower part.
+    let lying = smoothstep(0.5, 1.5, len / max(in.size.y, in.size.z));
+    let sigma = mix(in.blur.z, mix(in.blur.x, in.blur.y, t), lying);
+    let across = blurred_box(-radius - in.at.y, radius - in.at.y, sigma);
+    let along = blurred_box(-0.85 * in.size.y - in.at.x, len + 0.85 * in.size.z - in.at.x, sigma);
+    let dark = clamp(across * along, 0.0, 1.0) * figure.about.z;
+    return vec4f(0.0, 0.0, 0.0, dark + dither(in.clip.xy));
+}

@@ -1,0 +1,48 @@
+use eframe::wgpu;
+
+/// Colours are kept encoded, as egui keeps its own: blending then looks the same in the stage and beside it.
+pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
+
+/// What a stage is drawn into.
+pub(super) struct Targets {
+    pub(super) size: [u32; 2],
+    /// The finished picture.
+    pub(super) color: wgpu::Texture,
+    pub(super) color_view: wgpu::TextureView,
+    /// Several samples per pixel; `None` where the machine has but one.
+    pub(super) samples: Option<wgpu::TextureView>,
+    pub(super) depth: wgpu::TextureView,
+    /// The finished picture for the page.
+    pub(super) composite: wgpu::BindGroup,
+}
+
+impl Targets {
+    pub(super) fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, size: [u32; 2], sample_count: u32) -> Self {
+        let texture = |label, format, sample_count, usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size[0].max(1), height: size[1].max(1), depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let color =
+            texture("stage", COLOR_FORMAT, 1, attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC);
+        let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
+        let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let samples = (sample_count > 1).then(|| view(texture("stage samples", COLOR_FORMAT, sample_count, attachment)));
+        let depth = view(texture("stage depth", DEPTH_FORMAT, sample_count, attachment));
+        let composite = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("stage composite"),
+            layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&color_view) }],
+        });
+        Self { size, color, color_view, samples, depth, composite }
+    }
+}

@@ -1,0 +1,53 @@
+// What every shader of the stage shares. Colours come in and go out sRGB-encoded; light is computed linearly in between.
+
+struct View {
+    clip_from_world: mat4x4f,
+    // Where the camera stands; w is 1 for an orthographic lens.
+    eye: vec4f,
+    // World vectors of half the picture's width and height, at depth 1 for a perspective lens.
+    right: vec4f,
+    up: vec4f,
+    // Where the camera looks, unit; w is the nearest depth.
+    forward: vec4f,
+    // The pane in the target: left, top, width, height, pixels.
+    viewport: vec4f,
+    // Towards the main light, unit; w is the number of pixels per point.
+    key: vec4f,
+    background_top: vec4f,
+    background_bottom: vec4f,
+    // w is the radius of the lit part, metres.
+    floor: vec4f,
+    // Middle of the lit part; w is how dark a shadow gets.
+    focus: vec4f,
+    grid: vec4f,
+    edge: vec4f,
+    // Width of edges in pixels, darkening of rims, unused, unused.
+    style: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+
+fn to_linear(c: vec3f) -> vec3f {
+    return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
+}
+
+fn to_srgb(c: vec3f) -> vec3f {
+    let x = clamp(c, vec3f(0.0), vec3f(1.0));
+    return select(1.055 * pow(max(x, vec3f(1e-6)), vec3f(1.0 / 2.4)) - 0.055, x * 12.92, x <= vec3f(0.0031308));
+}
+
+// World metres per pixel at a point.
+fn pixel_size(world: vec3f) -> f32 {
+    let depth = select(dot(world - view.eye.xyz, view.forward.xyz), 1.0, view.eye.w > 0.5);
+    return 2.0 * max(depth, view.forward.w) * length(view.up.xyz) / view.viewport.w;
+}
+
+// Unit vector from a point to the camera.
+fn towards_eye(world: vec3f) -> vec3f {
+    return normalize(select(view.eye.xyz - world, -view.forward.xyz, view.eye.w > 0.5));
+}
+
+// Even noise of a pixel, within half a step of 8 bits: it breaks up bands and leaves exact colours exact.
+fn dither(pixel: vec2f) -> f32 {
+    return (fract(52.9829189 * fract(dot(floor(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5) * (0.96 / 255.0);
+}

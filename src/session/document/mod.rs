@@ -1,0 +1,606 @@
+//! The document itself: what it holds, and what commands do to it.
+
+mod loading;
+mod panes;
+
+pub use loading::Loaded;
+pub use panes::Pane;
+
+use super::command::{Command, CommandError, Request};
+use super::compare::Compare;
+use super::library::{Entry, Library, Origin, Sample, SourceFile, split_reference};
+use super::link;
+use super::motion::Motion;
+use super::notice::{Level, Notices};
+use super::params::{Key, Params, Value};
+use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
+use super::transport::Span;
+use super::undo::History;
+use crate::formats::{ImportOptions, import};
+use crate::synth;
+use std::sync::Arc;
+
+/// The bundled takes.
+static SAMPLES: [Sample; 4] = [
+    Sample {
+        id: "cmu_jump",
+        label: "CMU 01_01 · forward jumps",
+        file: "01_01.bvh.gz",
+    },
+    Sample {
+        id: "cmu_climb",
+        label: "CMU 01_03 · climb",
+        file: "01_03.bvh.gz",
+    },
+    Sample {
+        id: "cmu_run",
+        label: "CMU · run",
+        file: "run.bvh.gz",
+    },
+    Sample {
+        id: "cmu_pirouette",
+        label: "CMU · pirouette",
+        file: "pirouette.bvh.gz",
+    },
+];
+
+/// What the first visitor sees: the experiment of the course, running.
+const WELCOME: &str = "compare=blend_window:30,15,10";
+
+/// A link with this many clips to load is an accident.
+const MOST_SOURCES: usize = 16;
+
+/// A clip as the page's API tells of it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ClipInfo {
+    /// What links call it.
+    pub id: String,
+    /// What a person calls it.
+    pub name: String,
+    /// `bvh` or `synth`.
+    pub format: &'static str,
+    /// Number of joints; 0 while it is not loaded.
+    pub joints: usize,
+    /// Number of frames.
+    pub frames: usize,
+    /// Frames per second.
+    pub fps: f64,
+    /// Seconds.
+    pub duration: f64,
+    /// Standing height in metres.
+    pub height: f32,
+    /// SHA-256 of the file, hexadecimal; `null` for what no file gave.
+    pub sha256: Option<String>,
+}
+
+/// The document. See the module.
+#[derive(Debug)]
+pub struct Session {
+    params: Params,
+    library: Library,
+    history: History,
+    notices: Notices,
+    panes: Vec<Pane>,
+    blender: Blender,
+    requests: Vec<Request>,
+    library_revision: u64,
+    revision: u64,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Session {
+    /// A new document with the built-in clips, showing what a first visitor sees.
+    #[must_use]
+    pub fn new() -> Self {
+        let mut session = Self {
+            params: Params::default(),
+            library: built_in_library(),
+            history: History::default(),
+            notices: Notices::default(),
+            panes: Vec::new(),
+            blender: Blender::default(),
+            requests: Vec::new(),
+            library_revision: 0,
+            revision: 0,
+        };
+        session.open_link(WELCOME);
+        session.refresh();
+        session
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// The library.
+    #[must_use]
+    pub fn library(&self) -> &Library {
+        &self.library
+    }
+
+    /// What there is to say.
+    #[must_use]
+    pub fn notices(&self) -> &Notices {
+        &self.notices
+    }
+
+    /// The panes, left to right; at least one.
+    #[must_use]
+    pub fn panes(&self) -> &[Pane] {
+        &self.panes
+    }
+
+    /// The bundled takes.
+    #[must_use]
+    pub fn samples() -> &'static [Sample] {
+        &SAMPLES
+    }
+
+    /// Grows with every change of library content; tells storage when to save.
+    #[must_use]
+    pub fn library_revision(&self) -> u64 {
+        self.library_revision
+    }
+
+    /// Grows with every change that anybody could see, except the playhead's.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether there is a step to take back.
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// Whether there is a step to do again.
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    /// What is asked of the outside since the last call.
+    pub fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+
+    /// The query string that restores this state, without `?`.
+    #[must_use]
+    pub fn query(&self) -> String {
+        link::write(&self.params)
+    }
+
+    /// The comparison that is open.
+    #[must_use]
+    pub fn compare(&self) -> Option<Compare> {
+        Compare::parse(self.params.text(Key::Compare)).ok()
+    }
+
+    /// The pane that stands for all where only one can: the first.
+    #[must_use]
+    pub fn main_outcome(&self) -> Option<&Arc<Outcome>> {
+        self.panes.first().and_then(|pane| pane.outcome.as_ref())
+    }
+
+    /// The longest result's duration, seconds.
+    #[must_use]
+    pub fn duration_secs(&self) -> f64 {
+        self.panes
+            .iter()
+            .filter_map(|pane| pane.outcome.as_ref())
+            .map(|outcome| outcome.duration_secs())
+            .fold(0.0, f64::max)
+    }
+
+    /// The playhead, seconds.
+    #[must_use]
+    pub fn now_secs(&self) -> f64 {
+        self.params.number(Key::Time).min(self.duration_secs())
+    }
+
+    /// The part that plays.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        Span::between(self.params.optional(Key::In), self.params.optional(Key::Out), self.duration_secs())
+    }
+
+    /// The clip in a slot.
+    #[must_use]
+    pub fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
+        self.library.find(self.params.text(slot_key(slot)))
+    }
+
+    /// Says something to the user.
+    pub fn say(&mut self, level: Level, text: impl Into<String>) {
+        self.notices.say(level, text);
+        self.revision += 1;
+    }
+
+    /// Lets time pass: moves the playhead while playing. Says whether anything moved.
+    pub fn tick(&mut self, dt_secs: f64) -> bool {
+        let mut changed = self.notices.tick(dt_secs);
+        if self.params.is_on(Key::Play) {
+            let (now, moving) = self.span().advance(
+                self.now_secs(),
+                dt_secs,
+                self.params.number(Key::Speed),
+                self.params.is_on(Key::Loop),
+            );
+            self.set_unchecked(Key::Time, Value::Number(now));
+            if !moving {
+                self.set_unchecked(Key::Play, Value::Switch(false));
+                self.revision += 1;
+            }
+            changed = true;
+        }
+        changed
+    }
+
+    /// Sets a value that is known to fit.
+    fn set_unchecked(&mut self, key: Key, value: Value) {
+        let result = self.params.set(key, value);
+        debug_assert!(result.is_ok(), "{result:?}");
+    }
+
+    /// Carries a command out and recomputes what depends on it.
+    ///
+    /// # Errors
+    /// [`CommandError`] says what does not fit; the document is then as it was.
+    pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        match command {
+            Command::Set(values) => self.set(values)?,
+            Command::Reset(key) => {
+                self.set(vec![(key, key.param().default_value())])?;
+                self.history.settle();
+            }
+            Command::Settle => self.history.settle(),
+            Command::OpenLink(query) => {
+                self.remember(None);
+                self.open_link(&query);
+            }
+            Command::Assign(slot, id) => {
+                let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
+                self.set(vec![(slot_key(slot), Value::Text(id))])?;
+                self.history.settle();
+            }
+            Command::Remove(id) => self.remove(&id)?,
+            Command::Rename(id, name) => {
+                let name = name.trim().to_owned();
+                if name.is_empty() {
+                    return Err(CommandError::NotPossible("a clip needs a name"));
+                }
+                self.change_entry(&id, |entry| entry.name = name)?;
+            }
+            Command::CorrectRole(id, role, joint) => self.correct_role(&id, role, joint)?,
+            Command::Reimport(id, options) => self.reimport(&id, &options)?,
+            Command::KeepMade => self.keep_made()?,
+            Command::Seek(secs) => {
+                let to = if secs.is_finite() {
+                    secs.clamp(0.0, self.duration_secs())
+                } else {
+                    0.0
+                };
+                self.set_unchecked(Key::Time, Value::Number(to));
+            }
+            Command::Step(frames) => self.step(frames),
+            Command::TogglePlay => {
+                let playing = self.params.is_on(Key::Play);
+                if !playing && !self.params.is_on(Key::Loop) && self.now_secs() >= self.span().end {
+                    self.set_unchecked(Key::Time, Value::Number(self.span().start));
+                }
+                self.set_unchecked(Key::Play, Value::Switch(!playing));
+            }
+            Command::CompareThirds(key) => {
+                let full = self.params.optional(key).or_else(|| self.automatic_value(key)).unwrap_or_default();
+                let compare =
+                    Compare::full_half_third(key, full).ok_or(CommandError::NotPossible("only a number of the lab can be compared"))?;
+                self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
+                self.history.settle();
+            }
+            Command::Undo => {
+                if self.history.undo(&mut self.params, &mut self.library) {
+                    self.library_revision += 1;
+                }
+            }
+            Command::Redo => {
+                if self.history.redo(&mut self.params, &mut self.library) {
+                    self.library_revision += 1;
+                }
+            }
+            Command::Dismiss(id) => self.notices.dismiss(id),
+        }
+        self.refresh();
+        Ok(())
+    }
+
+    /// The value that Segue chose for a parameter that is left to it.
+    #[must_use]
+    pub fn automatic_value(&self, key: Key) -> Option<f64> {
+        let transition = self.main_outcome()?.transition;
+        match key {
+            Key::LeaveA => transition.map(|t| t.leave_a_secs),
+            Key::EnterB => transition.map(|t| t.enter_b_secs),
+            Key::GaitSpeed => Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps)),
+            Key::In => Some(0.0),
+            Key::Out => Some(self.duration_secs()),
+            _ => None,
+        }
+    }
+
+    fn remember(&mut self, key: Option<Key>) {
+        self.history.before_change(&self.params, &self.library, key);
+    }
+
+    fn set(&mut self, values: Vec<(Key, Value)>) -> Result<(), CommandError> {
+        let mut params = self.params.clone();
+        let mut changed = Vec::new();
+        for (key, value) in values {
+            if params.set(key, value)? {
+                changed.push(key);
+            }
+        }
+        let mut undoable = changed.iter().copied().filter(|key| key.param().group.is_undoable());
+        if let Some(first) = undoable.next() {
+            // A slider that is dragged changes one parameter again and again: one step.
+            let alone = undoable.next().is_none();
+            self.remember(alone.then_some(first));
+        }
+        self.params = params;
+        if changed.contains(&Key::Src) {
+            self.fetch_sources();
+        }
+        if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
+            self.library_revision += 1;
+        }
+        Ok(())
+    }
+
+    fn open_link(&mut self, query: &str) {
+        let link = link::read(query);
+        let mut params = Params::default();
+        for (key, value) in link.values {
+            let result = params.set(key, value);
+            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
+        }
+        let sources_changed = params.text(Key::Src) != self.params.text(Key::Src);
+        self.params = params;
+        if !link.problems.is_empty() {
+            self.say(
+                Level::Warning,
+                format!("The link was used, but for this: {}.", link.problems.join("; ")),
+            );
+        }
+        if sources_changed {
+            self.fetch_sources();
+        }
+        for slot in [Slot::A, Slot::B] {
+            if let Some(text) = self.missing(slot) {
+                self.say(Level::Warning, text);
+            }
+        }
+    }
+
+    fn fetch_sources(&mut self) {
+        let addresses: Vec<String> = self.params.text(Key::Src).split_whitespace().map(str::to_owned).collect();
+        if addresses.len() > MOST_SOURCES {
+            self.say(
+                Level::Warning,
+                format!("The link names {} files; the first {MOST_SOURCES} are loaded.", addresses.len()),
+            );
+        }
+        for address in addresses.into_iter().take(MOST_SOURCES) {
+            if address.starts_with("https://") || address.starts_with("http://") {
+                self.requests.push(Request::Fetch(address));
+            } else {
+                self.say(
+                    Level::Error,
+                    format!("src: found `{address}`, expected an address that starts with https://."),
+                );
+            }
+        }
+    }
+
+    /// What to tell who opened a link to a clip that is not here; `None` when it is, or when Segue can bring it.
+    fn missing(&mut self, slot: Slot) -> Option<String> {
+        let reference = self.params.text(slot_key(slot)).to_owned();
+        if reference.is_empty() || self.bring(&reference) {
+            return None;
+        }
+        let (name, sha, _) = split_reference(&reference);
+        Some(if sha.is_empty() {
+            format!(
+                "{} is `{name}`, which is not here: drop that file, or choose another clip.",
+                slot.label()
+            )
+        } else {
+            format!(
+                "{} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.",
+                slot.label()
+            )
+        })
+    }
+
+    /// Whether the clip is in the library, or can be made from its id.
+    fn bring(&mut self, reference: &str) -> bool {
+        if self.library.find(reference).is_some() {
+            return true;
+        }
+        let made = made_params(reference).is_some();
+        if made {
+            self.library.put(Entry {
+                id: reference.to_owned(),
+                name: reference.to_owned(),
+                origin: Origin::Made,
+                motion: None,
+                warnings: Vec::new(),
+                roles_by_hand: None,
+            });
+            self.library_revision += 1;
+        }
+        made
+    }
+
+    fn change_entry(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> Result<(), CommandError> {
+        if self.library.find(id).is_none() {
+            return Err(CommandError::NoClip(id.to_owned()));
+        }
+        self.remember(None);
+        self.library.change(id, change);
+        self.library_revision += 1;
+        Ok(())
+    }
+
+    fn remove(&mut self, id: &str) -> Result<(), CommandError> {
+        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        self.remember(None);
+        self.library.remove(&entry.id);
+        self.library_revision += 1;
+        // A slot that held the clip takes the first one that the other slot does not hold.
+        for slot in [Slot::A, Slot::B] {
+            let key = slot_key(slot);
+            if self.params.text(key) != entry.id {
+                continue;
+            }
+            let other = self.params.text(if slot == Slot::A { Key::B } else { Key::A }).to_owned();
+            let entries = self.library.entries();
+            let next = entries
+                .iter()
+                .find(|e| e.id != other && e.motion.is_some())
+                .or_else(|| entries.first());
+            let next = next.map(|e| e.id.clone()).unwrap_or_default();
+            self.set_unchecked(key, Value::Text(next));
+        }
+        self.say(Level::Info, format!("{} was removed; undo brings it back.", entry.name));
+        Ok(())
+    }
+
+    fn correct_role(&mut self, id: &str, role: crate::skeleton::Role, joint: Option<usize>) -> Result<(), CommandError> {
+        let entry = self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?;
+        let motion = entry
+            .motion
+            .as_ref()
+            .ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
+        if joint.is_some_and(|joint| joint >= motion.clip.skeleton().len()) {
+            return Err(CommandError::NotPossible("the skeleton has no such joint"));
+        }
+        let mut roles = motion.roles.clone();
+        roles.set(role, joint);
+        let corrected = Arc::new(Motion::analyze((*motion.clip).clone(), Some(roles.clone())));
+        self.change_entry(id, |entry| {
+            entry.motion = Some(corrected);
+            entry.roles_by_hand = Some(roles);
+        })
+    }
+
+    fn reimport(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
+        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        let Origin::File(file) = &entry.origin else {
+            return Err(CommandError::NotPossible("only a clip that came from a file can be read again"));
+        };
+        let imported = import(&file.name, &file.bytes, options)?;
+        let warnings = imported.warnings.iter().map(ToString::to_string).collect();
+        let clip = imported
+            .clips
+            .into_iter()
+            .nth(file.index)
+            .ok_or(CommandError::NotPossible("the file has no such character"))?;
+        let motion = Arc::new(Motion::analyze(clip.clip, entry.roles_by_hand.clone()));
+        let file = SourceFile {
+            options: options.clone(),
+            ..file.clone()
+        };
+        self.change_entry(id, |entry| {
+            entry.origin = Origin::File(file);
+            entry.motion = Some(motion);
+            entry.warnings = warnings;
+        })
+    }
+
+    fn keep_made(&mut self) -> Result<(), CommandError> {
+        let id = made_id(&self.params);
+        if self.library.find(&id).is_some() {
+            return Err(CommandError::NotPossible("this clip is in the library already"));
+        }
+        let motion = made_motion(&self.params).map_err(|_| CommandError::NotPossible("there is no clip to keep"))?;
+        self.remember(None);
+        self.library.put(Entry {
+            name: id.clone(),
+            id,
+            origin: Origin::Made,
+            motion: Some(Arc::new(motion)),
+            warnings: Vec::new(),
+            roles_by_hand: None,
+        });
+        self.library_revision += 1;
+        Ok(())
+    }
+
+    fn step(&mut self, frames: i64) {
+        let Some(fps) = self.main_outcome().map(|outcome| outcome.motion.clip.fps()) else {
+            return;
+        };
+        let frame = (self.now_secs() * fps).round() + frames as f64;
+        self.set_unchecked(Key::Play, Value::Switch(false));
+        let to = (frame / fps).clamp(0.0, self.duration_secs());
+        self.set_unchecked(Key::Time, Value::Number(to));
+    }
+
+    /// Everything that the API tells of the clips.
+    #[must_use]
+    pub fn clip_infos(&self) -> Vec<ClipInfo> {
+        self.library.entries().iter().map(|entry| clip_info(entry)).collect()
+    }
+}
+
+/// The key that says what a slot holds.
+fn slot_key(slot: Slot) -> Key {
+    match slot {
+        Slot::A => Key::A,
+        Slot::B => Key::B,
+    }
+}
+
+fn built_in_library() -> Library {
+    let mut library = Library::default();
+    let presets = synth::presets()
+        .into_iter()
+        .map(|preset| (preset.id.to_owned(), preset.title.to_owned(), Origin::Preset));
+    let samples = SAMPLES
+        .iter()
+        .map(|sample| (sample.id.to_owned(), sample.label.to_owned(), Origin::Sample(sample)));
+    for (id, name, origin) in presets.chain(samples) {
+        library.put(Entry {
+            id,
+            name,
+            origin,
+            motion: None,
+            warnings: Vec::new(),
+            roles_by_hand: None,
+        });
+    }
+    library
+}
+
+fn clip_info(entry: &Entry) -> ClipInfo {
+    let motion = entry.motion.as_deref();
+    let clip = motion.map(|motion| &motion.clip);
+    ClipInfo {
+        id: entry.id.clone(),
+        name: entry.name.clone(),
+        format: entry.format(),
+        joints: clip.map_or(0, |clip| clip.skeleton().len()),
+        frames: clip.map_or(0, |clip| clip.frames()),
+        fps: clip.map_or(0.0, |clip| clip.fps()),
+        duration: clip.map_or(0.0, |clip| clip.duration_secs()),
+        height: motion.map_or(0.0, |motion| motion.roles.body_height(motion.clip.skeleton())),
+        sha256: entry.sha256().map(str::to_owned),
+    }
+}

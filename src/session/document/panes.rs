@@ -1,0 +1,195 @@
+//! From the library and the parameters to results: what has changed is computed again, and nothing else.
+
+use super::Session;
+use crate::session::command::Request;
+use crate::session::compare::{Compare, MAX_PANES};
+use crate::session::library::{Origin, split_reference};
+use crate::session::motion::Motion;
+use crate::session::params::{Group, Key, Params, Value};
+use crate::session::recipe::{BlendInputs, Outcome, made_id, made_motion, made_params, preset_motion};
+use std::sync::Arc;
+
+/// One pane of the stage: a result under one value of the compared parameter.
+#[derive(Clone, Debug)]
+pub struct Pane {
+    /// The compared parameter and this pane's value; `None` when there is nothing to compare.
+    pub variant: Option<(Key, f64)>,
+    /// The last good result.
+    pub outcome: Option<Arc<Outcome>>,
+    /// Why there is no newer one: what is missing and what to do.
+    pub problem: Option<String>,
+    inputs: Option<Inputs>,
+}
+
+/// What a result depends on. Equal inputs, equal result: nothing is computed again.
+#[derive(Clone, Debug)]
+enum Inputs {
+    View(Arc<Motion>),
+    Make(String),
+    Blend(BlendInputs),
+}
+
+impl PartialEq for Inputs {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::View(a), Self::View(b)) => Arc::ptr_eq(a, b),
+            (Self::Make(a), Self::Make(b)) => a == b,
+            (Self::Blend(a), Self::Blend(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl Session {
+    /// One slice of the work that is left over when a change would take longer than a frame. `true` while there is more.
+    pub fn work(&mut self) -> bool {
+        if self.blender.work() {
+            if !self.blender.is_searching() {
+                self.refresh();
+            }
+            return true;
+        }
+        // Presets are made ahead, one a slice, so that the library can tell what they are.
+        let next = self
+            .library
+            .entries()
+            .iter()
+            .find(|entry| entry.motion.is_none() && matches!(entry.origin, Origin::Preset | Origin::Made));
+        let Some(id) = next.map(|entry| entry.id.clone()) else {
+            return false;
+        };
+        self.motion_of(&id).is_ok()
+    }
+
+    /// What is under way, by name, with its progress from 0 to 1.
+    #[must_use]
+    pub fn jobs(&self) -> Vec<(&'static str, f32)> {
+        self.blender.progress().map(|progress| ("matching", progress)).into_iter().collect()
+    }
+
+    /// The motion of a clip: made or asked for when it is not there yet.
+    pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, String> {
+        let Some(entry) = self.library.find(reference) else {
+            return Err(format!(
+                "`{}` is not here: drop its file, or choose another clip.",
+                split_reference(reference).0
+            ));
+        };
+        if let Some(motion) = &entry.motion {
+            return Ok(Arc::clone(motion));
+        }
+        let id = entry.id.clone();
+        let motion = match &entry.origin {
+            Origin::Sample(sample) => {
+                let request = Request::Sample(sample);
+                if !self.requests.contains(&request) {
+                    self.requests.push(request);
+                }
+                return Err(format!("{} is being loaded.", sample.label));
+            }
+            Origin::Preset => Arc::new(preset_motion(&id)?),
+            Origin::Made => {
+                let params = made_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
+                Arc::new(made_motion(&params)?)
+            }
+            Origin::File(_) => return Err(format!("`{id}` could not be read.")),
+        };
+        self.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
+        self.revision += 1;
+        Ok(motion)
+    }
+
+    /// Recomputes the panes whose inputs have changed.
+    pub(super) fn refresh(&mut self) {
+        self.revision += 1;
+        let compare = self
+            .compare()
+            .filter(|compare| lab_of(&self.params) == Some(compare.key.param().group));
+        let variants: Vec<Option<(Key, f64)>> = match &compare {
+            Some(compare) => compare
+                .values
+                .iter()
+                .take(MAX_PANES)
+                .map(|&value| Some((compare.key, value)))
+                .collect(),
+            None => vec![None],
+        };
+        let mut old = std::mem::take(&mut self.panes).into_iter();
+        let match_window = widest_window(&self.params, compare.as_ref());
+        for variant in variants {
+            let mut pane = old.next().unwrap_or(Pane {
+                variant,
+                outcome: None,
+                problem: None,
+                inputs: None,
+            });
+            pane.variant = variant;
+            let mut params = self.params.clone();
+            if let Some((key, value)) = variant {
+                let result = params.set(key, Value::Number(value));
+                debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
+            }
+            self.refresh_pane(&mut pane, &params, match_window);
+            self.panes.push(pane);
+        }
+    }
+
+    fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
+        let inputs = match params.text(Key::Lab) {
+            "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
+            "make" => Ok(Inputs::Make(made_id(params))),
+            _ => self.motion_of(params.text(Key::A)).and_then(|a| {
+                let b = self.motion_of(params.text(Key::B))?;
+                self.blender.inputs(&a, &b, params, match_window).map(Inputs::Blend)
+            }),
+        };
+        match inputs {
+            Ok(inputs) if pane.inputs.as_ref() == Some(&inputs) => {}
+            Ok(inputs) => {
+                let outcome = match &inputs {
+                    Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
+                    Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
+                    Inputs::Blend(blend) => blend.run(),
+                };
+                match outcome {
+                    Ok(outcome) => {
+                        pane.outcome = Some(Arc::new(outcome));
+                        pane.problem = None;
+                        pane.inputs = Some(inputs);
+                    }
+                    Err(problem) => {
+                        pane.problem = Some(problem);
+                        pane.inputs = None;
+                    }
+                }
+            }
+            Err(problem) => {
+                pane.problem = Some(problem);
+                pane.inputs = None;
+            }
+        }
+    }
+}
+
+/// The group of parameters of the lab that is open.
+fn lab_of(params: &Params) -> Option<Group> {
+    match params.text(Key::Lab) {
+        "view" => Some(Group::View),
+        "make" => Some(Group::Make),
+        "blend" => Some(Group::Blend),
+        _ => None,
+    }
+}
+
+/// The window that the automatic match uses: one for all panes, so that they differ in the compared value alone.
+fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
+    let windows = compare
+        .filter(|compare| compare.key == Key::BlendWindow)
+        .map(|compare| compare.values.as_slice());
+    let widest = windows.unwrap_or(&[]).iter().copied().fold(0.0, f64::max);
+    if widest > 0.0 {
+        widest as usize
+    } else {
+        params.number(Key::BlendWindow) as usize
+    }
+}

@@ -1,0 +1,247 @@
+//! One foot through time: planted and rolling from heel to ball, then swung to the next place.
+
+use super::body::Body;
+use super::track::{Spline, State, cubic_start_acceleration, quintic, ramp};
+use glam::{DVec2, DVec3, Quat, Vec3};
+
+/// A foot on the ground: where, when, and how it arrives and leaves. Times in seconds, `±∞` for a foot that stands.
+///
+/// The foot rolls over two rockers (Perry and Burnfield 2010, chapter 3): about the heel from `from` to `flat_from`, flat on the ground to
+/// `flat_to`, and about the ball, with the toes flat, to `to`. A foot that arrives with its heel up lands on the ball instead.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plant {
+    pub(super) from: f64,
+    pub(super) flat_from: f64,
+    pub(super) flat_to: f64,
+    pub(super) to: f64,
+    /// The ankle over the flat foot, world (x, z).
+    pub(super) ankle: DVec2,
+    /// Where the toes point, about +Y.
+    pub(super) yaw: f64,
+    /// Pitch at `from` and `to`, radians, positive with the heel up.
+    pub(super) strike_pitch: f64,
+    pub(super) release_pitch: f64,
+    /// How the weight comes and goes, seconds after `from` and before `to`.
+    pub(super) load_secs: f64,
+    /// The share of a stance that one second is, for feet that stand for ever.
+    pub(super) stances_per_sec: f64,
+    /// How the foot gets from here to its next place.
+    pub(super) swing: Swing,
+}
+
+/// The way of a foot through the air. Times are shares of the swing; heights are those of the ball over its height on the ground, metres.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Swing {
+    pub(super) peak: (f64, f64),
+    pub(super) low: (f64, f64),
+    /// Pitch knots between release and strike: (share, radians).
+    pub(super) pitch: [(f64, f64); 3],
+    /// How much of the least bending way's acceleration the foot starts and ends with, over the ground.
+    pub(super) eager: f64,
+    pub(super) late: f64,
+    /// Rate of the ball straight up at its start and end, m/s; not 0 only where it leaves the ground with the whole body.
+    pub(super) spring: f64,
+}
+
+/// A foot at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub(super) ankle: Vec3,
+    pub(super) rotation: Quat,
+    pub(super) yaw: f64,
+    /// Bend of the toes against the foot, radians, positive downwards.
+    pub(super) toe_bend: f64,
+    pub(super) heel_down: bool,
+    pub(super) toe_down: bool,
+    /// 0 in the air to 1 fully loaded.
+    pub(super) load: f64,
+    /// 0 at the strike to 1 at the release; the share of the swing while in the air.
+    pub(super) progress: f64,
+    /// Where the ground pushes, world (x, z).
+    pub(super) pressure: DVec2,
+}
+
+impl Foot {
+    pub(super) fn planted(&self) -> bool {
+        self.heel_down || self.toe_down
+    }
+}
+
+/// (along, up) of a vector of the foot's side view after a pitch, and its derivative by the pitch.
+fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
+    let (y, z) = (f64::from(v.y), f64::from(v.z));
+    let (sin, cos) = pitch.sin_cos();
+    (
+        DVec2::new(z * cos + y * sin, y * cos - z * sin),
+        DVec2::new(y * cos - z * sin, -y * sin - z * cos),
+    )
+}
+
+fn along(yaw: f64) -> DVec2 {
+    DVec2::new(yaw.sin(), yaw.cos())
+}
+
+/// The ball of a planted foot at a pitch, and how it moves as the pitch changes.
+fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
+    let flat_ball = f64::from(body.ball_in_foot.z);
+    let ball_height = f64::from(body.ankle_height() + body.ball_in_foot.y);
+    let forward = along(plant.yaw);
+    let place = |along: f64, up: f64| {
+        let ground = plant.ankle + forward * along;
+        DVec3::new(ground.x, up, ground.y)
+    };
+    if pitch >= 0.0 {
+        return (place(flat_ball, ball_height), DVec3::ZERO);
+    }
+    let heel = f64::from(body.heel_in_foot.z);
+    let (arm, turn) = pitched(body.ball_in_foot - body.heel_in_foot, pitch);
+    (
+        place(heel + arm.x, arm.y),
+        DVec3::new(forward.x * turn.x, turn.y, forward.y * turn.x),
+    )
+}
+
+impl Plant {
+    fn strike_rate(&self) -> f64 {
+        let span = self.flat_from - self.from;
+        if span.is_finite() && span > 0.0 {
+            -1.1 * self.strike_pitch / span
+        } else {
+            0.0
+        }
+    }
+
+    fn release_rate(&self) -> f64 {
+        let span = self.to - self.flat_to;
+        if span.is_finite() && span > 0.0 {
+            1.6 * self.release_pitch / span
+        } else {
+            0.0
+        }
+    }
+
+    fn pitch(&self, secs: f64) -> f64 {
+        if secs < self.flat_from {
+            let strike = State {
+                value: self.strike_pitch,
+                rate: self.strike_rate(),
+                acceleration: 0.0,
+            };
+            quintic(strike, State::rest(0.0), self.flat_from - self.from, secs - self.from)
+        } else if secs > self.flat_to {
+            let release = State {
+                value: self.release_pitch,
+                rate: self.release_rate(),
+                acceleration: 0.0,
+            };
+            quintic(State::rest(0.0), release, self.to - self.flat_to, secs - self.flat_to)
+        } else {
+            0.0
+        }
+    }
+
+    /// Progress through the stance; a foot that stands for ever is in the middle of it.
+    fn progress(&self, secs: f64) -> f64 {
+        let since = (secs - self.from) * self.stances_per_sec;
+        let left = (self.to - secs) * self.stances_per_sec;
+        match (self.from.is_finite(), self.to.is_finite()) {
+            (true, true) => since / (since + left),
+            (true, false) => since.min(0.5),
+            (false, true) => (1.0 - left).max(0.5),
+            (false, false) => 0.5,
+        }
+    }
+}
+
+/// The foot that follows `plants` (in order of time, at least one) at `secs`.
+pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> {
+    let index = plants.partition_point(|plant| plant.from <= secs).saturating_sub(1);
+    let plant = plants.get(index)?;
+    let next = plants.get(index + 1).filter(|_| secs > plant.to);
+    let (ball, yaw, pitch, toe_pitch, progress) = match next {
+        None => {
+            let pitch = plant.pitch(secs.clamp(plant.from, plant.to));
+            (
+                planted_ball(plant, body, pitch).0,
+                plant.yaw,
+                pitch,
+                pitch.min(0.0),
+                plant.progress(secs),
+            )
+        }
+        Some(next) => swing_at(plant, next, body, secs),
+    };
+    let down = next.is_none();
+    let rotation = Quat::from_rotation_y(yaw as f32) * Quat::from_rotation_x(pitch as f32);
+    let ankle = ball.as_vec3() - rotation * body.ball_in_foot;
+    // The centre of pressure runs from the heel to the ball: early in stance behind the middle of the foot, late in front of it.
+    let scale = f64::from(body.scale);
+    let roll = 0.05 - 0.07 * (1.0 - ramp(secs, plant.from, plant.from + 2.0 * plant.load_secs))
+        + 0.07 * ramp(secs, plant.to - 3.0 * plant.load_secs, plant.to);
+    Some(Foot {
+        ankle,
+        rotation,
+        yaw,
+        toe_bend: toe_pitch - pitch,
+        heel_down: down && pitch <= 0.0,
+        toe_down: down && pitch >= 0.0,
+        load: if down {
+            ramp(secs, plant.from, plant.from + plant.load_secs) * (1.0 - ramp(secs, plant.to - plant.load_secs, plant.to))
+        } else {
+            0.0
+        },
+        progress,
+        pressure: plant.ankle + along(plant.yaw) * (roll * scale),
+    })
+}
+
+/// Ball, yaw, pitch, pitch of the toes, and share of the swing.
+fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64, f64, f64, f64) {
+    let swing = &plant.swing;
+    let span = next.from - plant.to;
+    let now = secs - plant.to;
+    let share = now / span;
+    let (start, _) = planted_ball(plant, body, plant.release_pitch);
+    let (end, end_turn) = planted_ball(next, body, next.strike_pitch);
+    let end_rate = end_turn * next.strike_rate();
+    // Over the ground: from rest to the rate of the heel rocker, quicker off than a curve of least jerk.
+    let mut from = State {
+        value: start.with_y(0.0),
+        rate: DVec3::ZERO,
+        acceleration: DVec3::ZERO,
+    };
+    let mut to = State {
+        value: end.with_y(0.0),
+        rate: end_rate.with_y(0.0),
+        acceleration: DVec3::ZERO,
+    };
+    let reversed = (State { rate: -to.rate, ..to }, State { rate: -from.rate, ..from });
+    let (a0, a1) = (
+        cubic_start_acceleration(from, to, span),
+        cubic_start_acceleration(reversed.0, reversed.1, span),
+    );
+    from.acceleration = a0 * swing.eager;
+    to.acceleration = a1 * swing.late;
+    let ground = quintic(from, to, span, now);
+    let timed = |(share, value): (f64, f64)| (share * span, value);
+    let height = Spline::clamped(
+        &[
+            (0.0, start.y),
+            timed((swing.peak.0, start.y + swing.peak.1)),
+            timed((swing.low.0, start.y + swing.low.1)),
+            (span, end.y),
+        ],
+        swing.spring,
+        if swing.spring > 0.0 { -swing.spring } else { end_rate.y },
+    );
+    let [a, b, c] = swing.pitch;
+    let pitch = Spline::clamped(
+        &[(0.0, plant.release_pitch), timed(a), timed(b), timed(c), (span, next.strike_pitch)],
+        plant.release_rate(),
+        next.strike_rate(),
+    )
+    .at(now);
+    let toe_pitch = pitch * ramp(share, 0.0, 0.5) + pitch.min(0.0) * (1.0 - ramp(share, 0.0, 0.5));
+    let yaw = plant.yaw + (next.yaw - plant.yaw) * ramp(share, 0.05, 0.92);
+    (ground.with_y(height.at(now)), yaw, pitch, toe_pitch, share)
+}

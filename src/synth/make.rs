@@ -1,0 +1,153 @@
+//! From a plan to frames.
+
+use super::arms::arm;
+use super::balance::{LONGEST, hips};
+use super::body::{Body, humanoid, joint};
+use super::foot::Foot;
+use super::leg::{soft_limit, two_bones};
+use super::params::{Action, Params, SynthError};
+use super::plan::{Plan, plan};
+use super::posture::{Posture, Trunk};
+use super::track::ramp;
+use super::truth::{FootContact, Synthesized, Truth};
+use crate::clip::{Clip, ClipError};
+use crate::math::quat::{exp, log, renormalize};
+use glam::{Quat, Vec3};
+
+/// Makes the motion that `params` describe.
+///
+/// The clip begins at the origin, facing +Z, with its left heel striking if it walks or runs. Walks and runs hold whole cycles and end in the
+/// pose that they began with. The same parameters give the same clip.
+///
+/// # Errors
+/// [`SynthError::OutOfRange`] names the first parameter that lies outside its range.
+pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
+    params.validate()?;
+    let skeleton = humanoid(params.height_m)?;
+    let body = Body::new(params.height_m);
+    let plan = plan(params, &body);
+    let posture = Posture::new(&plan, params);
+    let missing = ClipError::Length {
+        what: "footholds",
+        found: 0,
+        expected: 2,
+    };
+    let moved = hips(&plan, &posture, params, &body).ok_or(missing)?;
+    let mut rotations = Vec::with_capacity(plan.frames * joint::COUNT);
+    let mut roots = Vec::with_capacity(plan.frames);
+    let mut contacts = Vec::with_capacity(plan.frames);
+    let mut phase = Vec::with_capacity(plan.frames);
+    for frame in 0..plan.frames {
+        let step = plan.step_of(frame);
+        let secs = plan.secs(step);
+        let mut local = [Quat::IDENTITY; joint::COUNT];
+        let trunk = posture.trunk(&plan, secs);
+        pose_trunk(&trunk, &mut local);
+        for side in 0..2 {
+            pose_leg(
+                &body,
+                moved.positions[step],
+                &trunk,
+                &moved.feet[step][side],
+                plan.path.at(secs).yaw,
+                side,
+                &mut local,
+            );
+            let arm = arm(&plan, &posture, params, side, secs);
+            local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
+            let clavicle = trunk.chest * local[joint::SHOULDER[side]];
+            local[joint::ARM[side]] = clavicle.conjugate() * trunk.arms * arm.upper(side);
+            local[joint::FORE_ARM[side]] = arm.fore(side);
+            local[joint::HAND[side]] = arm.hand(side);
+        }
+        rotations.extend(local.map(renormalize));
+        roots.push(moved.positions[step]);
+        contacts.push([0, 1].map(|side| FootContact {
+            heel: moved.feet[step][side].heel_down,
+            toe: moved.feet[step][side].toe_down,
+        }));
+        phase.push(plan.cycles(secs).rem_euclid(1.0) as f32);
+    }
+    let clip = Clip::new(name(params), skeleton, f64::from(params.fps), rotations, roots)?;
+    Ok(Synthesized {
+        clip,
+        truth: truth(&plan, params, phase, contacts),
+    })
+}
+
+fn truth(plan: &Plan, params: &Params, phase: Vec<f32>, contacts: Vec<[FootContact; 2]>) -> Truth {
+    let strides = matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
+    let cycle_secs = plan.gait.cycle_secs;
+    let speed = if Params::speed_range(params.action).is_some() {
+        f64::from(params.speed_mps)
+    } else {
+        0.0
+    };
+    Truth {
+        speed_mps: speed as f32,
+        turn_rate_dps: if strides { params.turn_rate_dps } else { 0.0 },
+        cycle_secs: if strides { cycle_secs as f32 } else { 0.0 },
+        cadence_spm: if strides { plan.gait.cadence() as f32 } else { 0.0 },
+        stride_m: if strides { (speed * cycle_secs) as f32 } else { 0.0 },
+        phase,
+        contacts,
+    }
+}
+
+fn name(params: &Params) -> &'static str {
+    match params.action {
+        Action::Walk => "Walk",
+        Action::Run => "Run",
+        Action::Idle => "Stand",
+        Action::Start => "Start walking",
+        Action::Stop => "Stop walking",
+        Action::Spin => "Turn around",
+        Action::Jump => "Jump",
+    }
+}
+
+/// The share `t` of a rotation.
+fn share(rotation: Quat, t: f32) -> Quat {
+    exp(log(rotation) * t)
+}
+
+fn pose_trunk(trunk: &Trunk, local: &mut [Quat; joint::COUNT]) {
+    local[joint::HIPS] = trunk.pelvis;
+    let bend = trunk.pelvis.conjugate() * trunk.chest;
+    // The lumbar spine bends most, the chest least.
+    for (index, part) in joint::SPINE.into_iter().zip([0.40, 0.35, 0.25]) {
+        local[index] = share(bend, part);
+    }
+    let look = trunk.chest.conjugate() * trunk.head;
+    local[joint::NECK] = share(look, 0.45);
+    local[joint::HEAD] = share(look, 0.55);
+}
+
+/// The collar bone goes a little with the arm, and up with the breath.
+fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
+    let mirror = if side == 0 { 1.0 } else { -1.0 };
+    let raised = 0.10 * (flexion - 0.9).max(0.0) + 0.008 * breath;
+    Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32) * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
+}
+
+fn pose_leg(body: &Body, hips: Vec3, trunk: &Trunk, foot: &Foot, heading: f64, side: usize, local: &mut [Quat; joint::COUNT]) {
+    let hip = hips + trunk.pelvis * body.hip_in_hips[side];
+    let mut ankle = foot.ankle;
+    if !foot.planted() {
+        // In the air the foot gives way before the knee locks; close to the ground it does as planned.
+        let line = ankle - hip;
+        let length = line.length();
+        let leg = body.leg();
+        let limited = soft_limit(length, 0.985 * leg, LONGEST * leg);
+        let share = ramp(foot.progress, 0.0, 0.18) * (1.0 - ramp(foot.progress, 0.82, 1.0));
+        ankle += line * ((limited / length.max(1e-6) - 1.0) * share as f32);
+    }
+    // The knee points between where the hips and where the toes point.
+    let knee_yaw = heading + 0.55 * (foot.yaw - heading);
+    let knee_towards = Vec3::new(knee_yaw.sin() as f32, 0.0, knee_yaw.cos() as f32);
+    let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, knee_towards);
+    local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
+    local[joint::LEG[side]] = thigh.conjugate() * shank;
+    local[joint::FOOT[side]] = shank.conjugate() * foot.rotation;
+    local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
+}

@@ -1,0 +1,248 @@
+//! Buttons, from the one that matters to those that only appear under the pointer.
+
+use super::icon::{Icon, paint_icon};
+use super::paint::{Run, faded, focus_ring, line_of};
+use crate::ui::theme::{HIT, Palette, Type, palette_of, radius, space, theme_of};
+use eframe::egui::{Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+
+/// How loud a button is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Tone {
+    /// The one thing to do here. At most one in sight.
+    Primary,
+    /// Outlined.
+    #[default]
+    Secondary,
+    /// Without a ground until the pointer is on it.
+    Quiet,
+    /// As quiet, for what cannot be taken back easily.
+    Danger,
+}
+
+/// A button: an icon, a word, or both.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Button<'a> {
+    text: &'a str,
+    name: &'a str,
+    icon: Option<Icon>,
+    trailing: Option<Icon>,
+    tone: Tone,
+    selected: bool,
+    hint: &'a str,
+    min_width: f32,
+}
+
+impl<'a> Button<'a> {
+    /// A button that says `text`.
+    pub(crate) fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            name: text,
+            icon: None,
+            trailing: None,
+            tone: Tone::Secondary,
+            selected: false,
+            hint: "",
+            min_width: 0.0,
+        }
+    }
+
+    /// A button that is only an icon; `name` is what it is called, and its hint until another is given.
+    pub(crate) fn icon_only(icon: Icon, name: &'a str) -> Self {
+        Self {
+            text: "",
+            name,
+            icon: Some(icon),
+            hint: name,
+            tone: Tone::Quiet,
+            ..Self::new("")
+        }
+    }
+
+    /// The one thing to do here.
+    pub(crate) fn primary(mut self) -> Self {
+        self.tone = Tone::Primary;
+        self
+    }
+
+    /// Without a ground until the pointer is on it.
+    pub(crate) fn quiet(mut self) -> Self {
+        self.tone = Tone::Quiet;
+        self
+    }
+
+    /// Of this loudness.
+    pub(crate) fn tone(mut self, tone: Tone) -> Self {
+        self.tone = tone;
+        self
+    }
+
+    /// With an icon before the text.
+    pub(crate) fn icon(mut self, icon: Icon) -> Self {
+        self.icon = Some(icon);
+        self
+    }
+
+    /// With a small icon behind the text, such as a chevron.
+    pub(crate) fn trailing(mut self, icon: Icon) -> Self {
+        self.trailing = Some(icon);
+        self
+    }
+
+    /// Chosen, or switched on.
+    pub(crate) fn selected(mut self, selected: bool) -> Self {
+        self.selected = selected;
+        self
+    }
+
+    /// What appears when the pointer rests on it.
+    pub(crate) fn hint(mut self, hint: &'a str) -> Self {
+        self.hint = hint;
+        self
+    }
+
+    /// What screen readers call it, where that is not its text.
+    pub(crate) fn name(mut self, name: &'a str) -> Self {
+        self.name = name;
+        self
+    }
+
+    /// At least this wide.
+    pub(crate) fn min_width(mut self, min_width: f32) -> Self {
+        self.min_width = min_width;
+        self
+    }
+
+    fn colors(self, hovered: bool, down: bool, p: &Palette) -> (Color32, Color32, Color32) {
+        let raised = if down || self.selected {
+            p.pressed
+        } else if hovered {
+            p.hover
+        } else {
+            p.panel_raised
+        };
+        match self.tone {
+            Tone::Primary => {
+                let fill = if down {
+                    p.accent_fill.lerp_to_gamma(p.accent_text, 0.16)
+                } else if hovered {
+                    p.accent_fill.lerp_to_gamma(p.handle, 0.12)
+                } else {
+                    p.accent_fill
+                };
+                (fill, Color32::TRANSPARENT, p.accent_text)
+            }
+            Tone::Secondary => (raised, if hovered { p.line_strong } else { p.line }, p.text),
+            Tone::Quiet if self.selected => (p.pressed, Color32::TRANSPARENT, p.text),
+            Tone::Quiet if hovered || down => (raised, Color32::TRANSPARENT, p.text),
+            Tone::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
+            Tone::Danger if hovered || down => (p.bad_wash, Color32::TRANSPARENT, p.bad),
+            Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
+        }
+    }
+}
+
+/// Shows a button; [`Response::clicked`] says whether it was pressed, by pointer or by keyboard.
+pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let scale = theme.scale();
+    let enabled = ui.is_enabled();
+    let height = theme.row_height();
+    let icon_size = (16.0 * scale).round();
+    let step = if button.tone == Tone::Primary { Type::Strong } else { Type::Body };
+    // Measured first: the colours depend on the response, which needs the size.
+    let width_limit = ui.available_width() - 2.0 * space::M;
+    let text_width = if button.text.is_empty() {
+        0.0
+    } else {
+        line_of(&[Run::new(button.text, step, palette.text)], width_limit.max(40.0), ui)
+            .size()
+            .x
+    };
+    let mut content = text_width;
+    let icons = [button.icon, button.trailing].into_iter().flatten().count() as f32;
+    content += icons * icon_size;
+    if !button.text.is_empty() {
+        content += icons * 6.0;
+    }
+    let padding = if button.text.is_empty() {
+        (height - icon_size) / 2.0
+    } else {
+        space::M
+    };
+    let size = vec2((content + 2.0 * padding).max(HIT).max(button.min_width), height);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+
+    if ui.is_rect_visible(rect) {
+        let hovered = response.hovered() || response.has_focus();
+        let (fill, line, ink) = button.colors(hovered, response.is_pointer_button_down_on(), palette);
+        let ink = faded(ink, enabled);
+        let stroke = Stroke::new(theme.hairline(), line);
+        ui.painter().rect(rect, radius::M, faded(fill, enabled), stroke, StrokeKind::Inside);
+        let mut x = rect.center().x - content / 2.0;
+        if let Some(icon) = button.icon {
+            let at = Align2::LEFT_CENTER.anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
+            paint_icon(icon, at, ink, ui.painter());
+            x += icon_size + 6.0;
+        }
+        if !button.text.is_empty() {
+            let galley = line_of(&[Run::new(button.text, step, ink)], width_limit.max(40.0), ui);
+            let at = super::paint::put(ui.painter(), pos2(x, rect.center().y), Align2::LEFT_CENTER, galley);
+            x = at.right() + 6.0;
+        }
+        if let Some(icon) = button.trailing {
+            let at = Align2::LEFT_CENTER.anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
+            paint_icon(
+                icon,
+                at.shrink(1.0),
+                faded(palette.muted, enabled).lerp_to_gamma(ink, 0.3),
+                ui.painter(),
+            );
+        }
+        focus_ring(rect, radius::M, &response, ui);
+    }
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Button, enabled, button.name);
+        if button.selected {
+            info.selected = Some(true);
+        }
+        info
+    });
+    if button.hint.is_empty() {
+        response
+    } else {
+        response.on_hover_text(button.hint)
+    }
+}
+
+/// A small square button that is only an icon.
+pub(crate) fn icon_button_ui(icon: Icon, name: &str, ui: &mut Ui) -> Response {
+    button_ui(Button::icon_only(icon, name), ui)
+}
+
+/// Words that are pressed, underlined within a sentence: `open…`.
+pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
+    let palette = palette_of(ui);
+    let enabled = ui.is_enabled();
+    let galley = line_of(&[Run::new(text, Type::Body, palette.text)], f32::INFINITY, ui);
+    let size = vec2(galley.size().x, galley.size().y.max(HIT));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    let ink = faded(
+        if response.hovered() || response.has_focus() {
+            palette.accent_ink
+        } else {
+            palette.text
+        },
+        enabled,
+    );
+    let galley = line_of(&[Run::new(text, Type::Body, ink)], f32::INFINITY, ui);
+    let at = super::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+    let under = if response.hovered() { ink } else { palette.line_strong };
+    ui.painter()
+        .hline(at.x_range(), at.bottom(), Stroke::new(theme_of(ui).hairline(), under));
+    focus_ring(at, radius::S, &response, ui);
+    response.widget_info(|| WidgetInfo::labeled(Role::Link, enabled, text));
+    response
+}

@@ -1,0 +1,128 @@
+//! Small words on a coloured ground, and the letter that stands for a clip.
+
+use super::icon::Icon;
+use super::paint::{Run, line_of, put};
+use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
+
+/// What a coloured word means. The colour never says it alone: the word does too.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Mood {
+    /// Neither good nor bad.
+    #[default]
+    Plain,
+    /// The best, or all well.
+    Good,
+    /// The worst, or broken.
+    Bad,
+    /// Deserves a look.
+    Warning,
+}
+
+impl Mood {
+    /// The colour of its text, and of the ground under it.
+    pub(crate) fn colors(self, p: &Palette) -> (Color32, Color32) {
+        match self {
+            Self::Plain => (p.muted, p.panel_raised),
+            Self::Good => (p.good, p.accent_wash),
+            Self::Bad => (p.bad, p.bad_wash),
+            Self::Warning => (p.warning, p.warning_wash),
+        }
+    }
+
+    /// The sign beside a longer text of this mood.
+    pub(crate) fn icon(self) -> Icon {
+        match self {
+            Self::Plain => Icon::Info,
+            Self::Good => Icon::Check,
+            Self::Bad | Self::Warning => Icon::Warning,
+        }
+    }
+}
+
+/// Which part a clip plays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// The clip that is left: warm.
+    A,
+    /// The clip that is entered: cool.
+    B,
+    /// What was made of both.
+    Result,
+    /// None at the moment.
+    #[default]
+    None,
+}
+
+impl Part {
+    /// Its fill, and the colour of text on that fill.
+    pub(crate) fn fill(self, p: &Palette) -> (Color32, Color32) {
+        match self {
+            Self::A => (p.a, p.on_a),
+            Self::B => (p.b, p.on_b),
+            Self::Result => (p.accent_fill, p.accent_text),
+            Self::None => (p.pressed, p.muted),
+        }
+    }
+
+    /// Its colour as text on a panel.
+    pub(crate) fn ink(self, p: &Palette) -> Color32 {
+        match self {
+            Self::A => p.a_ink,
+            Self::B => p.b_ink,
+            Self::Result => p.accent_ink,
+            Self::None => p.muted,
+        }
+    }
+
+    /// The letter on its badge.
+    pub(crate) fn letter(self) -> &'static str {
+        match self {
+            Self::A => "A",
+            Self::B => "B",
+            Self::Result => "R",
+            Self::None => "·",
+        }
+    }
+}
+
+/// A word on a round coloured ground: `smoothest`.
+pub(crate) fn chip_ui(text: &str, mood: Mood, ui: &mut Ui) -> Response {
+    let size = chip_size(text, ui);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    paint_chip(text, mood, rect.right_center(), ui);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    response
+}
+
+/// How large a chip is.
+pub(crate) fn chip_size(text: &str, ui: &Ui) -> Vec2 {
+    line_of(&[Run::new(text, Type::SmallStrong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size() + vec2(16.0, 6.0)
+}
+
+/// Draws a chip whose right end lies at `right_center`; where it lies then.
+pub(crate) fn paint_chip(text: &str, mood: Mood, right_center: Pos2, ui: &Ui) -> Rect {
+    let (ink, ground) = mood.colors(palette_of(ui));
+    let galley = line_of(&[Run::new(text, Type::SmallStrong, ink)], f32::INFINITY, ui);
+    let rect = Align2::RIGHT_CENTER.anchor_size(right_center, galley.size() + vec2(16.0, 6.0));
+    ui.painter().rect_filled(rect, rect.height() / 2.0, ground);
+    put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+    rect
+}
+
+/// Draws the square letter of a clip.
+pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
+    let palette = palette_of(ui);
+    let (fill, ink) = part.fill(palette);
+    ui.painter().rect_filled(rect, radius::S + 1, fill);
+    if part == Part::None {
+        dot(rect.center(), ink, 1.6 * theme_of(ui).scale(), ui.painter());
+    } else {
+        let galley = line_of(&[Run::new(part.letter(), Type::SmallStrong, ink)], f32::INFINITY, ui);
+        put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+    }
+}
+
+fn dot(center: Pos2, color: Color32, size: f32, painter: &Painter) {
+    painter.circle_filled(center, size, color);
+}

@@ -1,0 +1,148 @@
+//! Lists that open: menus behind a button, and a choice among many.
+
+use super::icon::{Icon, paint_icon};
+use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{
+    Align2, CursorIcon, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response, Role, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
+};
+
+/// One line of a menu.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MenuItem<'a> {
+    /// What it does.
+    pub(crate) text: &'a str,
+    /// The sign before it.
+    pub(crate) icon: Option<Icon>,
+    /// The keys that do the same, at the right.
+    pub(crate) shortcut: &'a str,
+    /// The one in force: it wears a tick.
+    pub(crate) chosen: bool,
+}
+
+/// A menu that opens below (or above, where there is no room) `opener` when that is clicked, and closes after a choice.
+pub(crate) fn menu_ui<R>(opener: &Response, align: RectAlign, content: impl FnOnce(&mut Ui) -> R) -> Option<InnerResponse<R>> {
+    Popup::menu(opener)
+        .align(align)
+        .gap(space::XS)
+        .close_behavior(PopupCloseBehavior::CloseOnClick)
+        .show(|ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
+            content(ui)
+        })
+}
+
+/// One line of a menu, as wide as the menu.
+pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let text = line_of(&[Run::new(item.text, Type::Body, faded(palette.text, enabled))], f32::INFINITY, ui);
+    let shortcut = line_of(
+        &[Run::new(item.shortcut, Type::Small, faded(palette.muted, enabled))],
+        f32::INFINITY,
+        ui,
+    );
+    let icon_size = (15.0 * theme.scale()).round();
+    let indent = space::S + icon_size + space::S;
+    let gap = if item.shortcut.is_empty() { 0.0 } else { 28.0 };
+    let needed = indent + text.size().x + gap + shortcut.size().x + space::M;
+    let (rect, response) = ui.allocate_exact_size(vec2(needed.max(ui.available_width()), theme.row_height()), Sense::click());
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    if enabled && (response.hovered() || response.has_focus()) {
+        ui.painter().rect_filled(rect, radius::M, palette.pressed);
+    }
+    let sign = if item.chosen { Some(Icon::Check) } else { item.icon };
+    if let Some(sign) = sign {
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(rect.left() + space::S, rect.center().y), vec2(icon_size, icon_size));
+        let tone = if item.chosen { palette.accent_ink } else { palette.muted };
+        paint_icon(sign, at, faded(tone, enabled), ui.painter());
+    }
+    put(ui.painter(), pos2(rect.left() + indent, rect.center().y), Align2::LEFT_CENTER, text);
+    put(
+        ui.painter(),
+        pos2(rect.right() - space::S, rect.center().y),
+        Align2::RIGHT_CENTER,
+        shortcut,
+    );
+    focus_ring(rect.shrink(2.0), radius::M, &response, ui);
+    response.widget_info(|| WidgetInfo::selected(Role::MenuItem, enabled, item.chosen, item.text));
+    response
+}
+
+/// A hairline between groups of a menu.
+pub(crate) fn menu_line_ui(ui: &mut Ui) {
+    let rect = full_width(9.0, ui);
+    let stroke = Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
+    ui.painter().hline(rect.x_range(), rect.center().y, stroke);
+}
+
+/// A parameter with many possible values: the label left, the chosen value right, the others in a menu. What was chosen anew.
+pub(crate) fn choice_row_ui<T: Copy + PartialEq>(label: &str, chosen: T, options: &[(T, &str)], ui: &mut Ui) -> Option<T> {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let id = ui.make_persistent_id(label);
+    let row = full_width(theme.row_height(), ui);
+    let response = ui.interact(row, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+    let current = options.iter().find(|option| option.0 == chosen).map_or("", |option| option.1);
+
+    let chevron = (14.0 * theme.scale()).round();
+    let name = line_of(
+        &[Run::new(current, Type::Strong, faded(palette.text, enabled))],
+        row.width() * 0.6,
+        ui,
+    );
+    let field_width = name.size().x + chevron + 2.0 * space::S + 2.0;
+    let field = Rect::from_min_max(
+        pos2(row.right() - field_width, row.top() + 1.0),
+        pos2(row.right(), row.bottom() - 1.0),
+    );
+    let (fill, line) = if response.hovered() || response.has_focus() {
+        (palette.hover, palette.line_strong)
+    } else {
+        (palette.panel_raised, palette.line)
+    };
+    ui.painter()
+        .rect(field, radius::M, fill, Stroke::new(theme.hairline(), line), StrokeKind::Inside);
+    put(
+        ui.painter(),
+        pos2(field.left() + space::S, row.center().y),
+        Align2::LEFT_CENTER,
+        name,
+    );
+    let at = Align2::RIGHT_CENTER.anchor_size(pos2(field.right() - space::S + 2.0, row.center().y), vec2(chevron, chevron));
+    paint_icon(Icon::ChevronDown, at, faded(palette.muted, enabled), ui.painter());
+    let label_galley = line_of(
+        &[Run::new(label, Type::Label, faded(palette.text, enabled))],
+        field.left() - row.left() - space::S,
+        ui,
+    );
+    put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
+    focus_ring(field, radius::M, &response, ui);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ComboBox, enabled, label);
+        info.current_text_value = Some(current.to_owned());
+        info
+    });
+
+    let picked = menu_ui(&response.with_new_rect(field), RectAlign::BOTTOM_END, |ui| {
+        let mut picked = None;
+        for &(value, text) in options {
+            if menu_item_ui(
+                MenuItem {
+                    text,
+                    chosen: value == chosen,
+                    ..MenuItem::default()
+                },
+                ui,
+            )
+            .clicked()
+            {
+                picked = Some(value);
+            }
+        }
+        picked
+    });
+    picked.and_then(|shown| shown.inner).filter(|&value| value != chosen)
+}

@@ -1,0 +1,41 @@
+//! The widgets the whole app is built from.
+//!
+//! Each is one file and a function that takes `&mut Ui` last and ends in `_ui`. None changes the app: they are told a state and
+//! return what was asked for. All take their colours, sizes and spaces from the theme, name themselves to screen readers,
+//! and can be worked by mouse, by touch and by keyboard.
+//!
+//! A row keeps its identity by its label (a drag or the focus survives when rows above come and go), so labels are unique within
+//! a `Ui`; use `push_id` where two panes show the same ones.
+
+mod button;
+mod chip;
+mod clip_row;
+mod drop_zone;
+pub(crate) mod icon;
+mod menu;
+mod metrics;
+mod notice;
+pub(crate) mod paint;
+mod pane;
+mod section;
+mod segmented;
+mod slider_row;
+mod switch_row;
+mod tabs;
+mod words;
+
+pub(crate) use button::{Button, Tone, button_ui, icon_button_ui, link_ui};
+pub(crate) use chip::{Mood, Part, chip_size, chip_ui, paint_badge, paint_chip};
+pub(crate) use clip_row::{ClipRow, ClipRowResponse, clip_row_ui};
+pub(crate) use drop_zone::drop_zone_ui;
+pub(crate) use icon::{Icon, icon_ui, paint_icon, paint_logo};
+pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
+pub(crate) use metrics::{Metric, Rank, metric_strip_ui};
+pub(crate) use notice::{Notice, NoticeEvent, caption_ui, notice_ui, progress_row_ui, toasts_ui};
+pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_height, pane_header_ui};
+pub(crate) use section::{hairline_ui, section_header_ui};
+pub(crate) use segmented::segmented_ui;
+pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
+pub(crate) use switch_row::switch_row_ui;
+pub(crate) use tabs::tabs_ui;
+pub(crate) use words::{ENGLISH, Words};

@@ -1,0 +1,190 @@
+//! What the app has to say: a caption over the stage, a notice that can be dismissed, a task under way.
+
+use super::button::{Button, button_ui, icon_button_ui};
+use super::chip::Mood;
+use super::icon::{Icon, paint_icon};
+use super::paint::{Run, full_width, line_of, paragraph, put};
+use super::words::Words;
+use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
+use eframe::egui::{
+    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, Sense, Shadow, Stroke, Ui, UiBuilder, WidgetInfo, pos2,
+    vec2,
+};
+
+/// Something to be told once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Notice<'a> {
+    /// What happened, and what to do about it. As long as it needs.
+    pub(crate) text: &'a str,
+    /// How grave it is.
+    pub(crate) mood: Mood,
+    /// A button beside it; none if empty.
+    pub(crate) action: &'a str,
+}
+
+/// What was done to a notice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoticeEvent {
+    /// Take it away.
+    Dismissed,
+    /// Its button was pressed.
+    Acted,
+}
+
+/// A notice as wide as the panel it stands in.
+pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent> {
+    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let scale = theme.scale();
+    let (ink, wash) = notice.mood.colors(palette);
+    let mut event = None;
+    let frame = Frame::new()
+        .fill(palette.panel_raised)
+        .stroke(Stroke::new(theme.hairline(), palette.line))
+        .corner_radius(radius::L);
+    let shown = frame.inner_margin(Margin::symmetric(12, 10)).show(ui, |ui| {
+        let sign = 16.0 * scale;
+        let text_left = sign + space::S + 2.0;
+        let text = paragraph(
+            notice.text,
+            Type::Body,
+            palette.text,
+            ui.available_width() - text_left - HIT - space::XS,
+            ui,
+        );
+        let row = full_width(text.size().y.max(HIT - 4.0), ui);
+        let sign_rect = Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
+        paint_icon(notice.mood.icon(), sign_rect, ink, ui.painter());
+        let at = put(ui.painter(), row.left_top() + vec2(text_left, 0.0), Align2::LEFT_TOP, text);
+        let label = ui.interact(at, ui.make_persistent_id(("notice", notice.text)), Sense::hover());
+        label.widget_info(|| WidgetInfo::labeled(Role::Alert, true, notice.text));
+        let close = Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
+        let hit = super::clip_row::small_icon_ui(Icon::Close, words.dismiss, close, Color32::TRANSPARENT, ui);
+        if hit.clicked() {
+            event = Some(NoticeEvent::Dismissed);
+        }
+        if !notice.action.is_empty() {
+            ui.add_space(space::XS);
+            ui.horizontal(|ui| {
+                ui.add_space(text_left - ui.spacing().item_spacing.x);
+                if button_ui(Button::new(notice.action), ui).clicked() {
+                    event = Some(NoticeEvent::Acted);
+                }
+            });
+        }
+    });
+    if notice.mood != Mood::Plain {
+        // The mood as a quiet ground over the whole, and as an edge that is seen from the corner of the eye.
+        let rect = shown.response.rect;
+        ui.painter().rect_filled(rect, radius::L, wash.gamma_multiply(0.5));
+    }
+    event
+}
+
+/// Notices floating over the lower edge of the stage, the newest lowest. Which of them was touched, and how.
+pub(crate) fn toasts_ui(notices: &[Notice<'_>], stage: Rect, ui: &mut Ui) -> Option<(usize, NoticeEvent)> {
+    if notices.is_empty() {
+        return None;
+    }
+    let width = (stage.width() - 2.0 * space::L).min(460.0 * theme_of(ui).scale());
+    let shadow = Shadow {
+        offset: [0, 6],
+        blur: 20,
+        spread: 0,
+        color: palette_of(ui).shadow,
+    };
+    let area = Area::new(Id::unique("segue toasts"))
+        .order(Order::Foreground)
+        .pivot(Align2::CENTER_BOTTOM);
+    let area = area
+        .fixed_pos(stage.center_bottom() - vec2(0.0, space::L))
+        .constrain_to(stage)
+        .default_width(width);
+    let shown = area.show(ui.ctx(), |ui| {
+        ui.set_width(width);
+        let mut touched = None;
+        for (index, notice) in notices.iter().enumerate() {
+            let inner = Frame::new()
+                .shadow(shadow)
+                .corner_radius(radius::L)
+                .show(ui, |ui| ui.push_id(index, |ui| notice_ui(notice, ui)).inner);
+            touched = inner.inner.map(|event| (index, event)).or(touched);
+        }
+        touched
+    });
+    shown.inner
+}
+
+/// One sentence on a round ground, centred on `center_bottom`: what to look at. Wraps on narrow stages.
+pub(crate) fn caption_ui(text: &str, stage: Rect, ui: &mut Ui) -> Rect {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let padding = vec2(space::L, space::S);
+    let galley = paragraph(text, Type::Body, palette.text, (stage.width() - 4.0 * space::L).min(720.0), ui);
+    let one_line = galley.rows.len() == 1;
+    let rect = Align2::CENTER_BOTTOM.anchor_size(stage.center_bottom(), galley.size() + 2.0 * padding);
+    let corner = if one_line { rect.height() / 2.0 } else { f32::from(radius::L) };
+    let shadow = Shadow {
+        offset: [0, 4],
+        blur: 16,
+        spread: 0,
+        color: palette.shadow,
+    };
+    ui.painter().add(shadow.as_shape(rect, corner));
+    let stroke = Stroke::new(theme.hairline(), palette.line);
+    ui.painter()
+        .rect(rect, corner, palette.panel_raised, stroke, eframe::egui::StrokeKind::Inside);
+    put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+    let response = ui.interact(rect, ui.make_persistent_id(("caption", text)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    rect
+}
+
+/// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was that pressed?
+pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: &mut Ui) -> bool {
+    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let scale = theme.scale();
+    let width = ui.available_width();
+    let head_height = HIT.max(20.0 * scale);
+    let (_, rect) = ui.allocate_space(vec2(width, head_height + 6.0 * scale));
+    let head = Rect::from_min_size(rect.min, vec2(width, head_height));
+    let mut stopped = false;
+    let builder = UiBuilder::new()
+        .id_salt(label)
+        .max_rect(head)
+        .layout(Layout::right_to_left(Align::Center));
+    let used = ui.scope_builder(builder, |ui| {
+        stopped = icon_button_ui(Icon::Close, words.cancel, ui).clicked();
+        ui.min_rect()
+    });
+    let detail_right = used.inner.left() - space::XS;
+    let detail = line_of(&[Run::new(detail, Type::Small, palette.muted)], width * 0.5, ui);
+    let detail = put(ui.painter(), pos2(detail_right, head.center().y), Align2::RIGHT_CENTER, detail);
+    let galley = line_of(
+        &[Run::new(label, Type::Label, palette.text)],
+        detail.left() - head.left() - space::S,
+        ui,
+    );
+    put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);
+
+    let track = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 4.0 * scale), rect.max);
+    ui.painter().rect_filled(track, 2.0 * scale, palette.track);
+    let (from, to) = if let Some(done) = done {
+        (0.0, done.clamp(0.0, 1.0))
+    } else {
+        // Nothing is known of the end: a third of the bar wanders.
+        ui.request_repaint();
+        let phase = (ui.input(|input| input.time) * 0.7).rem_euclid(1.4) as f32 - 0.35;
+        (phase.max(0.0), (phase + 0.35).clamp(0.0, 1.0))
+    };
+    let bar = Rect::from_x_y_ranges(
+        track.left() + from * track.width()..=track.left() + to * track.width(),
+        track.y_range(),
+    );
+    ui.painter().rect_filled(bar, 2.0 * scale, palette.accent);
+    let response = ui.interact(track, ui.make_persistent_id(("progress", label)), Sense::hover());
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, label);
+        info.value = done.map(f64::from);
+        info
+    });
+    stopped
+}

@@ -1,0 +1,203 @@
+//! What the widgets share: setting text, the ring around what has the keyboard, fades.
+
+use crate::ui::theme::{Theme, Type, palette_of, theme_of};
+use eframe::egui::{
+    self, Align, Align2, Color32, CornerRadius, FontId, Galley, Id, Mesh, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui,
+    epaint::Vertex,
+    pos2,
+    text::{LayoutJob, TextFormat, TextWrapping},
+    vec2,
+};
+use std::sync::Arc;
+
+/// One run of text in one font and colour.
+#[derive(Clone, Debug)]
+pub(crate) struct Run<'a> {
+    /// What it says.
+    pub(crate) text: &'a str,
+    /// Its step of the type scale.
+    pub(crate) step: Type,
+    /// Its colour.
+    pub(crate) color: Color32,
+    /// Space before it, in points.
+    pub(crate) gap: f32,
+}
+
+impl<'a> Run<'a> {
+    /// A run that follows without a gap.
+    pub(crate) fn new(text: &'a str, step: Type, color: Color32) -> Self {
+        Self {
+            text,
+            step,
+            color,
+            gap: 0.0,
+        }
+    }
+
+    /// The same with space before it.
+    pub(crate) fn after(mut self, gap: f32) -> Self {
+        self.gap = gap;
+        self
+    }
+}
+
+/// Sets runs in one line on one baseline; cut with … where they are wider than `max_width`.
+pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> {
+    let theme = theme_of(ui);
+    let mut job = LayoutJob {
+        wrap: TextWrapping {
+            max_width: max_width.max(0.0),
+            max_rows: 1,
+            break_anywhere: true,
+            ..TextWrapping::default()
+        },
+        break_on_newline: false,
+        ..LayoutJob::default()
+    };
+    for run in runs {
+        job.append(run.text, run.gap, format(theme, run.step, run.color));
+    }
+    ui.fonts_mut(|fonts| fonts.layout_job(job))
+}
+
+/// Sets text in as many lines as it needs.
+pub(crate) fn paragraph(text: &str, step: Type, color: Color32, max_width: f32, ui: &Ui) -> Arc<Galley> {
+    let theme = theme_of(ui);
+    let mut job = LayoutJob::single_section(text.to_owned(), format(theme, step, color));
+    job.wrap.max_width = max_width.max(1.0);
+    ui.fonts_mut(|fonts| fonts.layout_job(job))
+}
+
+fn format(theme: Theme, step: Type, color: Color32) -> TextFormat {
+    let font_id: FontId = theme.font(step);
+    let size = font_id.size;
+    TextFormat {
+        // Capitals stand too close at the spacing of small letters.
+        extra_letter_spacing: if step == Type::Caps { 0.06 * size } else { 0.0 },
+        line_height: (step == Type::Small).then_some((size * 1.36).round()),
+        valign: Align::BOTTOM,
+        ..TextFormat::simple(font_id, color)
+    }
+}
+
+/// Draws set text so that the given corner or edge of it lies at `pos`; where it lies then.
+pub(crate) fn put(painter: &Painter, pos: Pos2, anchor: Align2, galley: Arc<Galley>) -> Rect {
+    let rect = anchor.anchor_size(pos, galley.size());
+    painter.galley(rect.min, galley, Color32::PLACEHOLDER);
+    rect
+}
+
+/// Takes `color` away while `ui` is disabled, as egui does for its own widgets.
+pub(crate) fn faded(color: Color32, enabled: bool) -> Color32 {
+    if enabled { color } else { color.gamma_multiply(0.5) }
+}
+
+/// Was the last thing used the keyboard? Then what has the focus wears a ring; a click needs none.
+fn keyboard_in_use(ui: &Ui) -> bool {
+    let id = Id::unique("segue keyboard in use");
+    let (pointer, key) = ui.input(|input| {
+        let key = input
+            .events
+            .iter()
+            .any(|event| matches!(event, egui::Event::Key { pressed: true, .. }));
+        (input.pointer.any_pressed(), key)
+    });
+    ui.ctx().data_mut(|data| {
+        let known = data.get_temp::<bool>(id).unwrap_or(false);
+        let now = if pointer { false } else { known || key };
+        data.insert_temp(id, now);
+        now
+    })
+}
+
+/// The ring around what the keyboard acts on.
+pub(crate) fn focus_ring(rect: Rect, corner: u8, response: &Response, ui: &Ui) {
+    if response.has_focus() && keyboard_in_use(ui) {
+        let stroke = Stroke::new(2.0, palette_of(ui).accent);
+        ui.painter().rect_stroke(
+            rect.expand(2.0),
+            CornerRadius::same(corner.saturating_add(2)),
+            stroke,
+            StrokeKind::Middle,
+        );
+    }
+}
+
+/// A bar with round ends whose colour runs from left to right through `stops`: (0..=1, colour), in rising order.
+///
+/// egui's rectangles have one fill, so the shape is cut into thin columns where it is round and into the stops where it is not.
+pub(crate) fn gradient_bar(rect: Rect, corner: f32, stops: &[(f32, Color32)], painter: &Painter) {
+    if rect.width() <= 0.0 || stops.is_empty() {
+        return;
+    }
+    let corner = corner.min(rect.height() / 2.0).min(rect.width() / 2.0);
+    let mut columns: Vec<f32> = stops
+        .iter()
+        .map(|&(at, _)| rect.left() + at.clamp(0.0, 1.0) * rect.width())
+        .collect();
+    for step in 0..=8_u8 {
+        let offset = corner * f32::from(step) / 8.0;
+        columns.extend([rect.left() + offset, rect.right() - offset]);
+    }
+    columns.sort_by(f32::total_cmp);
+    let mut mesh = Mesh::default();
+    for x in columns {
+        // Height lost to the round corner at this column.
+        let into = (corner - (x - rect.left()).min(rect.right() - x)).max(0.0);
+        let lost = corner - (corner * corner - into * into).max(0.0).sqrt();
+        let color = color_at((x - rect.left()) / rect.width(), stops);
+        let clear = color.gamma_multiply(0.0);
+        // Half a point of fade above and below keeps the edges smooth, as egui's own shapes do.
+        let feather = 0.5 / painter.pixels_per_point();
+        for (y, color) in [
+            (rect.top() + lost - feather, clear),
+            (rect.top() + lost + feather, color),
+            (rect.bottom() - lost - feather, color),
+            (rect.bottom() - lost + feather, clear),
+        ] {
+            mesh.vertices.push(Vertex::untextured(pos2(x, y), color));
+        }
+    }
+    let columns = mesh.vertices.len() as u32 / 4;
+    for column in 1..columns {
+        for row in 0..3 {
+            let (left, right) = ((column - 1) * 4 + row, column * 4 + row);
+            mesh.add_triangle(left, right, left + 1);
+            mesh.add_triangle(left + 1, right, right + 1);
+        }
+    }
+    painter.add(egui::Shape::mesh(mesh));
+}
+
+fn color_at(at: f32, stops: &[(f32, Color32)]) -> Color32 {
+    let mut previous = stops[0];
+    for &stop in stops {
+        if at <= stop.0 {
+            let span = stop.0 - previous.0;
+            let t = if span > 0.0 { (at - previous.0) / span } else { 1.0 };
+            return previous.1.lerp_to_gamma(stop.1, t.clamp(0.0, 1.0));
+        }
+        previous = stop;
+    }
+    previous.1
+}
+
+/// Space for `height` points across the whole width that is free.
+pub(crate) fn full_width(height: f32, ui: &mut Ui) -> Rect {
+    let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
+    rect
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_meet_and_hold_outside() {
+        let (red, blue) = (Color32::from_rgb(200, 0, 0), Color32::from_rgb(0, 0, 200));
+        let stops = [(0.25, red), (0.75, blue)];
+        assert_eq!(color_at(0.0, &stops), red);
+        assert_eq!(color_at(1.0, &stops), blue);
+        assert_eq!(color_at(0.5, &stops), Color32::from_rgb(100, 0, 100));
+    }
+}

@@ -1,0 +1,82 @@
+//! What lies over the stage: the one difference of a pane at its top, its numbers at its bottom.
+
+use super::chip::{Mood, chip_size, paint_chip};
+use super::metrics::{Metric, metric_strip_ui};
+use super::paint::{Run, line_of, put};
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+
+/// What a pane says of itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PaneTitle<'a> {
+    /// The number or word that tells this pane from the others: `30`.
+    pub(crate) strong: &'a str,
+    /// What it counts: `frames`.
+    pub(crate) text: &'a str,
+    /// The same said in another way, quietly: `0.50 s`.
+    pub(crate) secondary: &'a str,
+    /// The verdict, as a chip; none if empty.
+    pub(crate) chip: &'a str,
+    /// The colour of the verdict.
+    pub(crate) mood: Mood,
+}
+
+/// Height of the strip at the top of a pane.
+pub(crate) fn pane_header_height(ui: &Ui) -> f32 {
+    (40.0 * theme_of(ui).scale()).round()
+}
+
+/// The title over the top of `pane`. The picture below stays visible through it. Returns the strip.
+pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> Rect {
+    let palette = palette_of(ui);
+    let strip = Rect::from_min_size(pane.min, vec2(pane.width(), pane_header_height(ui)));
+    scrim(strip, Direction::TopDown, ui);
+    let mut right = strip.right() - space::M;
+    if !title.chip.is_empty() && chip_size(title.chip, ui).x < strip.width() * 0.5 {
+        right = paint_chip(title.chip, title.mood, pos2(right, strip.center().y), ui).left() - space::S;
+    }
+    let left = strip.left() + space::M;
+    let mut runs = vec![Run::new(title.strong, Type::Title, palette.text)];
+    if !title.text.is_empty() {
+        runs.push(Run::new(title.text, Type::Body, palette.text).after(space::XS + 1.0));
+    }
+    if !title.secondary.is_empty() {
+        runs.push(Run::new("·", Type::Body, palette.muted).after(space::XS + 1.0));
+        runs.push(Run::new(title.secondary, Type::Body, palette.muted).after(space::XS + 1.0));
+    }
+    let galley = line_of(&runs, right - left, ui);
+    put(ui.painter(), pos2(left, strip.center().y), Align2::LEFT_CENTER, galley);
+    let response = ui.interact(
+        strip,
+        ui.make_persistent_id(("pane", pane.min.x.to_bits(), title.strong)),
+        Sense::hover(),
+    );
+    let said = [title.strong, title.text, title.secondary, title.chip].join(" ");
+    response.widget_info(|| WidgetInfo::labeled(Role::Heading, true, &said));
+    strip
+}
+
+/// The numbers over the bottom of `pane`.
+pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) {
+    if metrics.is_empty() {
+        return;
+    }
+    let scale = theme_of(ui).scale();
+    let height = (36.0 * scale).round() + 2.0 * space::M;
+    let strip = Rect::from_min_max(pos2(pane.left(), pane.bottom() - height), pane.max);
+    scrim(strip.with_min_y(strip.top() - space::L), Direction::BottomUp, ui);
+    let inner = strip.shrink(space::M);
+    ui.scope_builder(UiBuilder::new().id_salt(("footer", pane.min.x.to_bits())).max_rect(inner), |ui| {
+        metric_strip_ui(metrics, ui)
+    });
+}
+
+/// The ground's colour, fading into the picture, so that text stays legible over bodies.
+fn scrim(rect: Rect, direction: Direction, ui: &Ui) {
+    let ground = palette_of(ui).stage.sky;
+    ui.painter().add(Shape::gradient_rect(
+        rect,
+        direction,
+        [ground.gamma_multiply(0.82), ground.gamma_multiply(0.0)],
+    ));
+}

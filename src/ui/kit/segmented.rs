@@ -1,0 +1,83 @@
+//! One of a few, all of them visible: cut | dissolve | inertialize.
+
+use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
+use crate::ui::theme::{Type, palette_of, radius, theme_of};
+use eframe::egui::{Align2, Color32, CursorIcon, EventFilter, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+
+/// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen anew, if anything.
+///
+/// With the keyboard on it, the arrow keys go from one to the next.
+pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options: &[(T, &str)], ui: &mut Ui) -> Option<T> {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let height = (30.0 * theme.scale()).round();
+    let id = ui.make_persistent_id(label);
+    let well = full_width(height, ui);
+    if options.is_empty() {
+        return None;
+    }
+    let line = Stroke::new(theme.hairline(), palette.line);
+    ui.painter().rect(well, radius::M, palette.panel_raised, line, StrokeKind::Inside);
+
+    let inner = well.shrink(3.0);
+    let width = inner.width() / options.len() as f32;
+    let cell = |index: usize| Rect::from_min_size(pos2(inner.left() + index as f32 * width, inner.top()), vec2(width, inner.height()));
+    let current = options.iter().position(|&(value, _)| value == chosen);
+    let mut picked = None;
+
+    // The chosen one's ground slides to its place.
+    if let Some(current) = current {
+        let left = ui.ctx().animate_value_with_time(id.with("thumb"), current as f32, 0.14);
+        let thumb = Rect::from_min_size(pos2(inner.left() + left * width, inner.top()), vec2(width, inner.height()));
+        ui.painter()
+            .rect_filled(thumb.translate(vec2(0.0, 1.0)), radius::S + 1, palette.shadow.gamma_multiply(0.5));
+        ui.painter().rect_filled(thumb, radius::S + 1, palette.pressed);
+    }
+    for (index, &(value, name)) in options.iter().enumerate() {
+        let rect = cell(index);
+        // Fingers may miss by the margin of the well.
+        let hit = rect.expand2(vec2(0.0, 3.0));
+        let response = ui
+            .interact(hit, id.with(index), Sense::click())
+            .on_hover_cursor(CursorIcon::PointingHand);
+        let is_chosen = current == Some(index);
+        if response.clicked() {
+            picked = Some(value);
+        }
+        if response.has_focus() {
+            let filter = EventFilter {
+                horizontal_arrows: true,
+                ..EventFilter::default()
+            };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+            let step = ui.input(|input| i32::from(input.key_pressed(Key::ArrowRight)) - i32::from(input.key_pressed(Key::ArrowLeft)));
+            if let Some(next) = index
+                .checked_add_signed(step as isize)
+                .filter(|&next| step != 0 && next < options.len())
+            {
+                picked = Some(options[next].0);
+                ui.memory_mut(|memory| memory.request_focus(id.with(next)));
+            }
+        }
+        let color = if is_chosen || response.hovered() {
+            palette.text
+        } else {
+            palette.muted
+        };
+        let step = if is_chosen { Type::Strong } else { Type::Body };
+        let galley = line_of(&[Run::new(name, step, faded(color, enabled))], rect.width() - 6.0, ui);
+        put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+        focus_ring(rect, radius::S, &response, ui);
+        response.widget_info(|| WidgetInfo::selected(Role::RadioButton, enabled, is_chosen, name));
+        // A hairline between two that are both not chosen.
+        if index > 0 && !is_chosen && current != Some(index - 1) {
+            let tone = if enabled { palette.line } else { Color32::TRANSPARENT };
+            ui.painter().vline(
+                rect.left(),
+                rect.shrink2(vec2(0.0, 6.0)).y_range(),
+                Stroke::new(theme.hairline(), tone),
+            );
+        }
+    }
+    picked.filter(|&value| value != chosen)
+}

@@ -1,0 +1,185 @@
+//! The left panel: the clips that there are.
+
+use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
+use super::out::{Action, Out};
+use super::state::{Renaming, UiState};
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{self, Key as Keyboard, RectAlign, RichText, TextEdit, Ui};
+use segue::clip::UpAxis;
+use segue::formats::ImportOptions;
+use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot, format_number};
+use segue::skeleton::Role;
+
+/// The whole panel.
+pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(text::LIBRARY, ui);
+    for entry in session.library().entries() {
+        // A take that nobody asked for yet is behind "samples".
+        if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {
+            continue;
+        }
+        ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui));
+    }
+    ui.add_space(space::M);
+    let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
+    let pressed = kit::drop_zone_ui(text::DROP_HERE, &[text::OPEN_FILES, text::SAMPLES], hot, ui);
+    if pressed == Some(0) {
+        out.actions.push(Action::OpenFiles);
+    }
+    let samples_id = ui.id().with("samples");
+    let mut samples_open = ui.data(|data| data.get_temp::<bool>(samples_id)).unwrap_or_default();
+    if pressed == Some(1) {
+        samples_open = !samples_open;
+        ui.data_mut(|data| data.insert_temp(samples_id, samples_open));
+    }
+    if samples_open {
+        samples_ui(session, out, ui);
+    }
+}
+
+fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    ui.add_space(space::S);
+    for sample in Session::samples() {
+        let item = MenuItem { text: sample.label, icon: Some(Icon::Download), ..MenuItem::default() };
+        if kit::menu_item_ui(item, ui).clicked() {
+            out.commands.push(Command::Assign(free_slot(session), sample.id.to_owned()));
+        }
+    }
+    ui.add_space(space::XS);
+    ui.label(RichText::new(segue::session::SAMPLES_CREDIT).font(theme.font(Type::Small)).color(palette.muted));
+}
+
+/// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not hold the other chosen clip.
+fn free_slot(session: &Session) -> Slot {
+    let built_in = |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
+    if session.params().text(Key::Lab) == "view" || built_in(Slot::A) || !built_in(Slot::B) { Slot::A } else { Slot::B }
+}
+
+fn part_of(session: &Session, entry: &Entry) -> Part {
+    let holds = |slot| session.slot(slot).is_some_and(|held| held.id == entry.id);
+    if holds(Slot::A) {
+        Part::A
+    } else if holds(Slot::B) && session.params().text(Key::Lab) == "blend" {
+        Part::B
+    } else {
+        Part::None
+    }
+}
+
+/// `3.9 s · 120 fps · 30 joints`.
+fn facts(entry: &Entry) -> String {
+    match (&entry.motion, &entry.origin) {
+        (Some(motion), _) => {
+            let clip = &motion.clip;
+            format!(
+                "{:.1} s · {} fps · {} frames · {} joints",
+                clip.duration_secs(),
+                format_number(clip.fps(), 0.01),
+                clip.frames(),
+                clip.skeleton().len()
+            )
+        }
+        (None, Origin::Sample(_)) => text::LOADING.to_owned(),
+        (None, _) => String::new(),
+    }
+}
+
+fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if let Some(renaming) = state.renaming.as_mut().filter(|renaming| renaming.id == entry.id) {
+        let response = ui.add(TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
+        response.request_focus();
+        if ui.input(|input| input.key_pressed(Keyboard::Enter)) || response.clicked_elsewhere() {
+            out.commands.push(Command::Rename(entry.id.clone(), renaming.name.clone()));
+            state.renaming = None;
+        } else if ui.input(|input| input.key_pressed(Keyboard::Escape)) {
+            state.renaming = None;
+        }
+        return;
+    }
+    let part = part_of(session, entry);
+    let open = state.details.as_ref() == Some(&entry.id);
+    let blending = session.params().text(Key::Lab) == "blend";
+    let warning = entry.warnings.join("\n");
+    let actions = [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
+    let facts = facts(entry);
+    let row = ClipRow { name: &entry.name, detail: &facts, part, warning: &warning, selected: open, actions: &actions };
+    let response = kit::clip_row_ui(row, ui);
+    match response.action {
+        Some(0) => state.details = if open { None } else { Some(entry.id.clone()) },
+        Some(1) => state.renaming = Some(Renaming { id: entry.id.clone(), name: entry.name.clone() }),
+        Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
+        None if response.clicked || response.badge_clicked => {
+            // In Blend a click goes round: into A, from A into B, from B into A.
+            let slot = if blending && part == Part::A { Slot::B } else { Slot::A };
+            out.commands.push(Command::Assign(slot, entry.id.clone()));
+        }
+        None => {}
+    }
+    let menu = egui::Popup::context_menu(&response.response);
+    menu.show(|ui| {
+        for slot in [Slot::A, Slot::B] {
+            let words = if slot == Slot::A { text::USE_AS_A } else { text::USE_AS_B };
+            if kit::menu_item_ui(MenuItem { text: words, ..MenuItem::default() }, ui).clicked() {
+                out.commands.push(Command::Assign(slot, entry.id.clone()));
+            }
+        }
+        let save = MenuItem { text: text::EXPORT_BVH, icon: Some(Icon::Download), ..MenuItem::default() };
+        if kit::menu_item_ui(save, ui).clicked() {
+            out.actions.push(Action::SaveBvh(entry.id.clone()));
+        }
+    });
+    if open && let Some(motion) = &entry.motion {
+        details_ui(entry, motion, out, ui);
+    }
+}
+
+/// What was odd in the file, how it measures, and which joint is what.
+fn details_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    ui.indent("details", |ui| {
+        ui.spacing_mut().item_spacing.y = space::XS;
+        for warning in &entry.warnings {
+            ui.label(RichText::new(warning).font(theme.font(Type::Small)).color(palette.warning));
+        }
+        if let Origin::File(file) = &entry.origin {
+            units_ui(entry, motion, &file.options, out, ui);
+        }
+        ui.add_space(space::XS);
+        ui.label(RichText::new(text::JOINTS).font(theme.font(Type::Strong)));
+        ui.label(RichText::new(text::JOINTS_HELP).font(theme.font(Type::Small)).color(palette.muted));
+        let skeleton = motion.clip.skeleton();
+        let mut options = vec![(None, text::NOBODY)];
+        options.extend(skeleton.joints().iter().enumerate().map(|(index, joint)| (Some(index), joint.name.as_str())));
+        for role in Role::ALL {
+            if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles.get(role), &options, ui) {
+                out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
+            }
+        }
+    });
+}
+
+/// Metres per unit of length that files come in.
+const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254), ("CMU (0.45 inch)", 0.0254 / 0.45)];
+
+fn units_ui(entry: &Entry, motion: &Motion, options: &ImportOptions, out: &mut Out, ui: &mut Ui) {
+    let provenance = motion.clip.provenance();
+    let now = UNITS.iter().position(|(_, metres)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6).unwrap_or(usize::MAX);
+    let names: Vec<(usize, &str)> = UNITS.iter().enumerate().map(|(index, (name, _))| (index, *name)).collect();
+    if let Some(index) = kit::choice_row_ui(text::UNIT, now, &names, ui) {
+        let options = ImportOptions { metres_per_unit: Some(UNITS[index].1), ..options.clone() };
+        out.commands.push(Command::Reimport(entry.id.clone(), options));
+    }
+    let axes = [(UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
+    if let Some(up) = kit::choice_row_ui(text::UP_AXIS, provenance.up, &axes, ui) {
+        out.commands.push(Command::Reimport(entry.id.clone(), ImportOptions { up: Some(up), ..options.clone() }));
+    }
+}
+
+/// The button that opens the drawer, where the library is one.
+pub(crate) fn library_button_ui(state: &mut UiState, ui: &mut Ui) {
+    if kit::button_ui(Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open), ui).clicked() {
+        state.library_open = !state.library_open;
+    }
+}

@@ -1,0 +1,66 @@
+//! What lies over the whole page: notices, the list of shortcuts, the field for files that hang over the window.
+
+use super::kit::{self, Mood, Notice, NoticeEvent};
+use super::out::Out;
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
+use segue::session::{Command, Level, Session};
+
+/// All of them.
+pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    notices_ui(session, state, out, ui);
+    if state.help_open {
+        help_ui(state, ui);
+    }
+    drop_ui(ui);
+}
+
+fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
+    let list = session.notices().list();
+    let mood = |level| match level {
+        Level::Info => Mood::default(),
+        Level::Warning => Mood::Warning,
+        Level::Error => Mood::Bad,
+    };
+    let notices: Vec<Notice<'_>> = list.iter().map(|notice| Notice { text: &notice.text, mood: mood(notice.level), action: "" }).collect();
+    if let Some((index, NoticeEvent::Dismissed)) = kit::toasts_ui(&notices, state.stage, ui)
+        && let Some(notice) = list.get(index)
+    {
+        out.commands.push(Command::Dismiss(notice.id));
+    }
+}
+
+fn help_ui(state: &mut UiState, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let mut open = true;
+    egui::Window::new(RichText::new(text::HELP).font(theme.font(Type::Title)))
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .collapsible(false)
+        .resizable(false)
+        .open(&mut open)
+        .show(ui.ctx(), |ui| {
+            Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
+                for (keys, what) in text::SHORTCUTS {
+                    ui.label(RichText::new(*keys).font(theme.font(Type::Strong)).color(palette.text));
+                    ui.label(RichText::new(*what).font(theme.font(Type::Body)).color(palette.muted));
+                    ui.end_row();
+                }
+            });
+        });
+    state.help_open &= open;
+}
+
+/// While files hang over the window, the whole page says that they may be dropped.
+fn drop_ui(ui: &Ui) {
+    if ui.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let screen = ui.ctx().content_rect();
+    let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop")));
+    painter.rect_filled(screen, 0.0, palette.ground.gamma_multiply(0.7));
+    painter.rect_stroke(screen.shrink(space::M), radius::L, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
+    painter.text(screen.center(), Align2::CENTER_CENTER, text::DROP_NOW, theme.font(Type::Title), palette.text);
+}

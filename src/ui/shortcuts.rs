@@ -1,0 +1,93 @@
+//! Keys that do what buttons do. The list that people read stands in [`super::text::SHORTCUTS`].
+
+use super::out::{Action, Out};
+use super::stage_panel::frame_everything;
+use super::state::UiState;
+use super::top_bar::toggle_compare;
+use eframe::egui::{Context, Event, Key as Keyboard, Modifiers};
+use segue::session::{Command, Key, Session, Value};
+
+/// What the keyboard asks for, unless somebody is typing.
+pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, ctx: &Context) {
+    if ctx.text_edit_focused() {
+        return;
+    }
+    let pressed = |modifiers: Modifiers, key: Keyboard| ctx.input_mut(|input| input.consume_key(modifiers, key));
+    let (none, shift, command) = (Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND);
+    let params = session.params();
+    // The longer chord first: an exact match is only asked of what is pressed besides.
+    if pressed(command | shift, Keyboard::Z) || pressed(command, Keyboard::Y) {
+        out.commands.push(Command::Redo);
+    }
+    if pressed(command, Keyboard::Z) {
+        out.commands.push(Command::Undo);
+    }
+    if ctx.input(|input| input.events.contains(&Event::Copy)) {
+        out.actions.push(Action::CopyLink);
+    }
+    if ctx.input(|input| input.events.iter().any(|event| matches!(event, Event::Text(text) if text == "?"))) {
+        state.help_open = !state.help_open;
+    }
+    if pressed(none, Keyboard::Escape) {
+        (state.help_open, state.library_open) = (false, false);
+    }
+    // A focused slider or tab takes Space and the arrows for itself.
+    let focused = ctx.memory(|memory| memory.focused().is_some());
+    if !focused {
+        if pressed(none, Keyboard::Space) {
+            out.commands.push(Command::TogglePlay);
+        }
+        for (key, step) in [(Keyboard::ArrowLeft, -1), (Keyboard::ArrowRight, 1)] {
+            if pressed(shift, key) {
+                out.commands.push(Command::Step(10 * step));
+            }
+            if pressed(none, key) {
+                out.commands.push(Command::Step(step));
+            }
+        }
+    }
+    if pressed(none, Keyboard::Home) && !focused {
+        out.commands.push(Command::Seek(session.span().start));
+    }
+    for (keyboard, key) in [(Keyboard::I, Key::In), (Keyboard::O, Key::Out)] {
+        if pressed(shift, keyboard) {
+            out.commands.push(Command::Reset(key));
+        }
+        if pressed(none, keyboard) {
+            out.set_once(key, Value::Number(session.now_secs()));
+        }
+    }
+    for (keyboard, factor) in [(Keyboard::OpenBracket, 0.5), (Keyboard::CloseBracket, 2.0)] {
+        if pressed(none, keyboard) {
+            out.set_once(Key::Speed, Value::Number((params.number(Key::Speed) * factor).clamp(0.05, 4.0)));
+        }
+    }
+    if pressed(none, Keyboard::L) {
+        out.toggle(Key::Loop, params.is_on(Key::Loop));
+    }
+    if pressed(none, Keyboard::C) {
+        toggle_compare(session, out);
+    }
+    for (keyboard, lab) in [(Keyboard::Num1, "view"), (Keyboard::Num2, "make"), (Keyboard::Num3, "blend")] {
+        if pressed(none, keyboard) {
+            out.set_once(Key::Lab, Value::Choice(lab));
+        }
+    }
+    if pressed(none, Keyboard::T) {
+        out.set_once(Key::Camera, Value::Choice(if params.text(Key::Camera) == "top" { "orbit" } else { "top" }));
+    }
+    if pressed(none, Keyboard::F) {
+        frame_everything(session, state, out);
+    }
+    if pressed(none, Keyboard::G) {
+        out.set_once(Key::Follow, Value::Choice(if params.text(Key::Follow) == "off" { "result" } else { "off" }));
+    }
+    if pressed(none, Keyboard::B) {
+        let next = match params.text(Key::Look) {
+            "body" => "bones",
+            "bones" => "both",
+            _ => "body",
+        };
+        out.set_once(Key::Look, Value::Choice(next));
+    }
+}

@@ -1,0 +1,295 @@
+//! The stage: its panes, what lies over them, and the hand on the camera.
+
+use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
+use super::out::Out;
+use super::state::{Layout, UiState};
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{self, Align2, Pos2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
+use segue::math::Planar;
+use segue::metrics::MetricId;
+use segue::scene::{Camera, Lens, resting_point};
+use segue::session::{Key, Kind, Outcome, Pane, Session, Value, format_number};
+
+/// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
+pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
+
+/// The whole stage, as large as `ui`.
+pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+    let stage = ui.available_rect_before_wrap();
+    state.stage = stage;
+    let panes = session.panes();
+    state.shown_pane = state.shown_pane.min(panes.len().saturating_sub(1));
+    let shown: Vec<(usize, Rect)> = if layout == Layout::Phone {
+        vec![(state.shown_pane, stage)]
+    } else {
+        columns(stage, panes.len()).enumerate().collect()
+    };
+    let response = ui.allocate_rect(stage, Sense::click_and_drag());
+    camera_input(session, &response, out, ui);
+    paint(stage, &shown, ui);
+
+    let verdicts = verdicts(panes);
+    for (place, &(index, rect)) in shown.iter().enumerate() {
+        if place > 0 {
+            let line = egui::Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
+            ui.painter().vline(rect.left(), rect.y_range(), line);
+        }
+        if let Some(pane) = panes.get(index) {
+            pane_ui(pane, index, &verdicts, session, rect, ui);
+        }
+    }
+    if layout == Layout::Phone && panes.len() > 1 {
+        pane_switch_ui(panes.len(), stage, state, ui);
+    }
+    camera_buttons_ui(session, stage, state, out, ui);
+    if state.hint && session.compare().is_some() && layout != Layout::Phone {
+        let above_numbers = Rect::from_min_max(stage.min, pos2(stage.right(), stage.bottom() - 76.0 * theme_of(ui).scale()));
+        kit::caption_ui(text::WELCOME_HINT, above_numbers, ui);
+        if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
+            state.hint = false;
+        }
+    }
+}
+
+fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
+    let count = count.max(1);
+    let width = stage.width() / count as f32;
+    (0..count).map(move |index| {
+        let left = stage.left() + (width * index as f32).round();
+        let right = stage.left() + (width * (index + 1) as f32).round();
+        Rect::from_min_max(pos2(left, stage.top()), pos2(right, stage.bottom()))
+    })
+}
+
+/// The best and the worst pane, by the jump of angular velocity at the seam: what an eye calls smooth and rough.
+#[derive(Clone, Copy, Debug, Default)]
+struct Verdicts {
+    best: Option<usize>,
+    worst: Option<usize>,
+}
+
+fn value_of(outcome: Option<&Outcome>, id: MetricId) -> Option<f64> {
+    outcome?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
+}
+
+fn verdicts(panes: &[Pane]) -> Verdicts {
+    ranking(panes, MetricId::SeamSpeed)
+}
+
+/// Which panes have the lowest and the highest value; none where they do not differ.
+fn ranking(panes: &[Pane], id: MetricId) -> Verdicts {
+    let values: Vec<(usize, f64)> =
+        panes.iter().enumerate().filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?))).collect();
+    let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
+    let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
+    match (best, worst) {
+        (Some(best), Some(worst)) if values.len() > 1 && worst.1 - best.1 > 1e-3 * worst.1.abs().max(1e-3) => {
+            Verdicts { best: Some(best.0), worst: Some(worst.0) }
+        }
+        _ => Verdicts::default(),
+    }
+}
+
+fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, rect: Rect, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let words = pane_words(pane, session);
+    let (chip, mood) = if verdicts.best == Some(index) {
+        (text::SMOOTHEST, Mood::Good)
+    } else if verdicts.worst == Some(index) {
+        (text::ROUGHEST, Mood::Bad)
+    } else {
+        ("", Mood::default())
+    };
+    let title = PaneTitle { strong: &words.strong, text: &words.text, secondary: &words.secondary, chip, mood };
+    kit::pane_header_ui(&title, rect, ui);
+    if let Some(problem) = &pane.problem {
+        let builder = UiBuilder::new().max_rect(Rect::from_center_size(rect.center(), vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0)));
+        ui.scope_builder(builder, |ui| {
+            ui.vertical_centered(|ui| ui.label(egui::RichText::new(problem).font(theme.font(Type::Body)).color(palette.warning)));
+        });
+    } else if pane.outcome.is_none() {
+        let galley = kit::paint::line_of(&[kit::paint::Run::new(text::EMPTY_PANE, Type::Body, palette.muted)], rect.width(), ui);
+        kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
+    }
+    let Some(outcome) = pane.outcome.as_deref() else { return };
+    let panes = session.panes();
+    let numbers: Vec<(String, String, Rank, &str)> = (outcome.metrics.iter())
+        .map(|metric| {
+            let ranks = ranking(panes, metric.id);
+            let rank = if ranks.best == Some(index) {
+                Rank::Best
+            } else if ranks.worst == Some(index) {
+                Rank::Worst
+            } else {
+                Rank::Middle
+            };
+            (metric.format(), format!("{} {}", metric.label, metric.unit), rank, metric.help)
+        })
+        .collect();
+    let strip: Vec<Metric<'_>> = numbers.iter().map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint }).collect();
+    kit::pane_footer_ui(&strip, rect, ui);
+}
+
+struct Words {
+    strong: String,
+    text: String,
+    secondary: String,
+}
+
+/// What a pane says of itself: the value in which it differs, or what it shows.
+fn pane_words(pane: &Pane, session: &Session) -> Words {
+    let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
+    if let Some((key, value)) = pane.variant {
+        let param = key.param();
+        let step = if let Kind::Number { step, .. } = param.kind { step } else { 1.0 };
+        let secondary = if param.unit == "frames" { format!("{:.2} s", value / fps) } else { String::new() };
+        return Words { strong: format_number(value, step), text: param.unit.to_owned(), secondary };
+    }
+    let name = |key| session.library().find(session.params().text(key)).map_or_else(String::new, |entry| entry.name.clone());
+    match session.params().text(Key::Lab) {
+        "blend" => Words {
+            strong: name(Key::A),
+            text: format!("→ {}", name(Key::B)),
+            secondary: format!("{} frames", session.params().number(Key::BlendWindow)),
+        },
+        "make" => Words { strong: session.params().text(Key::Gait).to_owned(), text: String::new(), secondary: String::new() },
+        _ => Words { strong: name(Key::A), text: String::new(), secondary: String::new() },
+    }
+}
+
+/// On a phone one pane is shown; this goes on to the next.
+fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
+    let rect = Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
+    let label = format!("{} / {count}", state.shown_pane + 1);
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        if kit::button_ui(Button::new(&label).icon(Icon::Swap), ui).clicked() {
+            state.shown_pane = (state.shown_pane + 1) % count;
+        }
+    });
+}
+
+fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    let side = (30.0 * theme_of(ui).scale()).round();
+    let rect = Rect::from_min_size(pos2(stage.right() - side - space::S, stage.top() + 76.0), vec2(side, 3.0 * side + 2.0 * space::XS));
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        ui.spacing_mut().item_spacing.y = space::XS;
+        let follows = params.text(Key::Follow) != "off";
+        if kit::button_ui(Button::icon_only(Icon::Follow, text::FOLLOW).quiet().selected(follows), ui).clicked() {
+            out.set_once(Key::Follow, Value::Choice(if follows { "off" } else { "result" }));
+        }
+        let top = params.text(Key::Camera) == "top";
+        if kit::button_ui(Button::icon_only(Icon::Top, text::TOP_VIEW).quiet().selected(top), ui).clicked() {
+            out.set_once(Key::Camera, Value::Choice(if top { "orbit" } else { "top" }));
+        }
+        if kit::button_ui(Button::icon_only(Icon::FrameAll, text::FRAME_ALL).quiet(), ui).clicked() {
+            frame_everything(session, state, out);
+        }
+    });
+}
+
+/// Degrees that the camera turns when the pointer moves by a point.
+const TURN_PER_POINT: f64 = 0.35;
+
+/// Turns, moves and zooms: drag; Shift or another button, or two fingers; wheel or pinch.
+fn camera_input(session: &Session, response: &Response, out: &mut Out, ui: &Ui) {
+    let params = session.params();
+    let mut values = Vec::new();
+    let (drag, panning) = drag_of(response, ui);
+    let from_above = params.text(Key::Camera) == "top";
+    if drag != Vec2::ZERO && (panning || from_above) {
+        values.extend(pan(session, drag, response.rect));
+    } else if drag != Vec2::ZERO {
+        let yaw = params.number(Key::CameraYaw) - f64::from(drag.x) * TURN_PER_POINT;
+        let pitch = params.number(Key::CameraPitch) + f64::from(drag.y) * TURN_PER_POINT;
+        values.push((Key::CameraYaw, Value::Number((yaw + 180.0).rem_euclid(360.0) - 180.0)));
+        values.push((Key::CameraPitch, Value::Number(pitch.clamp(-10.0, 89.0))));
+    }
+    if response.contains_pointer() {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = f64::from(pinch) * f64::from(scroll * 0.002).exp();
+        if (factor - 1.0).abs() > 1e-4 {
+            let distance = (params.number(Key::CameraDistance) / factor).clamp(0.5, 60.0);
+            values.push((Key::CameraDistance, Value::Number(distance)));
+        }
+    }
+    if !values.is_empty() {
+        out.commands.push(segue::session::Command::Set(values));
+    }
+}
+
+/// How far the pointer, or two fingers, moved, and whether that moves the camera instead of turning it.
+fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
+    if let Some(touch) = ui.input(|input| input.multi_touch())
+        && response.rect.contains(touch.center_pos)
+    {
+        return (touch.translation_delta, true);
+    }
+    let other_button = response.dragged_by(egui::PointerButton::Secondary) || response.dragged_by(egui::PointerButton::Middle);
+    if response.dragged() { (response.drag_delta(), other_button || ui.input(|input| input.modifiers.shift)) } else { (Vec2::ZERO, false) }
+}
+
+/// The camera that the parameters describe, without what it follows.
+fn camera_of(session: &Session) -> Camera {
+    let params = session.params();
+    let from_above = params.text(Key::Camera) == "top";
+    Camera {
+        yaw: params.number(Key::CameraYaw).to_radians() as f32,
+        pitch: if from_above { std::f32::consts::FRAC_PI_2 } else { params.number(Key::CameraPitch).to_radians() as f32 },
+        distance: params.number(Key::CameraDistance) as f32,
+        lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
+        ..Camera::default()
+    }
+}
+
+fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
+    let params = session.params();
+    let mut camera = camera_of(session);
+    let before = camera.target;
+    camera.pan(glam_vec2(drag), stage.height());
+    let moved = camera.target - before;
+    [(Key::PanX, moved.x), (Key::PanY, moved.y), (Key::PanZ, moved.z)]
+        .map(|(key, by)| (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0))))
+        .to_vec()
+}
+
+fn glam_vec2(v: Vec2) -> glam::Vec2 {
+    glam::Vec2::new(v.x, v.y)
+}
+
+/// Stops following and shows the whole way of every pane.
+pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
+    let outcomes = || session.panes().iter().filter_map(|pane| pane.outcome.as_deref());
+    let places = outcomes().flat_map(|outcome| outcome.motion.ground_frames.iter().map(Planar::origin));
+    let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else { return };
+    let height = first.motion.roles.body_height(first.motion.clip.skeleton());
+    let mut bounds = segue::scene::Bounds::default();
+    bounds.add(low - glam::Vec3::new(0.4, 0.0, 0.4));
+    bounds.add(high + glam::Vec3::new(0.4, height, 0.4));
+    let mut camera = camera_of(session);
+    let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
+    camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
+    let pan = camera.target - resting_point(first);
+    let mut values = vec![(Key::Follow, Value::Choice("off")), (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0)))];
+    for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {
+        values.push((key, Value::Number(f64::from(value).clamp(-100.0, 100.0))));
+    }
+    out.commands.push(segue::session::Command::Set(values));
+}
+
+/// Where a point of the picture is, for tests and captions.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_fill_the_stage_without_gaps() {
+        let stage = Rect::from_min_size(Pos2::new(10.0, 5.0), vec2(1000.0, 400.0));
+        let panes: Vec<Rect> = columns(stage, 3).collect();
+        assert_eq!(panes[0].left(), 10.0);
+        assert_eq!(panes[2].right(), 1010.0);
+        assert!(panes.windows(2).all(|pair| pair[0].right() == pair[1].left()));
+    }
+}

@@ -1,0 +1,289 @@
+//! How Segue looks: colours, one type scale, one grid. Nothing else in the app writes down a colour or a size of text.
+//!
+//! [`Theme::install`] gives a context the fonts and the style once, and again whenever the theme changes. Widgets read the
+//! theme back with [`theme_of`]; it costs one look-up.
+
+mod palette;
+
+use eframe::egui::{
+    self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id, Margin, Shadow, Stroke, Style, TextStyle, Ui,
+    Vec2, Visuals, style,
+};
+use std::sync::Arc;
+
+pub(crate) use palette::{Palette, StageColors, StagePalette, linear_rgb};
+
+/// Distances, in points. Everything sits on multiples of four.
+pub(crate) mod space {
+    /// Between things that belong together: an icon and its word.
+    pub(crate) const XS: f32 = 4.0;
+    /// Between neighbours: two buttons.
+    pub(crate) const S: f32 = 8.0;
+    /// Between rows of one group.
+    pub(crate) const M: f32 = 12.0;
+    /// From the edge of a panel, and between groups.
+    pub(crate) const L: f32 = 16.0;
+}
+
+/// Corners, in points.
+pub(crate) mod radius {
+    /// Chips inside controls, badges, the bars of the timeline.
+    pub(crate) const S: u8 = 4;
+    /// Buttons and fields.
+    pub(crate) const M: u8 = 7;
+    /// Menus, drop zones, notices.
+    pub(crate) const L: u8 = 10;
+}
+
+/// The least height, in points, of anything one presses.
+pub(crate) const HIT: f32 = 24.0;
+
+/// The theme in use: dark or light, for a desk or for a projector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Theme {
+    /// Light on dark.
+    pub(crate) dark: bool,
+    /// For a lecture hall: larger text and thicker lines.
+    pub(crate) projector: bool,
+}
+
+impl Default for Theme {
+    fn default() -> Self {
+        Self {
+            dark: true,
+            projector: false,
+        }
+    }
+}
+
+/// The type scale. Figures are tabular in all of it, so changing numbers hold still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Type {
+    /// The one difference of a pane; a dialog's heading.
+    Title,
+    /// Sentences, and what stands on buttons.
+    Body,
+    /// Names: a clip, the chosen tab.
+    Strong,
+    /// Labels of parameters.
+    Label,
+    /// The value of a parameter.
+    Number,
+    /// A measured number under a pane.
+    Metric,
+    /// Help, units under metrics, second lines.
+    Small,
+    /// Small and firm: chips, letters on badges, names on bars.
+    SmallStrong,
+    /// Headings of sections, set in capitals.
+    Caps,
+}
+
+impl Theme {
+    /// The colours of this theme.
+    pub(crate) fn palette(self) -> &'static Palette {
+        if self.dark { &palette::DARK } else { &palette::LIGHT }
+    }
+
+    /// How much larger everything is than at a desk.
+    pub(crate) fn scale(self) -> f32 {
+        if self.projector { 1.25 } else { 1.0 }
+    }
+
+    /// The font of one step of the type scale.
+    pub(crate) fn font(self, step: Type) -> FontId {
+        let (size, strong) = match step {
+            Type::Title => (15.5, true),
+            Type::Body | Type::Label => (13.0, false),
+            Type::Strong | Type::Number => (13.0, true),
+            Type::Metric => (16.0, true),
+            Type::Small => (11.5, false),
+            Type::SmallStrong => (11.0, true),
+            Type::Caps => (11.0, false),
+        };
+        FontId::new(size * self.scale(), if strong { strong_family() } else { FontFamily::Proportional })
+    }
+
+    /// The height of a row that one presses: at least [`HIT`], more on a projector.
+    pub(crate) fn row_height(self) -> f32 {
+        (28.0 * self.scale()).max(HIT).round()
+    }
+
+    /// The width of hairlines and outlines.
+    pub(crate) fn hairline(self) -> f32 {
+        if self.projector { 1.5 } else { 1.0 }
+    }
+
+    /// The fonts of the app. Set once per context; [`Self::install`] does.
+    ///
+    /// A face that cannot be read would leave a context without text, so both are compiled in.
+    pub(crate) fn fonts() -> FontDefinitions {
+        let mut fonts = FontDefinitions::empty();
+        let faces: [(&str, &'static [u8]); 2] = [
+            ("Inter", include_bytes!("../../assets/fonts/Inter-Regular.ttf")),
+            ("Inter SemiBold", include_bytes!("../../assets/fonts/Inter-SemiBold.ttf")),
+        ];
+        for (name, bytes) in faces {
+            fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+        }
+        let regular = vec!["Inter".to_owned()];
+        fonts.families.insert(FontFamily::Monospace, regular.clone());
+        fonts.families.insert(FontFamily::Proportional, regular);
+        fonts
+            .families
+            .insert(strong_family(), vec!["Inter SemiBold".to_owned(), "Inter".to_owned()]);
+        fonts
+    }
+
+    /// Makes a context look like this theme: fonts (the first time only) and the style of both of egui's themes.
+    pub(crate) fn install(self, ctx: &Context) {
+        let fonts_id = Id::unique("segue fonts");
+        if !ctx.data(|data| data.get_temp::<bool>(fonts_id).unwrap_or(false)) {
+            ctx.set_fonts(Self::fonts());
+            ctx.data_mut(|data| data.insert_temp(fonts_id, true));
+        }
+        ctx.data_mut(|data| data.insert_temp(theme_id(), self));
+        ctx.set_theme(if self.dark { egui::Theme::Dark } else { egui::Theme::Light });
+        let style = Arc::new(self.style());
+        ctx.set_style_of(egui::Theme::Dark, style.clone());
+        ctx.set_style_of(egui::Theme::Light, style);
+    }
+
+    /// egui's style for this theme, for the few widgets of egui that the kit uses as they are.
+    pub(crate) fn style(self) -> Style {
+        let mut style = Style {
+            text_styles: [
+                (TextStyle::Small, self.font(Type::Small)),
+                (TextStyle::Body, self.font(Type::Body)),
+                (TextStyle::Button, self.font(Type::Body)),
+                (TextStyle::Heading, self.font(Type::Title)),
+                (TextStyle::Monospace, self.font(Type::Body)),
+            ]
+            .into(),
+            visuals: self.visuals(),
+            animation_time: 0.12,
+            ..Style::default()
+        };
+        let spacing = &mut style.spacing;
+        spacing.item_spacing = Vec2::new(space::S, space::S);
+        spacing.button_padding = Vec2::new(space::M, space::XS);
+        spacing.interact_size = Vec2::new(HIT, self.row_height());
+        spacing.window_margin = Margin::same(12);
+        spacing.menu_margin = Margin::same(6);
+        spacing.menu_spacing = space::XS;
+        spacing.tooltip_width = 300.0 * self.scale();
+        spacing.scroll = style::ScrollStyle {
+            bar_width: 8.0,
+            ..style::ScrollStyle::floating()
+        };
+        style.interaction.selectable_labels = false;
+        style.interaction.tooltip_delay = 0.45;
+        style
+    }
+
+    fn visuals(self) -> Visuals {
+        let p = self.palette();
+        let mut visuals = if self.dark { Visuals::dark() } else { Visuals::light() };
+        let line = Stroke::new(self.hairline(), p.line);
+        let widget = |fill: Color32, stroke: Stroke, text: Color32| style::WidgetVisuals {
+            bg_fill: fill,
+            weak_bg_fill: fill,
+            bg_stroke: stroke,
+            corner_radius: CornerRadius::same(radius::M),
+            fg_stroke: Stroke::new(1.5, text),
+            expansion: 0.0,
+        };
+        visuals.widgets.noninteractive = widget(p.panel, line, p.text);
+        visuals.widgets.inactive = widget(p.panel_raised, line, p.text);
+        visuals.widgets.hovered = widget(p.hover, Stroke::new(self.hairline(), p.line_strong), p.text);
+        visuals.widgets.active = widget(p.pressed, Stroke::new(self.hairline(), p.line_strong), p.text);
+        visuals.widgets.open = widget(p.hover, line, p.text);
+        visuals.selection.bg_fill = p.accent_wash;
+        visuals.selection.stroke = Stroke::new(1.5, p.accent_ink);
+        visuals.hyperlink_color = p.accent_ink;
+        visuals.weak_text_color = Some(p.muted);
+        visuals.faint_bg_color = p.panel_raised;
+        visuals.extreme_bg_color = p.ground;
+        visuals.text_edit_bg_color = Some(p.ground);
+        visuals.code_bg_color = p.panel_raised;
+        visuals.warn_fg_color = p.warning;
+        visuals.error_fg_color = p.bad;
+        visuals.panel_fill = p.panel;
+        visuals.window_fill = p.panel_raised;
+        visuals.window_stroke = line;
+        visuals.window_corner_radius = CornerRadius::same(radius::L);
+        visuals.menu_corner_radius = CornerRadius::same(radius::L);
+        let shadow = Shadow {
+            offset: [0, 6],
+            blur: 20,
+            spread: 0,
+            color: p.shadow,
+        };
+        visuals.window_shadow = shadow;
+        visuals.popup_shadow = shadow;
+        visuals.text_cursor.stroke = Stroke::new(1.5, p.accent_ink);
+        visuals.slider_trailing_fill = true;
+        visuals.disabled_alpha = 0.45;
+        visuals
+    }
+}
+
+fn strong_family() -> FontFamily {
+    FontFamily::Name("strong".into())
+}
+
+fn theme_id() -> Id {
+    Id::unique("segue theme")
+}
+
+/// The theme that was installed in this context; the default where none was.
+pub(crate) fn theme_of(ui: &Ui) -> Theme {
+    ui.ctx().data(|data| data.get_temp(theme_id())).unwrap_or_default()
+}
+
+/// The colours of the installed theme.
+pub(crate) fn palette_of(ui: &Ui) -> &'static Palette {
+    theme_of(ui).palette()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_tabular_in_every_step_of_the_scale() {
+        let ctx = Context::default();
+        Theme::default().install(&ctx);
+        let mut widths = Vec::new();
+        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let steps = [Type::Title, Type::Body, Type::Number, Type::Metric, Type::Small, Type::SmallStrong];
+            widths = ui.fonts_mut(|fonts| {
+                let font = |step| Theme::default().font(step);
+                steps
+                    .map(|step| ('0'..='9').map(|digit| fonts.glyph_width(&font(step), digit)).collect::<Vec<_>>())
+                    .to_vec()
+            });
+        });
+        output.drop_without_applying_deltas();
+        for step in widths {
+            assert!(step[0] > 0.0 && step.iter().all(|&width| width == step[0]), "{step:?}");
+        }
+    }
+
+    #[test]
+    fn a_projector_makes_text_larger_and_keeps_the_order_of_the_scale() {
+        let (desk, hall) = (
+            Theme::default(),
+            Theme {
+                projector: true,
+                ..Theme::default()
+            },
+        );
+        for step in [Type::Title, Type::Body, Type::Small, Type::Caps] {
+            assert!(hall.font(step).size > desk.font(step).size);
+        }
+        assert!(desk.font(Type::Title).size > desk.font(Type::Body).size);
+        assert!(desk.font(Type::Body).size > desk.font(Type::Small).size);
+        assert!(desk.row_height() >= HIT);
+    }
+}

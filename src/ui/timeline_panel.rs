@@ -1,0 +1,199 @@
+//! The bottom panel: what happens in time.
+
+use super::kit::{self, Curves, Part, Series, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use super::out::Out;
+use super::state::Layout;
+use super::text;
+use super::theme::palette_of;
+use eframe::egui::{RectAlign, Ui};
+use segue::clip::joint_curve;
+use segue::session::{Command, Key, Kind, Motion, Outcome, Session, Slot, Value, frame_at, joint_of};
+use segue::skeleton::Role;
+use std::sync::Arc;
+
+/// The curves of the chosen joint, kept until the result or the choice changes.
+#[derive(Debug, Default)]
+pub(crate) struct CurveCache {
+    outcome: Option<Arc<Outcome>>,
+    what: (String, String),
+    lines: Vec<(Part, Vec<[f64; 2]>)>,
+}
+
+/// More points than a screen is wide only cost time.
+const CURVE_POINTS: usize = 900;
+
+/// The whole panel.
+pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    let Some(outcome) = session.main_outcome() else { return };
+    let clip = &outcome.motion.clip;
+    let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));
+    let unit = unit_of(quantity);
+    let caption = format!("{joint} · {} {unit}", label_of(quantity));
+    let transport = Transport {
+        playing: params.is_on(Key::Play),
+        repeat: params.is_on(Key::Loop),
+        speed: params.number(Key::Speed),
+        now: session.now_secs(),
+        frame: frame_at(&outcome.motion, session.now_secs()),
+        frames: clip.frames(),
+        caption: if layout == Layout::Phone { "" } else { &caption },
+    };
+    let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
+    if layout != Layout::Phone {
+        curve_menu_ui(outcome, &row.response, out, ui);
+    }
+    match row.inner {
+        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
+        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Speed, Value::Number(speed)),
+        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
+        None => {}
+    }
+
+    cache.update(outcome, joint, quantity);
+    let palette = palette_of(ui);
+    let series: Vec<Series<'_>> = cache
+        .lines
+        .iter()
+        .map(|(part, points)| {
+            let color = if *part == Part::Result { palette.accent } else { part.fill(palette).0 };
+            let name = if *part == Part::Result { text::RESULT } else { part.letter() };
+            Series { name, color, ink: part.ink(palette), strong: *part == Part::Result, points }
+        })
+        .collect();
+    let names = [Key::A, Key::B].map(|key| session.library().find(params.text(key)).map_or_else(String::new, |entry| entry.name.clone()));
+    let tracks = tracks(outcome, &names);
+    let curves = Curves {
+        title: label_of(quantity),
+        unit,
+        decimals: 2,
+        include: (quantity != "turn").then_some(0.0),
+        series: &series,
+    };
+    let timeline = Timeline {
+        duration: session.duration_secs(),
+        now: session.now_secs(),
+        fps: clip.fps(),
+        tracks: &tracks,
+        transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
+        transition_editable: session.panes().len() == 1,
+        in_point: params.optional(Key::In),
+        out_point: params.optional(Key::Out),
+        moments: &[],
+        curves: (layout != Layout::Phone).then_some(curves),
+    };
+    for event in kit::timeline_ui(&timeline, ui) {
+        timeline_event(event, session, outcome, out);
+    }
+}
+
+fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
+    let fps = outcome.motion.clip.fps();
+    match event {
+        TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+        TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
+        TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
+        TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
+        TimelineEvent::SetTransitionStart(secs) => {
+            // The result runs on A's time up to the window.
+            out.set(Key::LeaveA, Value::Number(secs.max(0.0)));
+        }
+        TimelineEvent::SetTransitionEnd(secs) => {
+            let start = outcome.transition.map_or(0.0, |transition| transition.start_secs);
+            let frames = ((secs - start) * fps).round().clamp(1.0, 240.0);
+            out.set(Key::BlendWindow, Value::Number(frames));
+        }
+        TimelineEvent::ScrubEnded | TimelineEvent::EditStarted => {}
+        TimelineEvent::EditEnded => out.commands.push(Command::Settle),
+    }
+    let _ = session;
+}
+
+fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
+    let duration = outcome.duration_secs();
+    let Some(transition) = outcome.transition else {
+        return vec![Track { part: Part::A, label: "", name: &names[0], start: 0.0, end: duration, fade_in: 0.0, fade_out: 0.0 }];
+    };
+    let fade = transition.end_secs - transition.start_secs;
+    let track = |part, name, start, end, fade_in, fade_out| Track { part, label: "", name, start, end, fade_in, fade_out };
+    vec![
+        Track { label: "A", ..track(Part::A, names[0].as_str(), 0.0, transition.end_secs, 0.0, fade) },
+        Track { label: "B", ..track(Part::B, names[1].as_str(), transition.start_secs, duration, fade, 0.0) },
+    ]
+}
+
+impl CurveCache {
+    fn update(&mut self, outcome: &Arc<Outcome>, joint: &str, quantity: &str) {
+        let same = self.outcome.as_ref().is_some_and(|known| Arc::ptr_eq(known, outcome));
+        if same && self.what.0 == joint && self.what.1 == quantity {
+            return;
+        }
+        self.outcome = Some(Arc::clone(outcome));
+        self.what = (joint.to_owned(), quantity.to_owned());
+        self.lines.clear();
+        let end = outcome.duration_secs();
+        for source in &outcome.sources {
+            let part = if source.slot == Slot::A { Part::A } else { Part::B };
+            // Sources are shown where they can be compared with the result.
+            let window = outcome.transition.map_or(0.0..end, |transition| {
+                let margin = (transition.end_secs - transition.start_secs).max(0.25);
+                transition.start_secs - margin..transition.end_secs + margin
+            });
+            let mut points = curve(&source.motion, joint, quantity, source.starts_at_secs);
+            points.retain(|point| window.contains(&point[0]) && (0.0..=end).contains(&point[0]));
+            self.lines.push((part, points));
+        }
+        self.lines.push((Part::Result, curve(&outcome.motion, joint, quantity, 0.0)));
+    }
+}
+
+fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> Vec<[f64; 2]> {
+    let Some(joint) = joint_of(motion, joint) else { return Vec::new() };
+    let kind = match quantity {
+        "height" => segue::clip::CurveKind::Height,
+        "turn" => segue::clip::CurveKind::AngularSpeed,
+        _ => segue::clip::CurveKind::Speed,
+    };
+    let values = joint_curve(&motion.clip, joint, kind);
+    let stride = values.len().div_ceil(CURVE_POINTS).max(1);
+    let fps = motion.clip.fps();
+    values.iter().enumerate().step_by(stride).map(|(frame, &value)| [starts_at_secs + frame as f64 / fps, f64::from(value)]).collect()
+}
+
+fn unit_of(quantity: &str) -> &'static str {
+    match quantity {
+        "height" => "m",
+        "turn" => "°/s",
+        _ => "m/s",
+    }
+}
+
+fn label_of(quantity: &str) -> &'static str {
+    let Kind::Choice(choices) = Key::Curve.param().kind else { return "" };
+    choices.iter().find(|choice| choice.key == quantity).map_or("", |choice| choice.label)
+}
+
+/// Which joint and what of it: a menu on the caption.
+fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out, ui: &mut Ui) {
+    let rect = eframe::egui::Rect::from_min_max(eframe::egui::pos2(row.rect.right() - 220.0, row.rect.top()), row.rect.max);
+    let opener = ui.interact(rect, ui.id().with("curve menu"), eframe::egui::Sense::click());
+    opener.widget_info(|| eframe::egui::WidgetInfo::labeled(eframe::egui::Role::ComboBox, true, text::CURVES));
+    kit::menu_ui(&opener, RectAlign::TOP_END, |ui| {
+        if let Kind::Choice(choices) = Key::Curve.param().kind {
+            for choice in choices {
+                if kit::menu_item_ui(kit::MenuItem { text: choice.label, ..kit::MenuItem::default() }, ui).clicked() {
+                    out.set_once(Key::Curve, Value::Choice(choice.key));
+                }
+            }
+        }
+        kit::menu_line_ui(ui);
+        eframe::egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for role in Role::ALL.into_iter().filter(|&role| outcome.motion.roles.get(role).is_some()) {
+                if kit::menu_item_ui(kit::MenuItem { text: role.name(), ..kit::MenuItem::default() }, ui).clicked() {
+                    out.set_once(Key::Joint, Value::Text(role.name().to_owned()));
+                }
+            }
+        });
+    });
+}
