@@ -7,16 +7,21 @@ mod api;
 mod downloads;
 mod frames;
 mod keeper;
+mod picture;
 
 pub(crate) use address_bar::link_query;
+pub(crate) use api::keys;
 
 use crate::platform::{self, Inbox, Incoming};
-use crate::ui::out::{Action, Out};
+use crate::ui::theme::Theme;
+use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
 use eframe::egui;
 use frames::Frames;
 use keeper::Keeper;
+use picture::Picture;
+use segue::scene::Look;
 use segue::session::{Command, CommandError, Key, Level, Request, Session};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -82,6 +87,9 @@ pub(crate) struct Segue {
     told: Told,
     clock: Clock,
     window: Window,
+    panels: UiState,
+    curves: CurveCache,
+    picture: Picture,
 }
 
 /// What listeners know already.
@@ -106,6 +114,8 @@ struct Window {
     /// Counted from the app's start.
     generation: u64,
     backend: String,
+    /// How it looks; none before its first frame.
+    theme: Option<Theme>,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
     within_event: bool,
 }
@@ -132,18 +142,21 @@ impl Segue {
             told: Told::default(),
             clock: Clock { ticked_at_ms: now_ms, own_ms: 0.0, frame_began_ms: now_ms },
             window: Window::default(),
+            panels: UiState::default(),
+            curves: CurveCache::default(),
+            picture: Picture::default(),
         }))
     }
 
     /// Takes a new window, with all that belongs to its graphics device.
     fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.wakes(&cc.egui_ctx);
-        self.window.generation += 1;
-        self.window.within_event = false;
+        self.window = Window { generation: self.window.generation + 1, ..Window::default() };
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
         self.window.backend = api::backend_name(state.adapter.get_info().backend).to_owned();
+        crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
         state.device.set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
         // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of everything.
@@ -195,6 +208,12 @@ impl Segue {
     /// Whether something is under way that changes what is shown.
     pub(crate) fn is_busy(&self) -> bool {
         self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || !self.session.jobs().is_empty()
+    }
+
+    /// Whether what is stored is still waited for.
+    pub(crate) fn is_waiting(&mut self) -> bool {
+        self.pump();
+        self.keeper.is_waiting()
     }
 
     fn receive(&mut self, incoming: Incoming) {
@@ -294,35 +313,36 @@ impl Segue {
             return;
         }
         self.note_frame_time(ui.ctx(), frame);
+        self.dress(ui.ctx());
         let before = self.session.revision();
-        let out = self.page_ui(ui);
+        let mut frame = self.picture.begin();
+        let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
+        let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
         for command in out.commands {
             self.obey(command);
         }
         for action in out.actions {
             self.act(&action, ui.ctx());
         }
-        if self.session.revision() != before {
+        // Only now: what a slider has just changed is in this picture, not in the next.
+        let theme = ui::theme::theme_of(ui);
+        let look = if theme.dark { Look::DARK } else { Look::LIGHT };
+        self.picture.finish(frame, &self.session, theme.palette(), look, ui);
+        if self.session.revision() != before || self.picture.is_moving() {
             ui.ctx().request_repaint();
         }
         self.frames.begin();
         self.clock.own_ms = platform::now_ms() - self.clock.frame_began_ms;
     }
 
-    /// Everything that is to be seen.
-    fn page_ui(&mut self, ui: &mut egui::Ui) -> Out {
-        let mut out = Out::default();
-        egui::CentralPanel::default().show(ui, |ui| {
-            ui.heading("Segue");
-            ui.label(self.session.query());
-            if ui.button("Open files").clicked() {
-                out.actions.push(Action::OpenFiles);
-            }
-            for notice in self.session.notices().list() {
-                ui.label(&notice.text);
-            }
-        });
-        out
+    /// Gives the window the theme that the parameters ask for.
+    fn dress(&mut self, ctx: &egui::Context) {
+        let system_dark = ctx.input(|input| input.raw.system_theme) != Some(egui::Theme::Light);
+        let theme = ui::theme(&self.session, system_dark);
+        if self.window.theme != Some(theme) {
+            theme.install(ctx);
+            self.window.theme = Some(theme);
+        }
     }
 
     /// Does what only the platform can do.
@@ -331,7 +351,7 @@ impl Segue {
             Action::OpenFiles => platform::open_files(&self.inbox),
             Action::CopyLink => {
                 ctx.copy_text(platform::full_link(&link_query(&self.session)));
-                self.session.say(Level::Info, "The link to this state is in the clipboard.");
+                self.session.say(Level::Info, ui::LINK_COPIED);
             }
             Action::SaveBvh(which) => match self.export(which, "bvh") {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),

@@ -1,35 +1,28 @@
 //! The Segue app: a desktop window natively, the whole page on the web.
 
-mod ui;
+mod app;
+mod platform;
 mod render;
+mod ui;
 
-/// A placeholder window until the app lands on top of the core.
-#[derive(Default)]
-struct Hello;
-
-impl eframe::App for Hello {
-    fn ui(&mut self, ui: &mut eframe::egui::Ui, _frame: &mut eframe::Frame) {
-        ui.label("Segue");
-    }
-}
-
+/// Opens the window. The command line names files to load, or a link's query: `segue walk.bvh "lab=view"`.
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> eframe::Result {
-    eframe::run_native("Segue", eframe::NativeOptions::default(), Box::new(|_| Ok(Box::<Hello>::default())))
+    use eframe::egui::ViewportBuilder;
+
+    env_logger::init();
+    let inbox = platform::Inbox::default();
+    let segue = app::Segue::new(inbox.clone());
+    platform::read_arguments(&inbox);
+    let options = eframe::NativeOptions {
+        viewport: ViewportBuilder::default().with_title("Segue").with_inner_size([1280.0, 800.0]).with_min_inner_size([390.0, 600.0]),
+        ..Default::default()
+    };
+    eframe::run_native("segue", options, Box::new(move |cc| Ok(Box::new(app::View::new(segue, cc, |_| {})))))
 }
 
+/// The page's modules start the app, through [`platform::SegueHandle`]; here is only what comes before.
 #[cfg(target_arch = "wasm32")]
 fn main() {
-    use eframe::wasm_bindgen::JsCast as _;
-    wasm_bindgen_futures::spawn_local(async {
-        let canvas = eframe::web_sys::window()
-            .and_then(|w| w.document())
-            .and_then(|d| d.get_element_by_id("segue"))
-            .and_then(|e| e.dyn_into::<eframe::web_sys::HtmlCanvasElement>().ok())
-            .expect("the page has a canvas with the id `segue`");
-        eframe::WebRunner::new()
-            .start(canvas, eframe::WebOptions::default(), Box::new(|_| Ok(Box::<Hello>::default())))
-            .await
-            .expect("eframe starts");
-    });
+    eframe::WebLogger::init(log::LevelFilter::Warn).ok();
 }

@@ -1,0 +1,301 @@
+//! The page's own API, as far as it is plain data: what it is asked, and what it answers. The README documents it.
+
+use super::Segue;
+use super::frames::FrameTimes;
+use super::link_query;
+use crate::platform;
+use eframe::wgpu::Backend;
+use segue::scene::pose_at;
+use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Motion, PARAMS, Value, frame_at};
+use segue::math::Planar;
+use segue::skeleton::Side;
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A row of `keys()`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct KeyInfo {
+    key: &'static str,
+    label: &'static str,
+    #[serde(rename = "type")]
+    kind: &'static str,
+    min: Option<f64>,
+    max: Option<f64>,
+    step: Option<f64>,
+    /// Whether the value may be `"auto"`.
+    auto: bool,
+    /// The words that a choice takes.
+    choices: Vec<&'static str>,
+    default: Json,
+    unit: &'static str,
+    lab: &'static str,
+    help: &'static str,
+}
+
+/// What `load()` resolves with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LoadedClips {
+    clips: Vec<ClipInfo>,
+    warnings: Vec<String>,
+}
+
+/// What `pose()` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct PoseInfo {
+    /// The joints' names.
+    joints: Vec<String>,
+    /// The index of every joint's parent; -1 for a root.
+    parents: Vec<i64>,
+    /// World positions in metres: x, y, z of the first joint, then of the next.
+    positions: Vec<f32>,
+    /// World rotations: x, y, z, w of the first joint, then of the next.
+    rotations: Vec<f32>,
+    /// Whether the left and the right foot is planted.
+    contacts: [bool; 2],
+}
+
+/// One number of `metrics()`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct MetricInfo {
+    /// The number of the first pane; `null` where it cannot be told.
+    value: Option<f64>,
+    unit: &'static str,
+    /// The numbers of all panes, left to right.
+    panes: Vec<Option<f64>>,
+    help: &'static str,
+}
+
+/// Something that is under way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct JobInfo {
+    name: String,
+    /// 0 to 1; `null` where it cannot be told.
+    progress: Option<f64>,
+}
+
+/// What `stats()` answers, but for what only the page knows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Stats {
+    backend: String,
+    frames: u64,
+    frame_ms: FrameTimes,
+    jobs: Vec<JobInfo>,
+    wasm_bytes: u64,
+}
+
+/// A file to hand to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ExportedFile {
+    /// A name for it.
+    pub(crate) name: String,
+    /// What it is.
+    pub(crate) mime: &'static str,
+    /// Its bytes.
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// What the API calls a backend.
+pub(crate) fn backend_name(backend: Backend) -> &'static str {
+    match backend {
+        Backend::BrowserWebGpu => "webgpu",
+        Backend::Gl if cfg!(target_family = "wasm") => "webgl2",
+        other => other.to_str(),
+    }
+}
+
+/// Every row of the table of parameters.
+pub(crate) fn keys() -> Vec<KeyInfo> {
+    let row = |param: &'static segue::session::Param| {
+        let number = if let Kind::Number { min, max, step, auto, .. } = param.kind { Some((min, max, step, auto)) } else { None };
+        KeyInfo {
+            key: param.name,
+            label: param.label,
+            kind: param.kind.name(),
+            min: number.map(|(min, ..)| min),
+            max: number.map(|(_, max, ..)| max),
+            step: number.map(|(_, _, step, _)| step),
+            auto: number.is_some_and(|(.., auto)| auto),
+            choices: if let Kind::Choice(choices) = param.kind { choices.iter().map(|choice| choice.key).collect() } else { Vec::new() },
+            default: param.to_json(&param.default_value()),
+            unit: param.unit,
+            lab: param.group.name(),
+            help: param.help,
+        }
+    };
+    PARAMS.iter().map(row).collect()
+}
+
+impl Segue {
+    /// Every clip of the library.
+    pub(crate) fn clips(&self) -> Vec<ClipInfo> {
+        self.session.clip_infos()
+    }
+
+    /// Every parameter's value by its key.
+    pub(crate) fn params(&self) -> Map<String, Json> {
+        let params = self.session.params();
+        PARAMS.iter().map(|param| (param.name.to_owned(), param.to_json(params.get(param.key)))).collect()
+    }
+
+    /// Sets parameters, all or none.
+    pub(crate) fn set(&mut self, values: &Map<String, Json>) -> Result<(), String> {
+        let checked = values.iter().map(|(name, json)| self.checked(name, json)).collect::<Result<Vec<_>, String>>()?;
+        self.apply(Command::Set(checked)).map_err(|error| error.to_string())?;
+        self.apply(Command::Settle).map_err(|error| error.to_string())
+    }
+
+    fn checked(&self, name: &str, json: &Json) -> Result<(Key, Value), String> {
+        let key = Key::from_name(name).ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
+        let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
+        if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
+            let entry = self.session.library().find(id).ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
+            value = Value::Text(entry.id.clone());
+        }
+        Ok((key, value))
+    }
+
+    /// Reads a file, exactly as if it were dropped on the page.
+    pub(crate) fn load_file(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedClips, String> {
+        self.pump();
+        let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
+        let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
+        Ok(LoadedClips { clips, warnings: loaded.warnings })
+    }
+
+    /// The link that restores this state.
+    pub(crate) fn url(&self) -> String {
+        platform::full_link(&link_query(&self.session))
+    }
+
+    /// Plays or pauses.
+    pub(crate) fn play(&mut self, on: bool) -> Result<(), String> {
+        if self.session.params().is_on(Key::Play) == on {
+            return Ok(());
+        }
+        self.apply(Command::TogglePlay).map_err(|error| error.to_string())
+    }
+
+    /// Moves the playhead.
+    pub(crate) fn seek(&mut self, secs: f64) -> Result<(), String> {
+        if !secs.is_finite() {
+            return Err(format!("seek: found {secs}, expected seconds"));
+        }
+        self.apply(Command::Seek(secs)).map_err(|error| error.to_string())
+    }
+
+    /// The playhead, seconds.
+    pub(crate) fn time(&self) -> f64 {
+        self.session.now_secs()
+    }
+
+    /// The motion that a clip's id, `result`, or `result:1` (the second pane) names.
+    fn motion(&self, which: &str) -> Result<Arc<Motion>, String> {
+        let pane = match which.strip_prefix("result") {
+            Some("") => Some(0),
+            Some(rest) => rest.strip_prefix(':').map(|index| index.parse::<usize>().unwrap_or(usize::MAX)),
+            None => None,
+        };
+        let panes = self.session.panes();
+        let Some(index) = pane else {
+            let entry = self.session.library().find(which);
+            let entry = entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
+            return entry.motion.clone().ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
+        };
+        let pane = panes.get(index).ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
+        match (&pane.outcome, &pane.problem) {
+            (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
+            (None, Some(problem)) => Err(format!("there is no result: {problem}")),
+            (None, None) => Err("there is no result yet".to_owned()),
+        }
+    }
+
+    /// A pose in the world.
+    pub(crate) fn pose(&self, which: &str, secs: f64) -> Result<PoseInfo, String> {
+        let motion = self.motion(which)?;
+        let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or("the clip has no frames")?;
+        let frame = frame_at(&motion.clip, secs);
+        let joints = motion.clip.skeleton().joints();
+        Ok(PoseInfo {
+            joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+            parents: joints.iter().map(|joint| joint.parent.map_or(-1, |parent| parent as i64)).collect(),
+            positions: world.positions.iter().flat_map(|position| position.to_array()).collect(),
+            rotations: world.rotations.iter().flat_map(|rotation| rotation.to_array()).collect(),
+            contacts: [Side::Left, Side::Right].map(|side| motion.contacts.planted(side, frame)),
+        })
+    }
+
+    /// The artefacts of what is shown, by name.
+    pub(crate) fn metrics(&self) -> BTreeMap<String, MetricInfo> {
+        let panes = self.session.panes();
+        let of_pane = |pane: &segue::session::Pane, id| {
+            pane.outcome.as_ref()?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
+        };
+        let Some(main) = self.session.main_outcome() else { return BTreeMap::new() };
+        let info = |metric: &segue::metrics::Metric| MetricInfo {
+            value: metric.value,
+            unit: metric.unit,
+            panes: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
+            help: metric.help,
+        };
+        main.metrics.iter().map(|metric| (metric.label.to_owned(), info(metric))).collect()
+    }
+
+    /// A motion as a file. `which` as in [`Self::pose`].
+    pub(crate) fn export(&self, which: &str, format: &str) -> Result<ExportedFile, String> {
+        if format != "bvh" {
+            return Err(format!("found `{format}`, expected bvh"));
+        }
+        let motion = self.motion(which)?;
+        let text = segue::formats::bvh::write(&motion.clip, &segue::formats::bvh::WriteOptions::default());
+        let stem = if which.starts_with("result") { self.result_name() } else { motion.clip.name().to_owned() };
+        Ok(ExportedFile { name: file_name(&stem, "bvh"), mime: "text/plain", bytes: text.into_bytes() })
+    }
+
+    /// What a result is called as a file: what it was made from.
+    fn result_name(&self) -> String {
+        let params = self.session.params();
+        match params.text(Key::Lab) {
+            "blend" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
+            "make" => params.text(Key::Gait).to_owned(),
+            _ => params.text(Key::A).to_owned(),
+        }
+    }
+
+    /// What is under way.
+    fn jobs(&self) -> Vec<JobInfo> {
+        let computed = self.session.jobs().into_iter().map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
+        let samples = self.samples.iter().map(|id| ((*id).to_owned(), None));
+        computed.chain(self.downloads.under_way()).chain(samples).map(|(name, progress)| JobInfo { name, progress }).collect()
+    }
+
+    /// How the app is doing.
+    pub(crate) fn stats(&self, wasm_bytes: u64) -> Stats {
+        Stats {
+            backend: self.window.backend.clone(),
+            frames: self.frames.count(),
+            frame_ms: self.frames.times(),
+            jobs: self.jobs(),
+            wasm_bytes,
+        }
+    }
+
+    /// How many frames were drawn since the start.
+    pub(crate) fn frames_drawn(&self) -> u64 {
+        self.frames.count()
+    }
+
+    /// Where the stage is on the page, in points; none before it was drawn.
+    pub(crate) fn stage_place(&self) -> Option<eframe::egui::Rect> {
+        self.picture.place()
+    }
+}
+
+/// A file's name that every system takes.
+fn file_name(stem: &str, ending: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' };
+    let stem: String = stem.chars().map(plain).take(100).collect();
+    let stem = stem.trim().trim_start_matches('.');
+    format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
+}

@@ -1,0 +1,295 @@
+//! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
+
+use super::page::{next_frame, sleep, wanted_backend, watch_hiding};
+use super::snapshot::snapshot;
+use crate::app::{Event, Segue, Shared, View, keys};
+use crate::platform::Inbox;
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use eframe::wgpu::Backends;
+use eframe::{WebOptions, WebRunner};
+use js_sys::{Error, Function};
+use serde::Serialize;
+use serde_wasm_bindgen::Serializer;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen_futures::spawn_local;
+use web_sys::{Blob, HtmlCanvasElement};
+
+/// The running app, as the page holds it.
+///
+/// Every method borrows it shared: after a panic inside of an exclusive one, wasm-bindgen would refuse all others, the one that tells of
+/// the panic among them.
+#[wasm_bindgen]
+#[derive(Clone)]
+pub struct SegueHandle {
+    runner: WebRunner,
+    segue: Shared,
+    inbox: Inbox,
+    canvas: Rc<RefCell<HtmlCanvasElement>>,
+    listener: Rc<RefCell<Option<Function>>>,
+}
+
+fn error(text: impl AsRef<str>) -> JsValue {
+    Error::new(text.as_ref()).into()
+}
+
+fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
+    value.serialize(&Serializer::json_compatible()).map_err(JsValue::from)
+}
+
+#[wasm_bindgen]
+impl SegueHandle {
+    /// Starts the app on a canvas.
+    pub async fn start(canvas: HtmlCanvasElement) -> Result<SegueHandle, JsValue> {
+        let inbox = Inbox::default();
+        let handle = Self {
+            runner: WebRunner::new(),
+            segue: Segue::new(inbox.clone()),
+            inbox,
+            canvas: Rc::new(RefCell::new(canvas.clone())),
+            listener: Rc::default(),
+        };
+        handle.run(canvas).await?;
+        let weak = Rc::downgrade(&handle.segue);
+        watch_hiding(move || {
+            if let Some(segue) = weak.upgrade()
+                && let Ok(mut segue) = segue.try_borrow_mut()
+            {
+                segue.save_now();
+            }
+        });
+        Ok(handle)
+    }
+
+    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was.
+    pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+        self.borrow_mut()?.detach();
+        self.canvas.replace(canvas.clone());
+        self.run(canvas).await
+    }
+
+    /// Resolves when the first frame is on screen.
+    #[wasm_bindgen(js_name = firstFrame)]
+    pub async fn first_frame(&self) {
+        while self.segue.try_borrow().is_ok_and(|segue| segue.frames_drawn() == 0) && !self.runner.has_panicked() {
+            next_frame().await;
+        }
+    }
+
+    /// This version of Segue.
+    pub fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").to_owned()
+    }
+
+    /// Tells `listener(event, detail)` of what happens from now on.
+    #[wasm_bindgen(js_name = setListener)]
+    pub fn set_listener(&self, listener: Function) {
+        self.listener.replace(Some(listener));
+    }
+
+    /// Whether the app has panicked: then nothing else is left to ask than [`Self::panic_summary`].
+    #[wasm_bindgen(js_name = hasPanicked)]
+    pub fn has_panicked(&self) -> bool {
+        self.runner.has_panicked()
+    }
+
+    /// What it panicked over, and where.
+    #[wasm_bindgen(js_name = panicSummary)]
+    pub fn panic_summary(&self) -> Option<String> {
+        self.runner.panic_summary().map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
+    }
+
+    /// Reads a file, as if it were dropped on the page.
+    pub async fn load(&self, name: String, bytes: Vec<u8>) -> Result<JsValue, JsValue> {
+        self.opened().await?;
+        let loaded = self.borrow_mut()?.load_file(&name, Arc::from(bytes));
+        self.changed();
+        let loaded = loaded.map_err(error)?;
+        self.settled().await?;
+        to_js(&loaded)
+    }
+
+    /// Every clip of the library.
+    pub fn clips(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.borrow()?.clips())
+    }
+
+    /// Every parameter's value by its key.
+    pub fn params(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.borrow()?.params())
+    }
+
+    /// Sets parameters, all or none. Resolves when what depends on them is computed.
+    pub async fn set(&self, values: JsValue) -> Result<(), JsValue> {
+        let values = serde_wasm_bindgen::from_value(values)
+            .map_err(|_| error("set: expected an object of keys and values, as in { blend_window: 24 }"))?;
+        self.opened().await?;
+        let set = self.borrow_mut()?.set(&values);
+        self.changed();
+        set.map_err(error)?;
+        self.settled().await
+    }
+
+    /// The table of parameters.
+    pub fn keys(&self) -> Result<JsValue, JsValue> {
+        to_js(&keys())
+    }
+
+    /// The link that restores this state.
+    pub fn url(&self) -> Result<String, JsValue> {
+        Ok(self.borrow()?.url())
+    }
+
+    /// Lets time run.
+    pub fn play(&self) -> Result<(), JsValue> {
+        self.change(|segue| segue.play(true))
+    }
+
+    /// Stops time.
+    pub fn pause(&self) -> Result<(), JsValue> {
+        self.change(|segue| segue.play(false))
+    }
+
+    /// Moves the playhead, seconds.
+    pub fn seek(&self, seconds: f64) -> Result<(), JsValue> {
+        self.change(|segue| segue.seek(seconds))
+    }
+
+    /// The playhead, seconds.
+    pub fn time(&self) -> Result<f64, JsValue> {
+        Ok(self.borrow()?.time())
+    }
+
+    /// A pose in the world; `which` is a clip's id, `result`, or `result:1` for the second pane.
+    pub fn pose(&self, which: &str, seconds: f64) -> Result<JsValue, JsValue> {
+        to_js(&self.borrow()?.pose(which, seconds).map_err(error)?)
+    }
+
+    /// The artefacts of what is shown, by name.
+    pub fn metrics(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.borrow()?.metrics())
+    }
+
+    /// A motion as the bytes of a file.
+    #[wasm_bindgen(js_name = exportClip)]
+    pub fn export_clip(&self, which: &str, format: &str) -> Result<Vec<u8>, JsValue> {
+        Ok(self.borrow()?.export(which, format).map_err(|reason| error(format!("export: {reason}")))?.bytes)
+    }
+
+    /// The stage as a PNG.
+    pub async fn snapshot(&self) -> Result<Blob, JsValue> {
+        let canvas = self.canvas.borrow().clone();
+        let frames = || self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn());
+        let area = || {
+            let scale = f64::from(self.inbox.ctx()?.pixels_per_point());
+            let place = self.segue.try_borrow().ok()?.stage_place()?;
+            Some([place.left(), place.top(), place.width(), place.height()].map(|points| (f64::from(points) * scale).round()))
+        };
+        snapshot(&canvas, frames, || self.inbox.wake(), area).await
+    }
+
+    /// How the app is doing.
+    pub fn stats(&self) -> Result<JsValue, JsValue> {
+        const PAGE_BYTES: u64 = 65_536;
+        to_js(&self.borrow()?.stats(core::arch::wasm32::memory_size(0) as u64 * PAGE_BYTES))
+    }
+
+    /// Ends the app; what there is to store is stored.
+    pub fn destroy(&self) -> Result<(), JsValue> {
+        {
+            let mut segue = self.borrow_mut()?;
+            segue.detach();
+            segue.save_now();
+        }
+        self.runner.destroy();
+        Ok(())
+    }
+}
+
+impl SegueHandle {
+    fn borrow(&self) -> Result<std::cell::Ref<'_, Segue>, JsValue> {
+        self.segue.try_borrow().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+    }
+
+    fn borrow_mut(&self) -> Result<std::cell::RefMut<'_, Segue>, JsValue> {
+        self.segue.try_borrow_mut().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+    }
+
+    async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+        let mut setup = WgpuSetupCreateNew::without_display_handle();
+        setup.instance_descriptor.backends = match wanted_backend().as_deref() {
+            Some("webgl2") => Backends::GL,
+            Some("webgpu") => Backends::BROWSER_WEBGPU,
+            None | Some("auto") => Backends::BROWSER_WEBGPU | Backends::GL,
+            Some(other) => {
+                log::warn!("backend: found `{other}`, expected webgpu or webgl2");
+                Backends::BROWSER_WEBGPU | Backends::GL
+            }
+        };
+        let options = WebOptions {
+            wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() },
+            ..WebOptions::default()
+        };
+        let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
+        let create: eframe::AppCreator<'static> =
+            Box::new(move |cc| Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events)))));
+        self.runner.start(canvas, options, create).await
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Segue) -> Result<(), String>) -> Result<(), JsValue> {
+        let done = change(&mut *self.borrow_mut()?);
+        self.changed();
+        done.map_err(error)
+    }
+
+    /// Has what changed drawn, and told.
+    fn changed(&self) {
+        self.inbox.wake();
+        if let Ok(mut segue) = self.segue.try_borrow_mut() {
+            tell(&self.listener, segue.take_events());
+        }
+    }
+
+    /// Waits until what was stored has come back, or is not waited for any longer: it would replace what is changed before.
+    async fn opened(&self) -> Result<(), JsValue> {
+        while self.borrow_mut()?.is_waiting() {
+            sleep(5).await;
+        }
+        Ok(())
+    }
+
+    /// Waits until everything that depends on the last change is computed.
+    async fn settled(&self) -> Result<(), JsValue> {
+        loop {
+            // While the page is hidden no frame comes to do it.
+            let more = {
+                let mut segue = self.borrow_mut()?;
+                segue.pump() || segue.is_busy()
+            };
+            if !more {
+                self.changed();
+                return Ok(());
+            }
+            sleep(0).await;
+        }
+    }
+}
+
+/// Tells the page, once whatever runs now is done: a listener may call back at once.
+fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
+    if events.is_empty() {
+        return;
+    }
+    let Some(listener) = listener.borrow().clone() else { return };
+    spawn_local(async move {
+        for event in events {
+            let told = to_js(&event).and_then(|detail| listener.call2(&JsValue::NULL, &JsValue::from(event.name()), &detail));
+            if let Err(error) = told {
+                log::error!("a listener failed: {}", super::words_of(&error));
+            }
+        }
+    });
+}
