@@ -173,3 +173,6 @@ fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
         flags[range].fill(!value);
     }
 }
+
+#[cfg(test)]
+mod tests;
