@@ -65,7 +65,7 @@ fn by_name(target: &Skeleton, joint: usize, source: &Skeleton, source_roles: &Ro
 /// Joints that follow from roles: where the arms meet, and the collar bones.
 pub(super) struct Landmarks {
     pub(super) chest: Option<usize>,
-    collars: [Option<usize>; 2],
+    pub(super) collars: [Option<usize>; 2],
 }
 
 impl Landmarks {

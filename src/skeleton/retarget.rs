@@ -9,6 +9,10 @@ use std::sync::Arc;
 const SAME_DIRECTION_RADIANS: f32 = 0.035;
 /// In the back, neck and head the same holds up to 15°: there rigs place their joints differently in one and the same body.
 const SAME_BACK_RADIANS: f32 = 0.26;
+/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in one body: up to 45°.
+const SAME_COLLAR_RADIANS: f32 = 0.79;
+/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in both rigs, and only its heading is corrected.
+const SAME_FOOT_RADIANS: f32 = 0.61;
 /// Offsets that differ by less are the same, metres.
 const SAME_OFFSET_M: f32 = 1e-5;
 
@@ -63,29 +67,36 @@ impl Retargeting {
             same_rig,
         };
         if !same_rig {
-            retargeting.find_corrections(target_roles, from_body.left);
+            retargeting.find_corrections(target_roles, &from_body);
         }
         Some(retargeting)
     }
 
-    fn find_corrections(&mut self, target_roles: &Roles, source_left: Vec3) {
+    fn find_corrections(&mut self, target_roles: &Roles, source_body: &BodyAxes) {
         let (source_rest, target_rest) = (self.source.rest_positions(), self.target.rest_positions());
         let back = back(&self.target, target_roles);
+        let landmarks = Landmarks::of(&self.target, target_roles);
+        let is_any = |joint: usize, role: fn(Side) -> Role| Side::BOTH.into_iter().any(|side| target_roles.get(role(side)) == Some(joint));
         for joint in 0..self.target.len() {
             let Some(from) = self.map.source_of(joint) else { continue };
-            let bones = self.bone(joint, from, target_roles, &source_rest, &target_rest);
-            self.corrections[joint] = match bones {
-                Bone::Direction { target, source } => {
-                    let same = if back.contains(&joint) {
-                        SAME_BACK_RADIANS
-                    } else {
-                        SAME_DIRECTION_RADIANS
-                    };
-                    turn_about(self.whole_body * target, source, source_left, same) * self.whole_body
-                }
+            let inherited = self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]);
+            self.corrections[joint] = match self.bone(joint, from, target_roles, landmarks.chest, &source_rest, &target_rest) {
                 Bone::Trunk => self.whole_body,
                 // A hand without fingers is straight where the other one is: it bends against its forearm as in the source.
-                Bone::None => self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]),
+                Bone::None => inherited,
+                Bone::Direction { target, source } => {
+                    let (from, left, up) = (self.whole_body * target, source_body.left, source_body.rotation * Vec3::Y);
+                    let angle = quat::log(quat::between_directions(from, source)).length();
+                    let turn = match angle {
+                        a if a < SAME_DIRECTION_RADIANS => Quat::IDENTITY,
+                        a if a < SAME_BACK_RADIANS && back.contains(&joint) => Quat::IDENTITY,
+                        a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => Quat::IDENTITY,
+                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => heading_turn(from, source, up),
+                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => inherited * self.whole_body.conjugate(),
+                        _ => turn_about(from, source, left),
+                    };
+                    quat::renormalize(turn * self.whole_body)
+                }
             };
         }
     }
@@ -95,9 +106,16 @@ impl Retargeting {
     }
 
     /// The bones that start at a joint of the target and at the one that drives it, both to joints (or ends) that correspond.
-    fn bone(&self, joint: usize, from: usize, target_roles: &Roles, source_rest: &[Vec3], target_rest: &[Vec3]) -> Bone {
+    fn bone(
+        &self,
+        joint: usize,
+        from: usize,
+        target_roles: &Roles,
+        chest: Option<usize>,
+        source_rest: &[Vec3],
+        target_rest: &[Vec3],
+    ) -> Bone {
         let role = target_roles.role_of(joint);
-        let chest = Landmarks::of(&self.target, target_roles).chest;
         if role == Some(Role::Hips) || chest == Some(joint) || (role.is_none() && joint == 0) {
             return Bone::Trunk;
         }
@@ -240,20 +258,22 @@ enum Bone {
     None,
 }
 
-/// The turn from the direction `from` to `to`, the identity below `same_radians`. Where they are opposite there are many; this one is about
-/// `left`, as legs and spines bend.
-fn turn_about(from: Vec3, to: Vec3, left: Vec3, same_radians: f32) -> Quat {
+/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is about `left`, as legs and spines bend.
+fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     let turn = quat::between_directions(from, to);
-    let angle = quat::log(turn).length();
-    if angle < same_radians {
-        return Quat::IDENTITY;
-    }
-    let crosses_left = from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5);
-    if angle > std::f32::consts::PI - SAME_DIRECTION_RADIANS && crosses_left {
+    let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
+    if opposite && from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5) {
         let half_turn = Quat::from_axis_angle(left, std::f32::consts::PI);
         return quat::between_directions(half_turn * from, to) * half_turn;
     }
     turn
+}
+
+/// The turn about `up` from the heading of `from` to that of `to`; none below 2°.
+fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
+    let level = |v: Vec3| v - up * up.dot(v);
+    let turn = quat::between_directions(level(from), level(to));
+    if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
 }
 
 /// How a body lies at rest.

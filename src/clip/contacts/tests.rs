@@ -115,9 +115,9 @@ proptest! {
 /// A standing foot that trembles between the thresholds is one contact with hysteresis and many without.
 #[test]
 fn hysteresis_keeps_a_trembling_foot_planted() {
-    // The left heel rises slowly to 4 cm and trembles there by 5 mm at 2.5 Hz: speeds stay below 0.2 m/s.
+    // The left foot stands, rises slowly to 4 cm and trembles there by 5 mm at 2.5 Hz: speeds stay below 0.2 m/s.
     let tremble = |side: Side, t: f32| match side {
-        Side::Left => Vec3::Y * (0.04 * (t / 0.4).min(1.0) + 0.005 * (2.5 * TAU * t).sin()),
+        Side::Left => Vec3::Y * (0.04 * ((t - 0.4) / 0.4).clamp(0.0, 1.0) + 0.005 * (2.5 * TAU * t.max(0.4)).sin()),
         Side::Right => Vec3::ZERO,
     };
     let (clip, roles) = steps(100, 1.0, tremble);
@@ -177,4 +177,31 @@ fn clips_without_feet_or_frames_have_no_contacts() {
     let mut strange = Roles::default();
     strange.set(Role::LeftFoot, Some(9999));
     assert_eq!(found(&clip, &strange).intervals(Side::Left), []);
+}
+
+/// In a sprint a standing foot moves at 1 m/s and the floor leans by 4 cm from one foot to the other.
+#[test]
+fn a_sprint_over_a_leaning_floor_has_contacts() {
+    let sprint = |side: Side, t: f32| {
+        let lean = if side == Side::Left { 0.04 } else { 0.0 };
+        let creep = Vec3::Z * 0.9 * t.rem_euclid(STEP_SECS / 4.0);
+        step(4.0 * t + if side == Side::Left { 0.0 } else { 0.5 }) * Vec3::new(1.0, 1.5, 1.0) + creep + Vec3::Y * lean
+    };
+    let (still, roles) = steps(120, 1.0, sprint);
+    let roots = (0..120).map(|frame| Vec3::new(0.0, 0.95, 5.2 * frame as f32 / FPS as f32));
+    // The feet are moved against the body, so the body's own way is taken off theirs.
+    let poses = (0..120).zip(roots).map(|(frame, root)| {
+        let mut pose = still.pose(frame);
+        pose.translations.iter_mut().for_each(|(_, at)| at.z -= root.z);
+        pose.root_translation = root;
+        pose
+    });
+    let clip = Clip::from_poses("sprint", Arc::clone(still.skeleton()), FPS, poses).unwrap();
+    for side in Side::BOTH {
+        let sprinting = found(&clip, &roles).intervals(side);
+        assert!((7..=9).contains(&sprinting.len()), "{side:?}: {sprinting:?}");
+        assert!(sprinting.iter().all(|stance| stance.len() <= 11), "{side:?}: {sprinting:?}");
+    }
+    // A body that goes nowhere is held to the limits as they are given.
+    assert_eq!(found(&still, &roles).intervals(Side::Right).len(), 0);
 }

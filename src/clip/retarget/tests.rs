@@ -11,7 +11,7 @@ fn bone(world: &WorldPose, roles: &Roles, [from, to]: [Role; 2]) -> Vec3 {
     (at(to) - at(from)).normalize_or_zero()
 }
 
-/// The bones between joints that have roles.
+/// The bones of the limbs down to ankles and wrists.
 fn bones() -> Vec<[Role; 2]> {
     let limbs = |side| {
         let leg = Role::leg(side);
@@ -19,7 +19,6 @@ fn bones() -> Vec<[Role; 2]> {
         [
             [leg[0], leg[1]],
             [leg[1], leg[2]],
-            [leg[2], leg[3]],
             [arm[0], arm[1]],
             [arm[1], arm[2]],
         ]
@@ -274,4 +273,32 @@ fn nothing_in_common_is_refused() {
         retarget(&clip, &Roles::default(), &target, &Roles::default()),
         Err(RetargetError::NothingInCommon)
     );
+}
+
+/// The ankles of one rig lie higher above the sole, and its feet point outwards at rest: soles stay flat, headings stay.
+#[test]
+fn soles_stay_flat_and_feet_keep_their_heading() {
+    let source = fixtures::lafan();
+    let roles = fixtures::roles(&source);
+    let outwards = |name: &str| Quat::from_rotation_y(if name.starts_with("Left") { 0.35 } else { -0.35 });
+    let joints = source.joints().iter().map(|joint| {
+        let is_toe = joint.name.ends_with("Toe");
+        let offset = if is_toe { outwards(&joint.name) * (joint.offset - Vec3::Y * 0.04) } else { joint.offset };
+        Joint { offset, end_site: joint.end_site.map(|end| if is_toe { outwards(&joint.name) * end } else { end }), ..joint.clone() }
+    });
+    let target = Arc::new(Skeleton::new(joints.collect()).unwrap());
+    let clip = wander(&source, 6, 9);
+    let there = retarget(&clip, &roles, &target, &roles).unwrap();
+    for frame in 0..clip.frames() {
+        let (a, b) = (clip.world_pose(frame), there.world_pose(frame));
+        for side in Side::BOTH {
+            for joint in [roles.get(Role::foot(side)).unwrap(), roles.get(Role::toe(side)).unwrap()] {
+                let (ours, theirs) = (b.rotations[joint], a.rotations[joint]);
+                // What is up on a sole stays up, what is forward on it stays forward.
+                assert!((ours * Vec3::Y).distance(theirs * Vec3::Y) < 1e-5);
+                let forward = outwards(&source.joints()[joint].name) * Vec3::Z;
+                assert!((ours * forward).distance(theirs * Vec3::Z) < 0.03, "{side:?}");
+            }
+        }
+    }
 }
