@@ -26,7 +26,12 @@ impl ConeMesh {
         for row in 0..row_count - 1 {
             for side in 0..sides {
                 let next = (side + 1) % sides;
-                let [a, b, c, d] = [row * sides + side, row * sides + next, (row + 1) * sides + side, (row + 1) * sides + next];
+                let [a, b, c, d] = [
+                    row * sides + side,
+                    row * sides + next,
+                    (row + 1) * sides + side,
+                    (row + 1) * sides + next,
+                ];
                 // At the poles one of the two triangles has no area.
                 if row > 0 {
                     indices.extend([a, b, c]);
