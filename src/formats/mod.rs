@@ -6,6 +6,7 @@
 
 pub mod bvh;
 mod error;
+mod gzip;
 mod measure;
 mod raw;
 mod t_pose;
@@ -13,6 +14,7 @@ mod text;
 mod warning;
 
 pub use error::ImportError;
+pub use gzip::unpack_gzip;
 pub use measure::{CMU_METRES_PER_UNIT, Measure};
 pub use warning::{ImportWarning, WarningKind};
 
