@@ -92,7 +92,11 @@ fn blending(c: &mut Criterion) {
     let roles = Roles::detect(&skeleton);
     let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
     for root in [RootBlend::Velocity, RootBlend::World] {
-        let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
+        let options = DissolveOptions {
+            window: 120,
+            root,
+            ..DissolveOptions::default()
+        };
         c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
             bench.iter(|| dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits"));
         });
