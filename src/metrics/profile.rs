@@ -37,12 +37,12 @@ impl Profile {
         let usual_step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
         let slides = slides(clip, roles);
         Self {
+            source,
             contacts,
             slides,
             usual_turn,
             usual_change,
             usual_step,
-            source,
         }
     }
 
@@ -102,18 +102,15 @@ pub(super) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
 
 fn slides(clip: &Clip, roles: &Roles) -> [Vec<f32>; 2] {
     let points = Side::BOTH.map(|side| foot_points(clip.skeleton(), roles, side));
-    let mut slides = [vec![0.0; clip.frames()], vec![0.0; clip.frames()]];
+    let mut slides = [Vec::with_capacity(clip.frames()), Vec::with_capacity(clip.frames())];
     let mut before: [Vec<Vec3>; 2] = Default::default();
     let mut world = WorldPose::default();
     for frame in 0..clip.frames() {
         clip.world_pose_into(frame, &mut world);
-        for side in Side::BOTH {
-            let now: Vec<Vec3> = points[side.index()]
-                .iter()
-                .map(|&(joint, point)| world.point(joint, point))
-                .collect();
-            slides[side.index()][frame] = stillest_step(&before[side.index()], &now).map_or(0.0, Vec3::length);
-            before[side.index()] = now;
+        for ((points, slides), before) in points.iter().zip(&mut slides).zip(&mut before) {
+            let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+            slides.push(stillest_step(before, &now).map_or(0.0, Vec3::length));
+            *before = now;
         }
     }
     slides

@@ -8,6 +8,8 @@ use std::ops::{Range, RangeInclusive};
 
 /// Seconds on each side of a transition in which stances are followed.
 const MARGIN_SECS: f64 = 0.5;
+/// Below this, degrees, no joint is named for a pose jump: nobody sees it.
+const VISIBLE_DEG: f64 = 0.1;
 /// Below this difference of velocities, metres per second, there is no change of speed to wait for.
 const LEAST_CHANGE_MPS: f64 = 0.1;
 
@@ -45,7 +47,7 @@ pub struct TransitionMetrics {
     /// Pose jump, degrees. Over all joints and steps of the transition, the largest turn of a joint against its parent in one step, less what
     /// is usual for that joint; 0 where no step is unusual.
     pub seam_deg: Option<f64>,
-    /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.
+    /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.1°.
     pub seam_joint: Option<usize>,
     /// Velocity jump, degrees per second. Likewise the largest change of a joint's angular velocity (a vector in the parent's frame) from one step
     /// to the next, less what is usual for that joint.
@@ -307,7 +309,8 @@ fn unusual(
 
 fn seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> (Option<f64>, Option<usize>) {
     let (worst, joint) = unusual(subject, steps.clone(), joint_turn, |profile| &profile.usual_turn);
-    (worst.map(|turn| f64::from(turn).to_degrees()), joint)
+    let degrees = worst.map(|turn| f64::from(turn).to_degrees());
+    (degrees, joint.filter(|_| degrees > Some(VISIBLE_DEG)))
 }
 
 fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option<f64> {
