@@ -291,6 +291,3 @@ fn mirrored_roles(bits: u32) -> u32 {
         .filter(|role| bits & (1 << role.index()) != 0)
         .fold(0, |sum, role| sum | 1 << role.mirrored().index())
 }
-
-#[cfg(test)]
-mod tests;

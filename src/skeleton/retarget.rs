@@ -1,3 +1,4 @@
+use super::joint_map::{JointMap, Landmarks};
 use super::roles::is_below;
 use super::{Pose, Role, Roles, Side, Skeleton, WorldPose, world_pose};
 use crate::math::quat;
@@ -6,104 +7,14 @@ use std::sync::Arc;
 
 /// Rest directions that differ by less are the same by intention, radians (2°): local rotations are then copied as they are.
 const SAME_DIRECTION_RADIANS: f32 = 0.035;
+/// In the back, neck and head the same holds up to 15°: there rigs place their joints differently in one and the same body.
+const SAME_BACK_RADIANS: f32 = 0.26;
+/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in one body: up to 45°.
+const SAME_COLLAR_RADIANS: f32 = 0.79;
+/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in both rigs, and only its heading is corrected.
+const SAME_FOOT_RADIANS: f32 = 0.61;
 /// Offsets that differ by less are the same, metres.
 const SAME_OFFSET_M: f32 = 1e-5;
-
-/// Which joint of a source skeleton drives which joint of a target: by name and by role, never by index.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct JointMap {
-    sources: Vec<Option<usize>>,
-}
-
-impl JointMap {
-    /// Maps joint by joint.
-    ///
-    /// Joints that have a role go to the joint of that role, because one name means different joints in different rigs (`LeftShoulder` is a
-    /// collar bone here and an upper arm there). Then the joints where both arms meet go to each other, and the collar bones. All others go
-    /// to the joint of the same name, if it lies below the joint that drives their parent.
-    #[must_use]
-    pub fn between(target: &Skeleton, target_roles: &Roles, source: &Skeleton, source_roles: &Roles) -> Self {
-        let mut sources: Vec<Option<usize>> = vec![None; target.len()];
-        for role in Role::ALL {
-            if let (Some(to), Some(from)) = (
-                target_roles.get_within(role, target.len()),
-                source_roles.get_within(role, source.len()),
-            ) {
-                sources[to] = Some(from);
-            }
-        }
-        let (to, from) = (Landmarks::of(target, target_roles), Landmarks::of(source, source_roles));
-        for (to, from) in to.pairs(&from) {
-            // The chest may be the spine's only joint, and what the arms hang on matters more.
-            if sources[to].is_none() || target_roles.role_of(to) == Some(Role::Spine) {
-                sources[to] = Some(from);
-            }
-        }
-        for joint in 0..target.len() {
-            if sources[joint].is_none() {
-                sources[joint] = by_name(target, joint, source, source_roles, &sources);
-            }
-        }
-        Self { sources }
-    }
-
-    /// The source's joint that drives a joint of the target.
-    #[must_use]
-    pub fn source_of(&self, target_joint: usize) -> Option<usize> {
-        self.sources.get(target_joint).copied().flatten()
-    }
-
-    /// The number of joints of the target that are driven.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.sources.iter().flatten().count()
-    }
-}
-
-/// The source's joint of the same name, if it has no role, drives no other joint, and lies below what drives the nearest driven joint above.
-fn by_name(target: &Skeleton, joint: usize, source: &Skeleton, source_roles: &Roles, sources: &[Option<usize>]) -> Option<usize> {
-    let name = &target.joints()[joint].name;
-    let above = std::iter::successors(target.parent(joint), |&j| target.parent(j)).find_map(|j| sources[j]);
-    let fits = |from: usize| {
-        source_roles.role_of(from).is_none() && !sources.contains(&Some(from)) && above.is_none_or(|above| is_below(source, from, above))
-    };
-    (0..source.len()).find(|&from| source.joints()[from].name == *name && fits(from))
-}
-
-/// Joints that follow from roles: where the arms meet, and the collar bones.
-struct Landmarks {
-    chest: Option<usize>,
-    collars: [Option<usize>; 2],
-}
-
-impl Landmarks {
-    fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let above = |joint: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j));
-        let arms = Side::BOTH.map(|side| roles.get_within(Role::upper_arm(side), skeleton.len()));
-        let chest = match arms {
-            [Some(left), Some(right)] => above(left).find(|&joint| is_below(skeleton, right, joint)),
-            _ => None,
-        };
-        // A chest that is the hips says nothing about a back.
-        let chest = chest.filter(|&chest| roles.role_of(chest) != Some(Role::Hips) && chest > 0);
-        let collar = |arm: Option<usize>| {
-            above(arm?)
-                .take_while(|&joint| Some(joint) != chest)
-                .last()
-                .filter(|_| chest.is_some())
-        };
-        Self {
-            chest,
-            collars: arms.map(collar),
-        }
-    }
-
-    fn pairs(&self, source: &Self) -> impl Iterator<Item = (usize, usize)> {
-        let ours = [self.chest, self.collars[0], self.collars[1]];
-        let theirs = [source.chest, source.collars[0], source.collars[1]];
-        ours.into_iter().zip(theirs).filter_map(|(to, from)| Some((to?, from?)))
-    }
-}
 
 /// How poses of one skeleton become poses of another.
 ///
@@ -156,21 +67,36 @@ impl Retargeting {
             same_rig,
         };
         if !same_rig {
-            retargeting.find_corrections(target_roles, from_body.left);
+            retargeting.find_corrections(target_roles, &from_body);
         }
         Some(retargeting)
     }
 
-    fn find_corrections(&mut self, target_roles: &Roles, source_left: Vec3) {
+    fn find_corrections(&mut self, target_roles: &Roles, source_body: &BodyAxes) {
         let (source_rest, target_rest) = (self.source.rest_positions(), self.target.rest_positions());
+        let back = back(&self.target, target_roles);
+        let landmarks = Landmarks::of(&self.target, target_roles);
+        let is_any = |joint: usize, role: fn(Side) -> Role| Side::BOTH.into_iter().any(|side| target_roles.get(role(side)) == Some(joint));
         for joint in 0..self.target.len() {
             let Some(from) = self.map.source_of(joint) else { continue };
-            let bones = self.bone(joint, from, target_roles, &source_rest, &target_rest);
-            self.corrections[joint] = match bones {
-                Bone::Direction { target, source } => turn_about(self.whole_body * target, source, source_left) * self.whole_body,
+            let inherited = self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]);
+            self.corrections[joint] = match self.bone(joint, from, target_roles, landmarks.chest, &source_rest, &target_rest) {
                 Bone::Trunk => self.whole_body,
                 // A hand without fingers is straight where the other one is: it bends against its forearm as in the source.
-                Bone::None => self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]),
+                Bone::None => inherited,
+                Bone::Direction { target, source } => {
+                    let (from, left, up) = (self.whole_body * target, source_body.left, source_body.rotation * Vec3::Y);
+                    let angle = quat::log(quat::between_directions(from, source)).length();
+                    let turn = match angle {
+                        a if a < SAME_DIRECTION_RADIANS => Quat::IDENTITY,
+                        a if a < SAME_BACK_RADIANS && back.contains(&joint) => Quat::IDENTITY,
+                        a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => Quat::IDENTITY,
+                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => heading_turn(from, source, up),
+                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => inherited * self.whole_body.conjugate(),
+                        _ => turn_about(from, source, left),
+                    };
+                    quat::renormalize(turn * self.whole_body)
+                }
             };
         }
     }
@@ -180,18 +106,25 @@ impl Retargeting {
     }
 
     /// The bones that start at a joint of the target and at the one that drives it, both to joints (or ends) that correspond.
-    fn bone(&self, joint: usize, from: usize, target_roles: &Roles, source_rest: &[Vec3], target_rest: &[Vec3]) -> Bone {
+    fn bone(
+        &self,
+        joint: usize,
+        from: usize,
+        target_roles: &Roles,
+        chest: Option<usize>,
+        source_rest: &[Vec3],
+        target_rest: &[Vec3],
+    ) -> Bone {
         let role = target_roles.role_of(joint);
-        let arms_hang_on_it = Landmarks::of(&self.target, target_roles).chest == Some(joint);
-        if role == Some(Role::Hips) || arms_hang_on_it || (role.is_none() && joint == 0) {
+        if role == Some(Role::Hips) || chest == Some(joint) || (role.is_none() && joint == 0) {
             return Bone::Trunk;
         }
         let long = |v: Vec3| v.length() > 1e-4;
-        // Toes of a foot come before its heel, the forearm before a muscle: joints with roles first, then the nearest in the tree.
+        // The chest first, for the back; then joints with roles (toes come before a heel), then the nearest in the tree.
         let mut below: Vec<usize> = (joint + 1..self.target.len())
             .filter(|&j| is_below(&self.target, j, joint))
             .collect();
-        below.sort_by_key(|&j| (target_roles.role_of(j).is_none(), j));
+        below.sort_by_key(|&j| (chest != Some(j), target_roles.role_of(j).is_none(), j));
         for below in below {
             let Some(end) = self.map.source_of(below).filter(|&end| is_below(&self.source, end, from)) else {
                 continue;
@@ -249,12 +182,10 @@ impl Retargeting {
         for (joint, parent) in self.target.joints().iter().map(|j| j.parent).enumerate() {
             let above = parent.map_or(Quat::IDENTITY, |parent| worlds[parent]);
             let turned = self.world_rotation(joint, &world);
-            let local = self
-                .local_copy(joint, parent, pose)
-                .or_else(|| turned.map(|turned| above.conjugate() * turned));
             // The root has no rest rotation of its own where the whole body lies another way.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
-            let local = quat::renormalize(local.unwrap_or(rest));
+            let computed = || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));
+            let local = self.local_copy(joint, parent, pose).unwrap_or_else(computed);
             rotations.push(local);
             worlds.push(quat::renormalize(above * local));
         }
@@ -327,20 +258,22 @@ enum Bone {
     None,
 }
 
-/// The turn from the direction `from` to `to`, the identity below 2°. Where they are opposite there are many; this one is about `left`, as
-/// legs and spines bend.
+/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is about `left`, as legs and spines bend.
 fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     let turn = quat::between_directions(from, to);
-    let angle = quat::log(turn).length();
-    if angle < SAME_DIRECTION_RADIANS {
-        return Quat::IDENTITY;
-    }
-    let crosses_left = from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5);
-    if angle > std::f32::consts::PI - SAME_DIRECTION_RADIANS && crosses_left {
+    let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
+    if opposite && from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5) {
         let half_turn = Quat::from_axis_angle(left, std::f32::consts::PI);
         return quat::between_directions(half_turn * from, to) * half_turn;
     }
     turn
+}
+
+/// The turn about `up` from the heading of `from` to that of `to`; none below 2°.
+fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
+    let level = |v: Vec3| v - up * up.dot(v);
+    let turn = quat::between_directions(level(from), level(to));
+    if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
 }
 
 /// How a body lies at rest.
@@ -424,17 +357,7 @@ fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_role
 /// For the joints between hips and head that nothing drives: between which driven joints they lie, and how far along.
 fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(usize, usize, f32)>> {
     let mut shares = vec![None; target.len()];
-    let (Some(hips), Some(head)) = (
-        roles.get_within(Role::Hips, target.len()),
-        roles.get_within(Role::Head, target.len()),
-    ) else {
-        return shares;
-    };
-    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| target.parent(j))
-        .take_while(|&joint| joint != hips)
-        .collect();
-    back.push(hips);
-    back.reverse();
+    let back = back(target, roles);
     let driven: Vec<usize> = (0..back.len()).filter(|&i| map.source_of(back[i]).is_some()).collect();
     for pair in driven.windows(2) {
         for i in pair[0] + 1..pair[1] {
@@ -444,5 +367,19 @@ fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(
     shares
 }
 
-#[cfg(test)]
-mod tests;
+/// The joints from the hips up to the head, both included; none where either is unknown or they are not above each other.
+fn back(skeleton: &Skeleton, roles: &Roles) -> Vec<usize> {
+    let joint = |role| roles.get_within(role, skeleton.len());
+    let (Some(hips), Some(head)) = (joint(Role::Hips), joint(Role::Head)) else {
+        return Vec::new();
+    };
+    if !is_below(skeleton, head, hips) {
+        return Vec::new();
+    }
+    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| skeleton.parent(j))
+        .take_while(|&joint| joint != hips)
+        .collect();
+    back.push(hips);
+    back.reverse();
+    back
+}
