@@ -65,7 +65,9 @@ impl Contacts {
         for kind in &ways.feet {
             let heights = |way: &[Vec3]| way.iter().map(|p| p.y).collect::<Vec<f32>>();
             let both: Vec<f32> = kind.iter().flat_map(|(_, way)| heights(way)).collect();
-            let Some(common) = stats::percentile(&both, GROUND_PERCENTILE) else { continue };
+            let Some(common) = stats::percentile(&both, GROUND_PERCENTILE) else {
+                continue;
+            };
             for (side, way) in kind {
                 let own = stats::percentile(&heights(way), GROUND_PERCENTILE).unwrap_or(common);
                 let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };

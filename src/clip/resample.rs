@@ -8,6 +8,20 @@ const MAX_FPS: f64 = 1000.0;
 /// The first and the last frame stay what they are. Where the duration is no whole number of new frames it is rounded to the nearest one: the
 /// clip then plays by up to half a frame longer or shorter. At its own frame rate the clip comes back unchanged.
 ///
+/// ```
+/// use glam::{Quat, Vec3};
+/// use segue::clip::{Clip, Interpolation, resample};
+/// use segue::skeleton::{Joint, Skeleton};
+///
+/// let ball = Skeleton::new(vec![Joint { name: "ball".into(), parent: None, offset: Vec3::ZERO, end_site: None, channels: vec![] }])?;
+/// let rolls = (0..=30).map(|i| Vec3::X * i as f32).collect();
+/// let clip = Clip::new("ball", ball.into(), 30.0, vec![Quat::IDENTITY; 31], rolls)?;
+/// let finer = resample(&clip, 120.0, Interpolation::Linear)?;
+/// assert_eq!((finer.frames(), finer.duration_secs()), (121, 1.0));
+/// assert_eq!(finer.root_translations()[1], Vec3::X * 0.25);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ClipError::FrameRate`] when `fps` is not a positive number, or is above both 1000 and the clip's own rate.
 pub fn resample(clip: &Clip, fps: f64, interpolation: Interpolation) -> Result<Clip, ClipError> {

@@ -1,5 +1,6 @@
-use super::roles::is_below;
+use super::ancestry::Ancestry;
 use super::{Role, Roles, Side, Skeleton};
+use std::collections::HashMap;
 
 /// Which joint of a source skeleton drives which joint of a target: by name and by role, never by index.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,7 +13,7 @@ impl JointMap {
     ///
     /// Joints that have a role go to the joint of that role, because one name means different joints in different rigs (`LeftShoulder` is a
     /// collar bone here and an upper arm there). Then the joints where both arms meet go to each other, and the collar bones. All others go
-    /// to the joint of the same name, if it lies below the joint that drives their parent.
+    /// to the joint of the same name (name spaces such as `mixamorig:` apart), if it lies below the joint that drives their parent.
     #[must_use]
     pub fn between(target: &Skeleton, target_roles: &Roles, source: &Skeleton, source_roles: &Roles) -> Self {
         let mut sources: Vec<Option<usize>> = vec![None; target.len()];
@@ -31,11 +32,7 @@ impl JointMap {
                 sources[to] = Some(from);
             }
         }
-        for joint in 0..target.len() {
-            if sources[joint].is_none() {
-                sources[joint] = by_name(target, joint, source, source_roles, &sources);
-            }
-        }
+        map_by_name(target, source, source_roles, &mut sources);
         Self { sources }
     }
 
@@ -52,14 +49,40 @@ impl JointMap {
     }
 }
 
-/// The source's joint of the same name, if it has no role, drives no other joint, and lies below what drives the nearest driven joint above.
-fn by_name(target: &Skeleton, joint: usize, source: &Skeleton, source_roles: &Roles, sources: &[Option<usize>]) -> Option<usize> {
-    let name = &target.joints()[joint].name;
-    let above = std::iter::successors(target.parent(joint), |&j| target.parent(j)).find_map(|j| sources[j]);
-    let fits = |from: usize| {
-        source_roles.role_of(from).is_none() && !sources.contains(&Some(from)) && above.is_none_or(|above| is_below(source, from, above))
-    };
-    (0..source.len()).find(|&from| source.joints()[from].name == *name && fits(from))
+/// Maps every joint that is not yet mapped to the first joint of its name that has no role, drives no other joint, and lies below what
+/// drives the nearest driven joint above.
+fn map_by_name(target: &Skeleton, source: &Skeleton, source_roles: &Roles, sources: &mut [Option<usize>]) {
+    let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
+    let mut taken = vec![false; source.len()];
+    for (from, joint) in source.joints().iter().enumerate() {
+        by_name.entry(own_name(&joint.name)).or_default().push(from);
+        taken[from] = source_roles.role_of(from).is_some();
+    }
+    for &from in sources.iter().flatten() {
+        taken[from] = true;
+    }
+    let ancestry = Ancestry::of(source);
+    // What drives the nearest driven joint at or above each joint; parents come first.
+    let mut nearest: Vec<Option<usize>> = Vec::with_capacity(target.len());
+    for (joint, ours) in target.joints().iter().enumerate() {
+        let above = ours.parent.and_then(|parent| nearest[parent]);
+        if sources[joint].is_none() {
+            let fits = |from: usize| !taken[from] && above.is_none_or(|above| ancestry.is_below(from, above));
+            let found = by_name
+                .get(own_name(&ours.name))
+                .and_then(|named| named.iter().copied().find(|&from| fits(from)));
+            if let Some(from) = found {
+                taken[from] = true;
+                sources[joint] = Some(from);
+            }
+        }
+        nearest.push(sources[joint].or(above));
+    }
+}
+
+/// The name without the name space that a program put before it.
+fn own_name(name: &str) -> &str {
+    name.rsplit(':').next().unwrap_or(name)
 }
 
 /// Joints that follow from roles: where the arms meet, and the collar bones.
@@ -71,9 +94,10 @@ pub(super) struct Landmarks {
 impl Landmarks {
     pub(super) fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
         let above = |joint: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j));
+        let ancestry = Ancestry::of(skeleton);
         let arms = Side::BOTH.map(|side| roles.get_within(Role::upper_arm(side), skeleton.len()));
         let chest = match arms {
-            [Some(left), Some(right)] => above(left).find(|&joint| is_below(skeleton, right, joint)),
+            [Some(left), Some(right)] => above(left).find(|&joint| ancestry.is_below(right, joint)),
             _ => None,
         };
         // A chest that is the hips says nothing about a back.
@@ -140,7 +164,9 @@ mod tests {
     fn fingers_go_by_name_and_only_where_they_are() {
         let (cmu, mixamo) = (fixtures::cmu_bvh(), fixtures::mixamo());
         assert_eq!(drives(&cmu, &cmu, "LeftThumb").as_deref(), Some("LeftThumb"));
-        assert_eq!(drives(&mixamo, &cmu, "mixamorig:LeftHandIndex1"), None);
+        // The name space of a program is no part of the name.
+        assert_eq!(drives(&mixamo, &cmu, "mixamorig:LeftHandIndex1").as_deref(), Some("LeftHandIndex1"));
+        assert_eq!(drives(&mixamo, &cmu, "mixamorig:LeftHandThumb1"), None);
         assert_eq!(
             drives(&mixamo, &fixtures::shuffled(&mixamo, 5).0, "mixamorig:RightHandIndex1").as_deref(),
             Some("mixamorig:RightHandIndex1")

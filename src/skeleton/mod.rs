@@ -1,5 +1,7 @@
 //! Skeletons, poses, forward kinematics, and what a joint is for.
 
+mod ancestry;
+mod corrections;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod joint_map;

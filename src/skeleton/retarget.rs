@@ -1,18 +1,10 @@
-use super::joint_map::{JointMap, Landmarks};
-use super::roles::is_below;
-use super::{Pose, Role, Roles, Side, Skeleton, WorldPose, world_pose};
+use super::corrections::{BodyAxes, back, corrections};
+use super::joint_map::JointMap;
+use super::{Pose, Role, Roles, Skeleton, WorldPose, world_pose};
 use crate::math::quat;
-use glam::{Mat3, Quat, Vec3};
+use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Rest directions that differ by less are the same by intention, radians (2°): local rotations are then copied as they are.
-const SAME_DIRECTION_RADIANS: f32 = 0.035;
-/// In the back, neck and head the same holds up to 15°: there rigs place their joints differently in one and the same body.
-const SAME_BACK_RADIANS: f32 = 0.26;
-/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in one body: up to 45°.
-const SAME_COLLAR_RADIANS: f32 = 0.79;
-/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in both rigs, and only its heading is corrected.
-const SAME_FOOT_RADIANS: f32 = 0.61;
 /// Offsets that differ by less are the same, metres.
 const SAME_OFFSET_M: f32 = 1e-5;
 
@@ -47,103 +39,29 @@ impl Retargeting {
             return None;
         }
         let same_rig = is_same_rig(source, target, &map);
-        let (from_body, to_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
-        let whole_body = from_body.rotation * to_body.rotation.conjugate();
+        let (source_body, target_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
+        let corrections = if same_rig {
+            vec![Quat::IDENTITY; target.len()]
+        } else {
+            corrections(source, &source_body, target, target_roles, &map)
+        };
         let scale = if same_rig {
             1.0
         } else {
             scale(source, source_roles, target, target_roles)
         };
         let hips_of = |skeleton: &Skeleton, roles: &Roles| roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0);
-        let mut retargeting = Self {
-            corrections: vec![Quat::IDENTITY; target.len()],
+        Some(Self {
             shares: back_shares(target, target_roles, &map),
             hips: (hips_of(source, source_roles), hips_of(target, target_roles)),
             source: Arc::clone(source),
             target: Arc::clone(target),
             map,
-            whole_body,
+            whole_body: source_body.rotation * target_body.rotation.conjugate(),
+            corrections,
             scale,
             same_rig,
-        };
-        if !same_rig {
-            retargeting.find_corrections(target_roles, &from_body);
-        }
-        Some(retargeting)
-    }
-
-    fn find_corrections(&mut self, target_roles: &Roles, source_body: &BodyAxes) {
-        let (source_rest, target_rest) = (self.source.rest_positions(), self.target.rest_positions());
-        let back = back(&self.target, target_roles);
-        let landmarks = Landmarks::of(&self.target, target_roles);
-        let is_any = |joint: usize, role: fn(Side) -> Role| Side::BOTH.into_iter().any(|side| target_roles.get(role(side)) == Some(joint));
-        for joint in 0..self.target.len() {
-            let Some(from) = self.map.source_of(joint) else { continue };
-            let inherited = self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]);
-            self.corrections[joint] = match self.bone(joint, from, target_roles, landmarks.chest, &source_rest, &target_rest) {
-                Bone::Trunk => self.whole_body,
-                // A hand without fingers is straight where the other one is: it bends against its forearm as in the source.
-                Bone::None => inherited,
-                Bone::Direction { target, source } => {
-                    let (from, left, up) = (self.whole_body * target, source_body.left, source_body.rotation * Vec3::Y);
-                    let angle = quat::log(quat::between_directions(from, source)).length();
-                    let turn = match angle {
-                        a if a < SAME_DIRECTION_RADIANS => Quat::IDENTITY,
-                        a if a < SAME_BACK_RADIANS && back.contains(&joint) => Quat::IDENTITY,
-                        a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => Quat::IDENTITY,
-                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => heading_turn(from, source, up),
-                        a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => inherited * self.whole_body.conjugate(),
-                        _ => turn_about(from, source, left),
-                    };
-                    quat::renormalize(turn * self.whole_body)
-                }
-            };
-        }
-    }
-
-    fn driven_above(&self, joint: usize) -> Option<usize> {
-        std::iter::successors(self.target.parent(joint), |&j| self.target.parent(j)).find(|&j| self.map.source_of(j).is_some())
-    }
-
-    /// The bones that start at a joint of the target and at the one that drives it, both to joints (or ends) that correspond.
-    fn bone(
-        &self,
-        joint: usize,
-        from: usize,
-        target_roles: &Roles,
-        chest: Option<usize>,
-        source_rest: &[Vec3],
-        target_rest: &[Vec3],
-    ) -> Bone {
-        let role = target_roles.role_of(joint);
-        if role == Some(Role::Hips) || chest == Some(joint) || (role.is_none() && joint == 0) {
-            return Bone::Trunk;
-        }
-        let long = |v: Vec3| v.length() > 1e-4;
-        // The chest first, for the back; then joints with roles (toes come before a heel), then the nearest in the tree.
-        let mut below: Vec<usize> = (joint + 1..self.target.len())
-            .filter(|&j| is_below(&self.target, j, joint))
-            .collect();
-        below.sort_by_key(|&j| (chest != Some(j), target_roles.role_of(j).is_none(), j));
-        for below in below {
-            let Some(end) = self.map.source_of(below).filter(|&end| is_below(&self.source, end, from)) else {
-                continue;
-            };
-            let (ours, theirs) = (target_rest[below] - target_rest[joint], source_rest[end] - source_rest[from]);
-            if long(ours) && long(theirs) {
-                return Bone::Direction {
-                    target: ours,
-                    source: theirs,
-                };
-            }
-        }
-        match (self.target.joints()[joint].end_site, self.source.joints()[from].end_site) {
-            (Some(ours), Some(theirs)) if long(ours) && long(theirs) => Bone::Direction {
-                target: ours,
-                source: theirs,
-            },
-            _ => Bone::None,
-        }
+        })
     }
 
     /// The joint map.
@@ -248,82 +166,6 @@ impl Retargeting {
     }
 }
 
-/// What is known about how a joint's frame lies at rest.
-enum Bone {
-    /// Bones that correspond, not of unit length.
-    Direction { target: Vec3, source: Vec3 },
-    /// Hips or chest: they lie as the body does.
-    Trunk,
-    /// Nothing.
-    None,
-}
-
-/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is about `left`, as legs and spines bend.
-fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
-    let turn = quat::between_directions(from, to);
-    let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
-    if opposite && from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5) {
-        let half_turn = Quat::from_axis_angle(left, std::f32::consts::PI);
-        return quat::between_directions(half_turn * from, to) * half_turn;
-    }
-    turn
-}
-
-/// The turn about `up` from the heading of `from` to that of `to`; none below 2°.
-fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
-    let level = |v: Vec3| v - up * up.dot(v);
-    let turn = quat::between_directions(level(from), level(to));
-    if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
-}
-
-/// How a body lies at rest.
-struct BodyAxes {
-    /// From right to left, unit length.
-    left: Vec3,
-    /// Takes +X to the left and +Y along the back upwards.
-    rotation: Quat,
-}
-
-impl BodyAxes {
-    /// Axes from hips or shoulders and the back; those of the world where roles are missing. An axis within 15° of a world axis is that axis.
-    fn at_rest(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let rest = skeleton.rest_positions();
-        let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
-        let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?).filter(|v| v.length() > 1e-4);
-        let middle = |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
-        let low = middle(Role::thigh).or_else(|| at(Role::Hips));
-        let high = at(Role::Head).or_else(|| middle(Role::upper_arm)).or_else(|| at(Role::Spine));
-        let left = snapped(across(Role::thigh).or_else(|| across(Role::upper_arm)));
-        let up = snapped(low.zip(high).map(|(low, high)| high - low));
-        let (Some(left), Some(up)) = (left, up) else {
-            return Self {
-                left: Vec3::X,
-                rotation: Quat::IDENTITY,
-            };
-        };
-        let Some(up) = (up - left * left.dot(up)).try_normalize() else {
-            return Self {
-                left,
-                rotation: Quat::IDENTITY,
-            };
-        };
-        let rotation = quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up))));
-        Self { left, rotation }
-    }
-}
-
-/// A unit vector, exactly along an axis of the world where it is within 15° of one.
-fn snapped(v: Option<Vec3>) -> Option<Vec3> {
-    let v = v?.try_normalize()?;
-    Some(
-        Vec3::AXES
-            .into_iter()
-            .flat_map(|axis| [axis, -axis])
-            .find(|axis| axis.dot(v) > 0.966)
-            .unwrap_or(v),
-    )
-}
-
 /// Whether the map keeps parents and offsets.
 fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     if map.source_of(0) != Some(0) {
@@ -365,21 +207,4 @@ fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(
         }
     }
     shares
-}
-
-/// The joints from the hips up to the head, both included; none where either is unknown or they are not above each other.
-fn back(skeleton: &Skeleton, roles: &Roles) -> Vec<usize> {
-    let joint = |role| roles.get_within(role, skeleton.len());
-    let (Some(hips), Some(head)) = (joint(Role::Hips), joint(Role::Head)) else {
-        return Vec::new();
-    };
-    if !is_below(skeleton, head, hips) {
-        return Vec::new();
-    }
-    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| skeleton.parent(j))
-        .take_while(|&joint| joint != hips)
-        .collect();
-    back.push(hips);
-    back.reverse();
-    back
 }

@@ -16,12 +16,7 @@ fn bones() -> Vec<[Role; 2]> {
     let limbs = |side| {
         let leg = Role::leg(side);
         let arm = Role::arm(side);
-        [
-            [leg[0], leg[1]],
-            [leg[1], leg[2]],
-            [arm[0], arm[1]],
-            [arm[1], arm[2]],
-        ]
+        [[leg[0], leg[1]], [leg[1], leg[2]], [arm[0], arm[1]], [arm[1], arm[2]]]
     };
     Side::BOTH.into_iter().flat_map(limbs).collect()
 }
@@ -283,8 +278,16 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
     let outwards = |name: &str| Quat::from_rotation_y(if name.starts_with("Left") { 0.35 } else { -0.35 });
     let joints = source.joints().iter().map(|joint| {
         let is_toe = joint.name.ends_with("Toe");
-        let offset = if is_toe { outwards(&joint.name) * (joint.offset - Vec3::Y * 0.04) } else { joint.offset };
-        Joint { offset, end_site: joint.end_site.map(|end| if is_toe { outwards(&joint.name) * end } else { end }), ..joint.clone() }
+        let offset = if is_toe {
+            outwards(&joint.name) * (joint.offset - Vec3::Y * 0.04)
+        } else {
+            joint.offset
+        };
+        Joint {
+            offset,
+            end_site: joint.end_site.map(|end| if is_toe { outwards(&joint.name) * end } else { end }),
+            ..joint.clone()
+        }
     });
     let target = Arc::new(Skeleton::new(joints.collect()).unwrap());
     let clip = wander(&source, 6, 9);
@@ -300,5 +303,33 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
                 assert!((ours * forward).distance(theirs * Vec3::Z) < 0.03, "{side:?}");
             }
         }
+    }
+}
+
+/// Thousands of joints, in a chain or all on one, take neither long nor all memory.
+#[test]
+fn strange_trees_come_through() {
+    type ParentOf = fn(usize) -> Option<usize>;
+    let shapes: [ParentOf; 2] = [|i| i.checked_sub(1), |i| (i > 0).then_some(0)];
+    for parent in shapes {
+        let joint = |i: usize| Joint {
+            name: format!("{i}"),
+            parent: parent(i),
+            offset: Vec3::Y * 0.01,
+            end_site: None,
+            channels: vec![],
+        };
+        let source = Arc::new(Skeleton::new((0..3000).map(joint).collect()).unwrap());
+        let target = fixtures::uneven(&source, 1.0, 0.3, 0.1, 3);
+        let roles = Roles::detect(&source);
+        let clip = wander_by(&source, 2, 1, 0.1);
+        let there = retarget(&clip, &roles, &target, &Roles::detect(&target)).unwrap();
+        assert_eq!(there.frames(), 2);
+        assert!(there.world_positions(0..2).iter().all(|p| p.is_finite()));
+        let mut sided = Roles::default();
+        sided.set(Role::LeftThigh, Some(1));
+        sided.set(Role::RightThigh, Some(2));
+        let twice = crate::clip::mirror(&clip, &sided).and_then(|once| crate::clip::mirror(&once, &sided));
+        assert!(twice.is_err() || twice.is_ok_and(|twice| twice.world_positions(0..2).iter().all(|p| p.is_finite())));
     }
 }

@@ -193,10 +193,21 @@ impl<'a> Shape<'a> {
             return;
         };
         // A leaf without a bone of its own marks where the head ends, and one of several leaves is an eye or an ear.
-        let marks_the_end = self.skeleton.joints()[highest].end_site.is_none_or(|end| end.length() < 1e-4 * self.height);
-        let has_brothers = self.skeleton.parent(highest).is_some_and(|parent| self.skeleton.children(parent).count() > 1);
-        let head = if marks_the_end || has_brothers { self.skeleton.parent(highest) } else { Some(highest) };
-        let head = head.filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips)).unwrap_or(highest);
+        let marks_the_end = self.skeleton.joints()[highest]
+            .end_site
+            .is_none_or(|end| end.length() < 1e-4 * self.height);
+        let has_brothers = self
+            .skeleton
+            .parent(highest)
+            .is_some_and(|parent| self.skeleton.children(parent).count() > 1);
+        let head = if marks_the_end || has_brothers {
+            self.skeleton.parent(highest)
+        } else {
+            Some(highest)
+        };
+        let head = head
+            .filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips))
+            .unwrap_or(highest);
         roles.assign(Role::Head, Some(head), Found::ByShape);
         let spine = self.path(hips, chest.unwrap_or(head)).first().copied();
         roles.assign(Role::Spine, spine.filter(|&spine| spine != head), Found::ByShape);
