@@ -81,13 +81,12 @@ pub(super) fn name(bytes: &[u8]) -> (String, bool) {
 /// Something found in a file, for a message: short, on one line, without control characters.
 pub(super) fn short(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
-    // Cut between characters: none is longer than four bytes.
     let head = &bytes[..bytes.len().min(4 * LONGEST)];
-    let text = head
-        .utf8_chunks()
-        .next()
-        .filter(|chunk| !chunk.valid().is_empty())
-        .map_or_else(|| name(head).0, |chunk| chunk.valid().to_owned());
+    let text = match std::str::from_utf8(head) {
+        // The cut went through a character: none is longer than four bytes.
+        Err(error) if head.len() < bytes.len() && error.valid_up_to() + 4 > head.len() => name(&head[..error.valid_up_to()]).0,
+        _ => name(head).0,
+    };
     let mut short = String::new();
     for c in text.chars().take(LONGEST) {
         if c.is_control() {
@@ -140,7 +139,7 @@ mod tests {
     #[test]
     fn what_is_quoted_stays_short_and_on_one_line() {
         assert_eq!(quoted(b"a\nb"), "`a\\nb`");
-        assert_eq!(quoted(&[0xe4]), "`ä`");
+        assert_eq!(quoted(b"S\xe4ule"), "`Säule`");
         assert_eq!(quoted(&[b'x'; 500]).chars().count(), 43);
         assert_eq!(quoted("目".repeat(100).as_bytes()), format!("`{}…`", "目".repeat(40)));
     }

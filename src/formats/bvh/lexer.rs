@@ -76,14 +76,6 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..end).unwrap_or_default()
     }
 
-    /// The next token and where it starts.
-    pub(super) fn token(&mut self) -> (&'a [u8], usize) {
-        let token = self.peek();
-        let at = self.at;
-        self.at += token.len();
-        (token, at)
-    }
-
     /// The rest of the line up to an opening brace, without white space at either end. What it ends with is not taken.
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = self.text.get(self.at..).unwrap_or_default();
@@ -93,7 +85,9 @@ impl<'a> Lexer<'a> {
             .position(|b| matches!(b, b'{' | b'\n' | b'\r'))
             .map_or(rest, |end| &rest[..end]);
         self.at += line.len();
-        line.trim_ascii()
+        let start = line.iter().position(|b| !is_space(*b)).unwrap_or(line.len());
+        let end = line.iter().rposition(|b| !is_space(*b)).map_or(start, |last| last + 1);
+        line.get(start..end).unwrap_or_default()
     }
 
     /// One number of the HIERARCHY section.
@@ -143,12 +137,19 @@ mod tests {
     #[test]
     fn tokens_end_at_white_space_and_braces() {
         let mut lexer = Lexer::new(b"# a\n  ROOT\tHips{ // b\r}x", false);
-        assert_eq!(lexer.token(), (b"ROOT".as_slice(), 6));
-        assert_eq!(lexer.rest_of_line(), b"Hips");
-        assert_eq!(lexer.token().0, b"{");
-        assert_eq!(lexer.token().0, b"}");
-        assert_eq!(lexer.token().0, b"x");
-        assert_eq!(lexer.token(), (b"".as_slice(), 24));
+        let mut take = |expected: &[u8], at: usize| {
+            assert_eq!((lexer.peek(), lexer.at), (expected, at));
+            lexer.at += expected.len();
+        };
+        take(b"ROOT", 6);
+        take(b"Hips", 11);
+        take(b"{", 15);
+        take(b"}", 22);
+        take(b"x", 23);
+        take(b"", 24);
+        lexer.at = 10;
+        assert_eq!((lexer.rest_of_line(), lexer.at), (b"Hips".as_slice(), 15));
+        lexer.at = 24;
         assert_eq!(lexer.unexpected("y").found, "the end of the file");
     }
 }

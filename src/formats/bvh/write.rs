@@ -60,8 +60,8 @@ pub struct WriteOptions {
 pub fn write(clip: &Clip, options: &WriteOptions) -> String {
     let writer = Writer::new(clip, options);
     let mut out = String::with_capacity(256 * clip.skeleton().len() + 9 * writer.columns() * clip.frames());
-    writer.hierarchy(&mut out);
-    writer.motion(&mut out);
+    let order = writer.hierarchy(&mut out);
+    writer.motion(&mut out, &order);
     out
 }
 
@@ -200,13 +200,15 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// HIERARCHY, without recursion: joints stand parents first, but not always right after their parent.
-    fn hierarchy(&self, out: &mut String) {
+    /// HIERARCHY. Returns the joints in the order in which they stand there, which is that of the numbers in a row: each is followed by all below
+    /// it, while a skeleton only has parents first. Without recursion.
+    fn hierarchy(&self, out: &mut String) -> Vec<usize> {
         let joints = self.clip.skeleton().joints();
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
         for (index, joint) in joints.iter().enumerate().skip(1) {
             children[joint.parent.unwrap_or_default()].push(index);
         }
+        let mut order = Vec::with_capacity(joints.len());
         out.push_str("HIERARCHY\n");
         // What is still to be written: joints to open, and depths to close.
         let mut todo = vec![Step::Open(0, 0)];
@@ -214,12 +216,14 @@ impl<'a> Writer<'a> {
             match step {
                 Step::Close(depth) => line(out, depth, "}"),
                 Step::Open(index, depth) => {
+                    order.push(index);
                     self.joint(out, index, depth, children[index].is_empty());
                     todo.push(Step::Close(depth));
                     todo.extend(children[index].iter().rev().map(|&child| Step::Open(child, depth + 1)));
                 }
             }
         }
+        order
     }
 
     fn joint(&self, out: &mut String, index: usize, depth: usize, is_leaf: bool) {
@@ -258,7 +262,7 @@ impl<'a> Writer<'a> {
         out.push('\n');
     }
 
-    fn motion(&self, out: &mut String) {
+    fn motion(&self, out: &mut String, order: &[usize]) {
         out.push_str("MOTION\nFrames: ");
         out.push_str(&self.clip.frames().to_string());
         out.push_str("\nFrame Time: ");
@@ -267,7 +271,8 @@ impl<'a> Writer<'a> {
         let mut before = vec![[0.0; 3]; self.plans.len()];
         for frame in 0..self.clip.frames() {
             let mut is_first = true;
-            for (index, plan) in self.plans.iter().enumerate() {
+            for &index in order {
+                let plan = &self.plans[index];
                 if plan.channels.is_empty() {
                     continue;
                 }
