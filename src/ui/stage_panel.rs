@@ -278,8 +278,8 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     let Some(first) = outcomes().next().filter(|_| low.is_finite()) else { return };
     let height = first.motion.roles.body_height(first.motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
-    bounds.add(low - glam::Vec3::new(0.4, 0.0, 0.4));
-    bounds.add(high + glam::Vec3::new(0.4, height, 0.4));
+    bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
+    bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
     let mut camera = camera_of(session);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
