@@ -6,9 +6,11 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue::blend::{DissolveOptions, RootBlend, Source, dissolve};
-use segue::clip::Clip;
+use segue::clip::{Clip, ContactOptions, Contacts};
+use segue::metrics::{Profile, Subject, TransitionMetrics};
 use segue::registration::{SearchOptions, TransitionSearch, limb_weights};
 use segue::skeleton::{Joint, Roles, Skeleton};
+use segue::synth::{Action, Params, synthesize};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -18,7 +20,7 @@ const FPS: f64 = 120.0;
 /// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
 fn skeleton() -> Arc<Skeleton> {
     let joint = |index: usize| {
-        let (chain, link) = ((index + 4) / 5, (index + 4) % 5);
+        let (chain, link) = (index.div_ceil(5), (index + 4) % 5);
         let parent = (index > 0).then(|| if link == 0 { 0 } else { index - 1 });
         let name = format!("Joint{index}");
         let turn = Quat::from_rotation_y(chain as f32);
@@ -92,12 +94,62 @@ fn blending(c: &mut Criterion) {
     let roles = Roles::detect(&skeleton);
     let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
     for root in [RootBlend::Velocity, RootBlend::World] {
-        let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
+        let options = DissolveOptions {
+            window: 120,
+            root,
+            ..DissolveOptions::default()
+        };
         c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
             bench.iter(|| dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits"));
         });
     }
 }
 
-criterion_group!(benches, registration, blending);
+fn measuring(c: &mut Criterion) {
+    let [walk, run] = [Action::Walk, Action::Run].map(|action| {
+        let clip = synthesize(&Params {
+            fps: 120.0,
+            duration_secs: 25.0,
+            ..Params::new(action)
+        })
+        .expect("natural parameters")
+        .clip;
+        let roles = Roles::detect(clip.skeleton());
+        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
+        (Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts), roles)
+    });
+    let ((a, roles), (b, _)) = (walk, run);
+    for window in [30, 120] {
+        let out = dissolve(
+            a.source(),
+            2_000,
+            b.source(),
+            500,
+            &DissolveOptions {
+                window,
+                ..DissolveOptions::default()
+            },
+        )
+        .expect("the window fits");
+        let (start, end) = (out.transition.start, out.transition.end);
+        let subject = Subject {
+            result: &out.clip,
+            start,
+            end,
+            enter: 500,
+            a: &a,
+            b: &b,
+            roles: &roles,
+            ground_m: 0.0,
+        };
+        c.bench_function(&format!("metrics, {window} frames"), |bench| {
+            bench.iter(|| TransitionMetrics::measure(black_box(&subject)))
+        });
+    }
+    c.bench_function("metrics, profile (once per clip)", |bench| {
+        bench.iter(|| Profile::new(Arc::clone(a.source()), &roles, a.contacts().clone()));
+    });
+}
+
+criterion_group!(benches, registration, blending, measuring);
 criterion_main!(benches);

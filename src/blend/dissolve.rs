@@ -86,7 +86,7 @@ impl Source {
     }
 
     /// The step of the character into `frame`, in its own frame at the frame before; into frame 0 the step that follows it (no other is known).
-    fn step_into(&self, frame: usize) -> Planar {
+    pub(crate) fn step_into(&self, frame: usize) -> Planar {
         let frame = frame.max(1);
         match (self.frames.get(frame - 1), self.frames.get(frame)) {
             (Some(before), Some(here)) => before.inverse().after(here),

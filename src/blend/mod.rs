@@ -2,6 +2,28 @@
 //!
 //! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in which
 //! `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`: the convention of [`crate::registration`].
+//!
+//! ```
+//! use segue::blend::{DissolveOptions, Source, dissolve};
+//! use segue::registration::{SearchOptions, best_transition, limb_weights};
+//! use segue::{skeleton::Roles, synth};
+//! use std::sync::Arc;
+//!
+//! let [walk, run] = [synth::Action::Walk, synth::Action::Run].map(|action| synth::synthesize(&synth::Params::new(action)));
+//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
+//! let roles = Roles::detect(walk.skeleton());
+//! let weights = limb_weights(walk.skeleton());
+//!
+//! // Where do half a second of walking and of running look most alike?
+//! let height = f64::from(roles.body_height(walk.skeleton()));
+//! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
+//!
+//! let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(run, &roles));
+//! let out = dissolve(&a, found.leave, &b, found.enter, &DissolveOptions { window: 30, ..DissolveOptions::default() })?;
+//! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
+//! assert_eq!(out.transition, found.leave..found.leave + 30);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod dissolve;
 mod place;

@@ -17,7 +17,8 @@ impl WeightLaw {
     /// The weight of the *outgoing* clip at `t` from 0 (weight 1) to 1 (weight 0). `t` is clamped; NaN counts as 0.
     #[must_use]
     pub fn alpha(self, t: f64) -> f64 {
-        let t = t.max(0.0).min(1.0);
+        // Not `clamp`, which keeps NaN.
+        let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
         match self {
             Self::Smooth => t * t * (2.0 * t - 3.0) + 1.0,
             Self::Linear => 1.0 - t,

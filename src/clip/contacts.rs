@@ -35,6 +35,13 @@ impl Default for ContactOptions {
 const REFERENCE_HEIGHT_M: f32 = 1.75;
 /// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and the dents of a soft floor.
 const GROUND_PERCENTILE: f32 = 0.05;
+/// A floor that leans in the capture lifts one foot's level over that of both feet by up to this much, metres. A foot that stays higher is held up.
+const LEANING_FLOOR_M: f32 = 0.05;
+/// Speed limits hold for bodies up to this speed, metres per second, and grow with it above: in a sprint a foot that stands rolls and
+/// trembles faster.
+const STEADY_SPEED_MPS: f32 = 2.0;
+/// The body's speed is measured over this time to either side, seconds: about one step.
+const BODY_SPEED_SECS: f64 = 0.25;
 
 /// When which foot stands on the ground.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,25 +52,29 @@ pub struct Contacts {
 impl Contacts {
     /// Finds the contacts of a clip's feet with the ground, by height and speed of ankles, toe joints and toe tips, with hysteresis.
     ///
-    /// A foot is planted while at least one of its points is. Each kind of point is measured against its own lowest level in the clip
-    /// (5th percentile over both feet), so a clip that floats 3 cm above the ground gives the same contacts, and an ankle need not
-    /// come down to the height of a toe.
+    /// A foot is planted while at least one of its points is. Each point is measured against its own lowest level in the clip (5th
+    /// percentile), so a clip that floats 3 cm above the ground gives the same contacts, and an ankle need not come down to the
+    /// height of a toe. Above 2 m/s the limits on speed grow in proportion to the body's own speed.
     #[must_use]
     pub fn detect(clip: &Clip, roles: &Roles, options: &ContactOptions) -> Self {
-        let points = foot_points(clip, roles);
+        let ways = Ways::of(clip, roles);
         let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
+        let haste = ways.haste(clip.fps(), scale);
         let min_frames = (f64::from(options.min_secs) * clip.fps()).round().max(0.0) as usize;
         let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
-        for kind in &points {
-            let heights: Vec<f32> = kind.iter().flat_map(|(_, way)| way.iter().map(|p| p.y)).collect();
-            let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else {
+        for kind in &ways.feet {
+            let heights = |way: &[Vec3]| way.iter().map(|p| p.y).collect::<Vec<f32>>();
+            let both: Vec<f32> = kind.iter().flat_map(|(_, way)| heights(way)).collect();
+            let Some(common) = stats::percentile(&both, GROUND_PERCENTILE) else {
                 continue;
             };
             for (side, way) in kind {
+                let own = stats::percentile(&heights(way), GROUND_PERCENTILE).unwrap_or(common);
+                let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };
                 let mut down = false;
                 for (frame, planted) in planted[side.index()].iter_mut().enumerate() {
                     let height = (way[frame].y - level) / scale;
-                    let speed = speed(way, frame, clip.fps()) / scale;
+                    let speed = speed(way, frame, clip.fps()) / scale / haste[frame];
                     down = if down {
                         height <= options.leave_height_m && speed <= options.leave_speed_mps
                     } else {
@@ -126,42 +137,63 @@ impl Contacts {
 /// The height of the ground under a clip, metres: the 5th percentile of the heights of the feet's lowest points. 0 for a clip without feet.
 #[must_use]
 pub fn ground_height(clip: &Clip, roles: &Roles) -> f32 {
-    let kinds = foot_points(clip, roles);
-    let heights: Vec<f32> = (0..clip.frames())
-        .filter_map(|frame| kinds.iter().flatten().map(|(_, way)| way[frame].y).min_by(f32::total_cmp))
-        .collect();
+    let ways = Ways::of(clip, roles);
+    let lowest = |frame: usize| ways.feet.iter().flatten().map(|(_, way)| way[frame].y).min_by(f32::total_cmp);
+    let heights: Vec<f32> = (0..clip.frames()).filter_map(lowest).collect();
     stats::percentile(&heights, GROUND_PERCENTILE).unwrap_or(0.0)
 }
 
-/// The ways of one kind of point, for each side that has it.
-type Ways = Vec<(Side, Vec<Vec3>)>;
+/// World positions, frame by frame.
+struct Ways {
+    /// Of ankles, toe joints and toe tips, for each side that has them.
+    feet: [Vec<(Side, Vec<Vec3>)>; 3],
+    /// Of the hips.
+    body: Vec<Vec3>,
+}
 
-/// World positions, frame by frame, of ankles, toe joints and toe tips.
-fn foot_points(clip: &Clip, roles: &Roles) -> [Ways; 3] {
-    let skeleton = clip.skeleton();
-    let joint = |role| roles.get_within(role, skeleton.len());
-    let mut wanted: Vec<(usize, Side, usize, Vec3)> = Vec::new();
-    for side in Side::BOTH {
-        let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-        wanted.extend(foot.map(|j| (0, side, j, Vec3::ZERO)));
-        wanted.extend(toe.map(|j| (1, side, j, Vec3::ZERO)));
-        // A foot without toes may have its tip at its own end.
-        let last = toe.or(foot);
-        wanted.extend(last.and_then(|j| Some((2, side, j, skeleton.joints()[j].end_site?))));
-    }
-    let mut kinds: [Ways; 3] = Default::default();
-    let mut ways: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
-        for (&(_, _, joint, point), way) in wanted.iter().zip(&mut ways) {
-            way.push(world.point(joint, point));
+impl Ways {
+    fn of(clip: &Clip, roles: &Roles) -> Self {
+        let skeleton = clip.skeleton();
+        let joint = |role| roles.get_within(role, skeleton.len());
+        let mut wanted: Vec<(usize, Side, usize, Vec3)> = Vec::new();
+        for side in Side::BOTH {
+            let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
+            wanted.extend(foot.map(|j| (0, side, j, Vec3::ZERO)));
+            wanted.extend(toe.map(|j| (1, side, j, Vec3::ZERO)));
+            // A foot without toes may have its tip at its own end.
+            let last = toe.or(foot);
+            wanted.extend(last.and_then(|j| Some((2, side, j, skeleton.joints()[j].end_site?))));
         }
+        let hips = joint(Role::Hips).unwrap_or(0);
+        let mut body = Vec::with_capacity(clip.frames());
+        let mut points: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
+        let mut world = WorldPose::default();
+        for frame in 0..clip.frames() {
+            clip.world_pose_into(frame, &mut world);
+            body.push(world.positions[hips]);
+            for (&(_, _, joint, point), way) in wanted.iter().zip(&mut points) {
+                way.push(world.point(joint, point));
+            }
+        }
+        let mut feet: [Vec<(Side, Vec<Vec3>)>; 3] = Default::default();
+        for ((kind, side, _, _), way) in wanted.into_iter().zip(points) {
+            feet[kind].push((side, way));
+        }
+        Self { feet, body }
     }
-    for ((kind, side, _, _), way) in wanted.into_iter().zip(ways) {
-        kinds[kind].push((side, way));
+
+    /// For every frame by how much the body is faster than steady, at least 1.
+    fn haste(&self, fps: f64, scale: f32) -> Vec<f32> {
+        let reach = ((BODY_SPEED_SECS * fps).round() as usize).max(1);
+        let last = self.body.len().saturating_sub(1);
+        let haste = |frame: usize| {
+            let (before, after) = (frame.saturating_sub(reach), (frame + reach).min(last));
+            let way = (self.body[after] - self.body[before]) * Vec3::new(1.0, 0.0, 1.0);
+            let secs = (after - before).max(1) as f32 / fps as f32;
+            (way.length() / secs / scale / STEADY_SPEED_MPS).max(1.0)
+        };
+        (0..self.body.len()).map(haste).collect()
     }
-    kinds
 }
 
 /// Speed by central differences, metres per second.
@@ -194,3 +226,6 @@ fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
         flags[range].fill(!value);
     }
 }
+
+#[cfg(test)]
+mod tests;

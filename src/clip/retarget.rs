@@ -38,3 +38,6 @@ pub fn retarget(clip: &Clip, source_roles: &Roles, target: &Arc<Skeleton>, targe
     }
     Ok(make(poses)?.with_provenance(clip.provenance()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,9 +18,9 @@ pub struct Velocities {
 /// When there is no such frame.
 #[must_use]
 pub fn velocities(clip: &Clip, frame: usize) -> Velocities {
-    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(clip.frames() - 1));
+    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(clip.frames().saturating_sub(1)));
     let joints = clip.skeleton().len();
-    if before == after {
+    if clip.frames() == 1 && frame == 0 {
         return Velocities {
             linear: vec![Vec3::ZERO; joints],
             angular: vec![Vec3::ZERO; joints],
@@ -36,5 +36,44 @@ pub fn velocities(clip: &Clip, frame: usize) -> Velocities {
             .zip(&to.rotations)
             .map(|(&a, &b)| quat::angular_velocity(a, b, dt_secs))
             .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::fixtures::wander;
+    use crate::skeleton::fixtures;
+    use glam::Quat;
+    use std::sync::Arc;
+
+    /// A body that circles around the origin at a constant rate, facing along its way.
+    #[test]
+    fn a_circle_has_the_speed_of_its_radius() {
+        let skeleton = fixtures::lafan();
+        let (rate, fps) = (1.5f32, 120.0);
+        let turn = |frame: usize| Quat::from_rotation_y(rate * frame as f32 / fps);
+        let rotations = (0..9)
+            .flat_map(|f| std::iter::once(turn(f)).chain(std::iter::repeat_n(Quat::IDENTITY, skeleton.len() - 1)))
+            .collect();
+        let roots = (0..9).map(|f| turn(f) * Vec3::X * 2.0).collect();
+        let clip = Clip::new("circle", Arc::clone(&skeleton), f64::from(fps), rotations, roots).unwrap();
+        for frame in 0..clip.frames() {
+            let (found, world) = (velocities(&clip, frame), clip.world_pose(frame));
+            // Central differences of a circle: exact but for the sine of the step, and one-sided ones lag by half a step.
+            let tolerance = if (1..8).contains(&frame) { 1e-3 } else { 0.03 };
+            for joint in 0..skeleton.len() {
+                let wanted = (Vec3::Y * rate).cross(world.positions[joint]);
+                assert!((found.linear[joint] - wanted).length() < tolerance, "{frame} {joint}");
+                assert!((found.angular[joint] - Vec3::Y * rate).length() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn one_frame_stands_still() {
+        let found = velocities(&wander(&fixtures::lafan(), 1, 3), 0);
+        assert!(found.linear.iter().chain(&found.angular).all(|v| *v == Vec3::ZERO));
+        assert_eq!(found.linear.len(), fixtures::lafan().len());
     }
 }

@@ -1,19 +1,35 @@
-//! stub
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MetricId {
-    SeamSpeed,
+//! Artefacts as numbers with a unit: what a viewer would point at, measured.
+
+mod profile;
+mod transition;
+
+pub use profile::Profile;
+pub use transition::{Subject, TransitionMetrics};
+
+/// Which way a number should go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Better {
+    /// Smaller is better; 0 is perfect.
+    Lower,
+    /// Larger is better.
+    Higher,
+    /// Neither: it describes.
+    Neutral,
 }
-#[derive(Clone, Debug, PartialEq)]
+
+/// One number for a person.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    pub id: MetricId,
+    /// The key in links, exports and comparisons; never changes.
+    pub id: &'static str,
+    /// What it is called.
     pub label: &'static str,
+    /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no change of speed).
     pub value: Option<f64>,
+    /// The unit, as written behind the number.
     pub unit: &'static str,
+    /// Which way it should go.
+    pub better: Better,
+    /// One or two sentences: what it means and how it is measured.
     pub help: &'static str,
 }
-impl Metric {
-    pub fn format(&self) -> String {
-        String::new()
-    }
-}
-pub struct TransitionMetrics;

@@ -13,6 +13,7 @@
 //! centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
 
 mod align;
+mod distance;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod grid;
@@ -20,7 +21,8 @@ mod points;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use grid::{DistanceGrid, PairSums, Progress};
+pub use distance::DistanceGrid;
+pub use grid::{PairSums, Progress};
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 

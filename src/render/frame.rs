@@ -117,7 +117,12 @@ fn bytes(color: Color) -> [u8; 4] {
 /// The viewport's part inside a stage of that size.
 fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
     let (x, y) = (viewport.x.min(width), viewport.y.min(height));
-    Viewport { x, y, width: viewport.width.min(width - x), height: viewport.height.min(height - y) }
+    Viewport {
+        x,
+        y,
+        width: viewport.width.min(width - x),
+        height: viewport.height.min(height - y),
+    }
 }
 
 impl Frame {
@@ -139,13 +144,19 @@ impl Frame {
             let figures = self.add_figures(pane, viewport);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
-                self.strokes.extend(pane.strokes.iter().filter(|s| s.layer == layer).filter_map(stroke_instance));
+                self.strokes
+                    .extend(pane.strokes.iter().filter(|s| s.layer == layer).filter_map(stroke_instance));
                 start..self.strokes.len() as u32
             });
             let rings = self.rings.len() as u32;
             self.rings.extend(pane.rings.iter().filter_map(ring_instance));
             self.views.push(view_uniform(pane, viewport, stage));
-            self.panes.push(PaneDraw { viewport, figures, strokes, rings: rings..self.rings.len() as u32 });
+            self.panes.push(PaneDraw {
+                viewport,
+                figures,
+                strokes,
+                rings: rings..self.rings.len() as u32,
+            });
         }
     }
 
@@ -154,7 +165,9 @@ impl Frame {
         let height = viewport.height as f32;
         let [_, _, back] = pane.camera.axes();
         for figure in &pane.figures {
-            let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else { continue };
+            let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
+                continue;
+            };
             let is_fine = |limb: &Limb| {
                 limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
             };
@@ -171,7 +184,8 @@ impl Frame {
                 ghost: figure.ghost,
                 depth: if depth.is_finite() { depth } else { 0.0 },
             });
-            self.figure_uniforms.push(figure_uniform(if figure.ghost { &[] } else { limbs }, figure.shadow));
+            self.figure_uniforms
+                .push(figure_uniform(if figure.ghost { &[] } else { limbs }, figure.shadow));
         }
         self.sort_figures(first);
         first..self.figures.len()
@@ -219,7 +233,10 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
 }
 
 fn figure_uniform(limbs: &[Limb], shadow: f32) -> FigureUniform {
-    let mut uniform = FigureUniform { about: [0.0, 0.0, shadow, 0.0], occluders: [[0.0; 4]; 2 * OCCLUDERS] };
+    let mut uniform = FigureUniform {
+        about: [0.0, 0.0, shadow, 0.0],
+        occluders: [[0.0; 4]; 2 * OCCLUDERS],
+    };
     let mut count = 0;
     for (limb, pair) in limbs.iter().zip(uniform.occluders.chunks_exact_mut(2)) {
         // Between the half width and the half depth of a flattened limb.
@@ -238,8 +255,16 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {
     let [right, up, back] = camera.axes();
     let aspect = viewport.aspect();
     let orthographic = camera.lens == Lens::Orthographic;
-    let half_height = if orthographic { camera.half_height() } else { (camera.fov_y * 0.5).tan() };
-    let scale = if stage.pixels_per_point > 0.0 { stage.pixels_per_point } else { 1.0 };
+    let half_height = if orthographic {
+        camera.half_height()
+    } else {
+        (camera.fov_y * 0.5).tan()
+    };
+    let scale = if stage.pixels_per_point > 0.0 {
+        stage.pixels_per_point
+    } else {
+        1.0
+    };
     // The main light stands over the camera's left shoulder, so that the body is modelled from all sides.
     let level_back = Vec3::new(camera.yaw.sin(), 0.0, camera.yaw.cos());
     let key = (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y);

@@ -46,7 +46,9 @@ pub(crate) fn render_to_image(
     if width == 0 || height == 0 || width > largest || height > largest {
         return Err(ImageError::Size(width, height));
     }
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("stage image") });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+        label: Some("stage image"),
+    });
     renderer.prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height]);
     let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -60,9 +62,17 @@ pub(crate) fn render_to_image(
             view.targets.color.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: None,
+                },
             },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
         );
     }
     let submitted = queue.submit([encoder.finish()]);
@@ -75,11 +85,18 @@ pub(crate) fn render_to_image(
     });
     let device_error = |e: &dyn std::fmt::Display| ImageError::Device(e.to_string());
     device
-        .poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: Some(Duration::from_secs(20)) })
+        .poll(wgpu::PollType::Wait {
+            submission_index: Some(submitted),
+            timeout: Some(Duration::from_secs(20)),
+        })
         .map_err(|e| device_error(&e))?;
     receiver.try_recv().map_err(|e| device_error(&e))?.map_err(|e| device_error(&e))?;
     let mapped = buffer.slice(..).get_mapped_range().map_err(|e| device_error(&e))?;
-    let rgba = mapped.chunks_exact(row as usize).flat_map(|line| line.iter().take(width as usize * 4)).copied().collect();
+    let rgba = mapped
+        .chunks_exact(row as usize)
+        .flat_map(|line| line.iter().take(width as usize * 4))
+        .copied()
+        .collect();
     Ok(Image { width, height, rgba })
 }
 

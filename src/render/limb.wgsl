@@ -58,7 +58,7 @@ fn bend(limb: Limb) -> Bent {
         side = flat_axis;
     }
     side = normalize(side);
-    let other = cross(side, axis);
+    let other = cross(axis, side);
 
     // Both balls touch the hull where its normal stands `tilt` over the cross-section: there the caps begin.
     let tilt = asin(clamp((limb.a.w - limb.b.w) / max(len, 1e-6), -1.0, 1.0));

@@ -51,7 +51,11 @@ const OVER: wgpu::BlendState = wgpu::BlendState::ALPHA_BLENDING;
 
 /// Takes light away: the target's alpha is what is left of it.
 const DARKEN: wgpu::BlendState = wgpu::BlendState {
-    color: wgpu::BlendComponent { src_factor: wgpu::BlendFactor::Zero, dst_factor: wgpu::BlendFactor::One, operation: wgpu::BlendOperation::Add },
+    color: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    },
     alpha: wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Zero,
         dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
@@ -90,12 +94,19 @@ impl Pipelines {
         let view_layout = uniform_layout(device, "stage view", size_of::<ViewUniform>());
         let figure_layout = uniform_layout(device, "stage figure", size_of::<FigureUniform>());
         let layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
-            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label: Some(label), bind_group_layouts: groups, immediate_size: 0 })
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            })
         };
         let plain = layout("stage", &[Some(&view_layout)]);
         let bodily = layout("stage bodies", &[Some(&view_layout), Some(&figure_layout)]);
         let shader = |label, source: &'static str| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(source.into()) })
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(label),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            })
         };
         let (limb, shadow, ground) = (shader("limb", LIMB), shader("shadow", SHADOW), shader("ground", GROUND));
         let (line, ring) = (shader("line", LINE), shader("ring", RING));
@@ -119,7 +130,10 @@ impl Pipelines {
         let limb_buffer = instances(size_of::<LimbInstance>(), &limb_attributes[..]);
         let limb_buffers = [Some(mesh_buffer), Some(limb_buffer.clone())];
         // The shadow reads the limbs, but for their colour.
-        let shadow_buffers = [Some(wgpu::VertexBufferLayout { attributes: &limb_attributes[..3], ..limb_buffer })];
+        let shadow_buffers = [Some(wgpu::VertexBufferLayout {
+            attributes: &limb_attributes[..3],
+            ..limb_buffer
+        })];
         let line_buffers = [Some(instances(size_of::<StrokeInstance>(), &line_attributes[..]))];
         let ring_buffers = [Some(instances(size_of::<RingInstance>(), &ring_attributes[..]))];
 
@@ -208,7 +222,11 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: recipe.buffers,
         },
-        primitive: wgpu::PrimitiveState { topology: recipe.topology, cull_mode: recipe.cull, ..wgpu::PrimitiveState::default() },
+        primitive: wgpu::PrimitiveState {
+            topology: recipe.topology,
+            cull_mode: recipe.cull,
+            ..wgpu::PrimitiveState::default()
+        },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(write),
@@ -216,12 +234,19 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: sample_count, ..wgpu::MultisampleState::default() },
+        multisample: wgpu::MultisampleState {
+            count: sample_count,
+            ..wgpu::MultisampleState::default()
+        },
         fragment: Some(wgpu::FragmentState {
             module: recipe.shader,
             entry_point: Some(recipe.entries[1]),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: recipe.blend, write_mask: recipe.writes })],
+            targets: &[Some(wgpu::ColorTargetState {
+                format: COLOR_FORMAT,
+                blend: recipe.blend,
+                write_mask: recipe.writes,
+            })],
         }),
         multiview_mask: None,
         cache: None,
@@ -268,7 +293,11 @@ fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat)
             module: &shader,
             entry_point: Some(if output_format.is_srgb() { "fs_linear" } else { "fs_encoded" }),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState { format: output_format, blend: None, write_mask: wgpu::ColorWrites::ALL })],
+            targets: &[Some(wgpu::ColorTargetState {
+                format: output_format,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
         }),
         multiview_mask: None,
         cache: None,

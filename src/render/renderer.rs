@@ -54,7 +54,11 @@ struct GrowingBuffer {
 
 impl GrowingBuffer {
     fn new(label: &'static str, usage: wgpu::BufferUsages) -> Self {
-        Self { label, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None }
+        Self {
+            label,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            buffer: None,
+        }
     }
 
     /// Writes `bytes`; `true` where the buffer was made anew.
@@ -109,11 +113,19 @@ fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
 fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &GrowingBuffer, size: usize) -> Option<wgpu::BindGroup> {
     let buffer = buffer.buffer.as_ref()?;
     Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(if size == size_of::<ViewUniform>() { "stage view" } else { "stage figure" }),
+        label: Some(if size == size_of::<ViewUniform>() {
+            "stage view"
+        } else {
+            "stage figure"
+        }),
         layout,
         entries: &[wgpu::BindGroupEntry {
             binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size: wgpu::BufferSize::new(size as u64) }),
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer,
+                offset: 0,
+                size: wgpu::BufferSize::new(size as u64),
+            }),
         }],
     }))
 }
@@ -121,11 +133,17 @@ fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: 
 impl StageRenderer {
     /// Makes what all stages share. `output_format` is the format of the page's target.
     pub(crate) fn new(device: &wgpu::Device, adapter: &wgpu::Adapter, output_format: wgpu::TextureFormat) -> Self {
-        let smooth = [COLOR_FORMAT, DEPTH_FORMAT].iter().all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(4));
+        let smooth = [COLOR_FORMAT, DEPTH_FORMAT]
+            .iter()
+            .all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(4));
         let mesh = |sides, rings| {
             let mesh = ConeMesh::new(sides, rings);
             let buffer = |label, contents: &[u8], usage| {
-                device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+                device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                    label: Some(label),
+                    contents,
+                    usage,
+                })
             };
             Mesh {
                 vertices: buffer("cone", bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
@@ -176,7 +194,12 @@ impl StageRenderer {
         self.views.retain(|(key, view)| *key == id || view.idle < FORGET_AFTER);
         let mut view = match self.views.iter().position(|(key, _)| *key == id) {
             Some(index) => self.views.swap_remove(index).1,
-            None => View::new(Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count)),
+            None => View::new(Targets::new(
+                device,
+                &self.pipelines.composite_layout,
+                size,
+                self.pipelines.sample_count,
+            )),
         };
         view.idle = 0;
         if view.targets.size != size {
@@ -205,7 +228,17 @@ impl StageRenderer {
 
     fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, view: &mut View) {
         let (view_stride, figure_stride) = (self.view_stride(), self.figure_stride());
-        let View { drawn, limbs, strokes, rings, view_uniforms, figure_uniforms, view_group, figure_group, .. } = view;
+        let View {
+            drawn,
+            limbs,
+            strokes,
+            rings,
+            view_uniforms,
+            figure_uniforms,
+            view_group,
+            figure_group,
+            ..
+        } = view;
         limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
         strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));
         rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
@@ -229,14 +262,26 @@ impl StageRenderer {
                 depth_slice: None,
                 resolve_target: targets.samples.as_ref().map(|_| &targets.color_view),
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r: clear[0], g: clear[1], b: clear[2], a: 1.0 }),
+                    load: wgpu::LoadOp::Clear(wgpu::Color {
+                        r: clear[0],
+                        g: clear[1],
+                        b: clear[2],
+                        a: 1.0,
+                    }),
                     // The samples are done with once they are resolved.
-                    store: if targets.samples.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                    store: if targets.samples.is_some() {
+                        wgpu::StoreOp::Discard
+                    } else {
+                        wgpu::StoreOp::Store
+                    },
                 },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
                 stencil_ops: None,
             }),
             ..Default::default()
@@ -251,8 +296,22 @@ impl StageRenderer {
     }
 
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) {
-        let Pipelines { ground, shadow, shade, ring, flat_line, space_line, solid, edge, ghost_depth, ghost, .. } = &self.pipelines;
-        let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else { return };
+        let Pipelines {
+            ground,
+            shadow,
+            shade,
+            ring,
+            flat_line,
+            space_line,
+            solid,
+            edge,
+            ghost_depth,
+            ghost,
+            ..
+        } = &self.pipelines;
+        let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else {
+            return;
+        };
         let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
             pass.set_bind_group(1, view.figure_group.as_ref(), &[(index * self.figure_stride()) as u32]);

@@ -28,7 +28,7 @@ struct Blot {
 }
 
 fn blur_at(height: f32) -> f32 {
-    return 0.014 + 0.34 * max(height, 0.0);
+    return 0.012 + 0.26 * max(height, 0.0);
 }
 
 @vertex
@@ -80,5 +80,5 @@ fn fs_shadow(in: Blot) -> @location(0) vec4f {
     let across = blurred_box(-radius - in.at.y, radius - in.at.y, sigma);
     let along = blurred_box(-0.85 * in.size.y - in.at.x, len + 0.85 * in.size.z - in.at.x, sigma);
     let dark = clamp(across * along, 0.0, 1.0) * figure.about.z;
-    return vec4f(0.0, 0.0, 0.0, dark + dither(in.clip.xy));
+    return vec4f(0.0, 0.0, 0.0, dark);
 }

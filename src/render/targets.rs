@@ -22,7 +22,11 @@ impl Targets {
         let texture = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
-                size: wgpu::Extent3d { width: size[0].max(1), height: size[1].max(1), depth_or_array_layers: 1 },
+                size: wgpu::Extent3d {
+                    width: size[0].max(1),
+                    height: size[1].max(1),
+                    depth_or_array_layers: 1,
+                },
                 mip_level_count: 1,
                 sample_count,
                 dimension: wgpu::TextureDimension::D2,
@@ -32,8 +36,12 @@ impl Targets {
             })
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let color =
-            texture("stage", COLOR_FORMAT, 1, attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC);
+        let color = texture(
+            "stage",
+            COLOR_FORMAT,
+            1,
+            attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
+        );
         let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
         let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let samples = (sample_count > 1).then(|| view(texture("stage samples", COLOR_FORMAT, sample_count, attachment)));
@@ -41,8 +49,18 @@ impl Targets {
         let composite = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("stage composite"),
             layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&color_view) }],
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&color_view),
+            }],
         });
-        Self { size, color, color_view, samples, depth, composite }
+        Self {
+            size,
+            color,
+            color_view,
+            samples,
+            depth,
+            composite,
+        }
     }
 }

@@ -167,7 +167,7 @@ pub fn split_reference(reference: &str) -> (&str, &str, usize) {
 
 /// A file's name without folders and ending.
 #[must_use]
-pub fn file_stem(name: &str) -> &str {
+pub(super) fn file_stem(name: &str) -> &str {
     let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
     match name.rsplit_once('.') {
         Some((stem, _)) if !stem.is_empty() => stem,

@@ -1,4 +1,4 @@
-use super::roles::are_counterparts;
+use super::roles::{Tokens, are_counterparts, read};
 use super::{Pose, Role, Roles, Side, Skeleton};
 use crate::math::quat;
 use glam::{Quat, Vec3};
@@ -7,6 +7,9 @@ use glam::{Quat, Vec3};
 const NEARLY_AN_AXIS: f32 = 0.966;
 /// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this share of its distance.
 const SHAPE_TOLERANCE: f32 = 0.35;
+
+/// Joints with more children than this (no body has them) are compared by role and name only: comparing shapes takes their number squared.
+const MOST_SIBLINGS: usize = 256;
 
 /// A skeleton in which no joint of the left has a counterpart on the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -138,14 +141,10 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
     let by_role = Role::ALL.into_iter().filter(|role| role.side() == Some(Side::Left));
     let mut differences: Vec<Vec3> = by_role.filter_map(|role| Some(at(role)? - at(role.mirrored())?)).collect();
     if differences.is_empty() {
-        let joints = skeleton.joints();
-        for (a, first) in joints.iter().enumerate() {
-            let second = joints
-                .iter()
-                .enumerate()
-                .skip(a + 1)
-                .find(|(_, second)| are_counterparts(&first.name, &second.name));
-            differences.extend(second.map(|(b, _)| rest[a] - rest[b]));
+        let names: Vec<Tokens> = skeleton.joints().iter().map(|joint| read(&joint.name)).collect();
+        for (a, first) in names.iter().enumerate().filter(|(_, name)| name.side == Some(Side::Left)) {
+            let second = names.iter().position(|second| are_counterparts(first, second));
+            differences.extend(second.map(|b| rest[a] - rest[b]));
         }
     }
     // Which of a pair is the left one does not matter for a plane, but they must not cancel out.
@@ -165,6 +164,7 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
 /// What is needed to find the counterparts.
 struct Pairing<'a> {
     skeleton: &'a Skeleton,
+    names: Vec<Tokens>,
     children: Vec<Vec<usize>>,
     /// For every joint, the roles of itself and all joints below, as bits.
     roles_below: Vec<u32>,
@@ -200,8 +200,10 @@ impl<'a> Pairing<'a> {
             .enumerate()
             .map(|(index, (sum, count))| *sum / *count - from(index))
             .collect();
+        let names = joints.iter().map(|joint| read(&joint.name)).collect();
         Self {
             skeleton,
+            names,
             children,
             roles_below,
             centres,
@@ -249,11 +251,11 @@ impl<'a> Pairing<'a> {
                 (a == b).then_some((3, cost))
             };
         }
-        let joints = self.skeleton.joints();
-        if a != b && are_counterparts(&joints[a].name, &joints[b].name) {
+        if a != b && are_counterparts(&self.names[a], &self.names[b]) {
             return Some((1, cost));
         }
-        let fits = cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
+        let siblings = self.skeleton.parent(a).map_or(0, |parent| self.children[parent].len());
+        let fits = siblings <= MOST_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
         // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a tail.
         if fits {
             Some((2, cost))
@@ -293,4 +295,72 @@ fn mirrored_roles(bits: u32) -> u32 {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::super::{Joint, fixtures};
+    use super::*;
+
+    fn counterpart_names(skeleton: &Skeleton, roles: &Roles, names: &Skeleton) -> Vec<(String, String)> {
+        let mirror = Mirror::of(skeleton, roles).unwrap();
+        let name = |joint: usize| names.joints()[joint].name.clone();
+        (0..skeleton.len())
+            .map(|joint| (name(joint), name(mirror.counterpart(joint).unwrap())))
+            .collect()
+    }
+
+    /// With names or without: fingers, eyes, collar bones and twist joints have their counterparts.
+    #[test]
+    fn every_joint_of_every_rig_has_its_counterpart() {
+        for (rig, skeleton, _) in fixtures::all() {
+            for seed in 0..3 {
+                let (skeleton, _) = fixtures::shuffled(&fixtures::uneven(&skeleton, 1.0, 0.02, 0.03, seed), seed);
+                let roles = fixtures::roles(&skeleton);
+                for names_count in [true, false] {
+                    let seen = if names_count {
+                        skeleton.clone()
+                    } else {
+                        fixtures::nameless(&skeleton)
+                    };
+                    for (name, other) in counterpart_names(&seen, &roles, &skeleton) {
+                        let (ours, theirs) = (read(&name), read(&other));
+                        assert!(name == other || are_counterparts(&ours, &theirs), "{rig}: {name} and {other}");
+                        let is_sided = ours.side.is_some() && name != "L5";
+                        assert_eq!(name != other, is_sided, "{rig}: {name} and {other}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_joint_on_one_side_only_keeps_what_it_does() {
+        let mut joints = fixtures::lafan().joints().to_vec();
+        let hand = joints.iter().position(|joint| joint.name == "RightHand");
+        joints.push(Joint {
+            name: "Sword".into(),
+            parent: hand,
+            offset: Vec3::NEG_X * 0.1,
+            end_site: None,
+            channels: vec![],
+        });
+        let skeleton = Skeleton::new(joints).unwrap();
+        let mirror = Mirror::of(&skeleton, &fixtures::roles(&skeleton)).unwrap();
+        assert_eq!(mirror.counterpart(skeleton.len() - 1), None);
+        let mut pose = Pose {
+            rotations: vec![Quat::IDENTITY; skeleton.len()],
+            ..Pose::default()
+        };
+        pose.rotations[skeleton.len() - 1] = Quat::from_rotation_x(0.5);
+        assert_eq!(mirror.pose(&pose).rotations[skeleton.len() - 1], Quat::from_rotation_x(0.5));
+    }
+
+    #[test]
+    fn corrections_undo_each_other() {
+        let skeleton = fixtures::uneven(&fixtures::mixamo(), 1.0, 0.3, 0.2, 6);
+        let mirror = Mirror::of(&skeleton, &fixtures::roles(&skeleton)).unwrap();
+        for joint in 0..skeleton.len() {
+            let other = mirror.counterpart(joint).unwrap();
+            let back = mirror.reflected_rotation(mirror.corrections[other]) * mirror.corrections[joint];
+            assert!(quat::log(back).length() < 1e-6, "{joint}");
+        }
+    }
+}

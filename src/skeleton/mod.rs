@@ -1,7 +1,10 @@
 //! Skeletons, poses, forward kinematics, and what a joint is for.
 
+mod ancestry;
+mod corrections;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod joint_map;
 mod kinematics;
 mod mirror;
 mod pose;
@@ -10,10 +13,11 @@ mod role;
 mod roles;
 mod tree;
 
+pub use joint_map::JointMap;
 pub use kinematics::{WorldPose, world_pose, world_pose_into};
 pub use mirror::{Mirror, NoSides};
 pub use pose::Pose;
-pub use retarget::{JointMap, Retargeting};
+pub use retarget::Retargeting;
 pub use role::{Role, Side};
 pub use roles::{Found, Roles};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};

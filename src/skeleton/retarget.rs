@@ -1,109 +1,12 @@
-use super::roles::is_below;
-use super::{Pose, Role, Roles, Side, Skeleton, WorldPose, world_pose};
+use super::corrections::{BodyAxes, back, corrections};
+use super::joint_map::JointMap;
+use super::{Pose, Role, Roles, Skeleton, WorldPose, world_pose};
 use crate::math::quat;
-use glam::{Mat3, Quat, Vec3};
+use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Rest directions that differ by less are the same by intention, radians (2°): local rotations are then copied as they are.
-const SAME_DIRECTION_RADIANS: f32 = 0.035;
 /// Offsets that differ by less are the same, metres.
 const SAME_OFFSET_M: f32 = 1e-5;
-
-/// Which joint of a source skeleton drives which joint of a target: by name and by role, never by index.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct JointMap {
-    sources: Vec<Option<usize>>,
-}
-
-impl JointMap {
-    /// Maps joint by joint.
-    ///
-    /// Joints that have a role go to the joint of that role, because one name means different joints in different rigs (`LeftShoulder` is a
-    /// collar bone here and an upper arm there). Then the joints where both arms meet go to each other, and the collar bones. All others go
-    /// to the joint of the same name, if it lies below the joint that drives their parent.
-    #[must_use]
-    pub fn between(target: &Skeleton, target_roles: &Roles, source: &Skeleton, source_roles: &Roles) -> Self {
-        let mut sources: Vec<Option<usize>> = vec![None; target.len()];
-        for role in Role::ALL {
-            if let (Some(to), Some(from)) = (
-                target_roles.get_within(role, target.len()),
-                source_roles.get_within(role, source.len()),
-            ) {
-                sources[to] = Some(from);
-            }
-        }
-        let (to, from) = (Landmarks::of(target, target_roles), Landmarks::of(source, source_roles));
-        for (to, from) in to.pairs(&from) {
-            // The chest may be the spine's only joint, and what the arms hang on matters more.
-            if sources[to].is_none() || target_roles.role_of(to) == Some(Role::Spine) {
-                sources[to] = Some(from);
-            }
-        }
-        for joint in 0..target.len() {
-            if sources[joint].is_none() {
-                sources[joint] = by_name(target, joint, source, source_roles, &sources);
-            }
-        }
-        Self { sources }
-    }
-
-    /// The source's joint that drives a joint of the target.
-    #[must_use]
-    pub fn source_of(&self, target_joint: usize) -> Option<usize> {
-        self.sources.get(target_joint).copied().flatten()
-    }
-
-    /// The number of joints of the target that are driven.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.sources.iter().flatten().count()
-    }
-}
-
-/// The source's joint of the same name, if it has no role, drives no other joint, and lies below what drives the nearest driven joint above.
-fn by_name(target: &Skeleton, joint: usize, source: &Skeleton, source_roles: &Roles, sources: &[Option<usize>]) -> Option<usize> {
-    let name = &target.joints()[joint].name;
-    let above = std::iter::successors(target.parent(joint), |&j| target.parent(j)).find_map(|j| sources[j]);
-    let fits = |from: usize| {
-        source_roles.role_of(from).is_none() && !sources.contains(&Some(from)) && above.is_none_or(|above| is_below(source, from, above))
-    };
-    (0..source.len()).find(|&from| source.joints()[from].name == *name && fits(from))
-}
-
-/// Joints that follow from roles: where the arms meet, and the collar bones.
-struct Landmarks {
-    chest: Option<usize>,
-    collars: [Option<usize>; 2],
-}
-
-impl Landmarks {
-    fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let above = |joint: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j));
-        let arms = Side::BOTH.map(|side| roles.get_within(Role::upper_arm(side), skeleton.len()));
-        let chest = match arms {
-            [Some(left), Some(right)] => above(left).find(|&joint| is_below(skeleton, right, joint)),
-            _ => None,
-        };
-        // A chest that is the hips says nothing about a back.
-        let chest = chest.filter(|&chest| roles.role_of(chest) != Some(Role::Hips) && chest > 0);
-        let collar = |arm: Option<usize>| {
-            above(arm?)
-                .take_while(|&joint| Some(joint) != chest)
-                .last()
-                .filter(|_| chest.is_some())
-        };
-        Self {
-            chest,
-            collars: arms.map(collar),
-        }
-    }
-
-    fn pairs(&self, source: &Self) -> impl Iterator<Item = (usize, usize)> {
-        let ours = [self.chest, self.collars[0], self.collars[1]];
-        let theirs = [source.chest, source.collars[0], source.collars[1]];
-        ours.into_iter().zip(theirs).filter_map(|(to, from)| Some((to?, from?)))
-    }
-}
 
 /// How poses of one skeleton become poses of another.
 ///
@@ -136,81 +39,29 @@ impl Retargeting {
             return None;
         }
         let same_rig = is_same_rig(source, target, &map);
-        let (from_body, to_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
-        let whole_body = from_body.rotation * to_body.rotation.conjugate();
+        let (source_body, target_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
+        let corrections = if same_rig {
+            vec![Quat::IDENTITY; target.len()]
+        } else {
+            corrections(source, &source_body, target, target_roles, &map)
+        };
         let scale = if same_rig {
             1.0
         } else {
             scale(source, source_roles, target, target_roles)
         };
         let hips_of = |skeleton: &Skeleton, roles: &Roles| roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0);
-        let mut retargeting = Self {
-            corrections: vec![Quat::IDENTITY; target.len()],
+        Some(Self {
             shares: back_shares(target, target_roles, &map),
             hips: (hips_of(source, source_roles), hips_of(target, target_roles)),
             source: Arc::clone(source),
             target: Arc::clone(target),
             map,
-            whole_body,
+            whole_body: source_body.rotation * target_body.rotation.conjugate(),
+            corrections,
             scale,
             same_rig,
-        };
-        if !same_rig {
-            retargeting.find_corrections(target_roles, from_body.left);
-        }
-        Some(retargeting)
-    }
-
-    fn find_corrections(&mut self, target_roles: &Roles, source_left: Vec3) {
-        let (source_rest, target_rest) = (self.source.rest_positions(), self.target.rest_positions());
-        for joint in 0..self.target.len() {
-            let Some(from) = self.map.source_of(joint) else { continue };
-            let bones = self.bone(joint, from, target_roles, &source_rest, &target_rest);
-            self.corrections[joint] = match bones {
-                Bone::Direction { target, source } => turn_about(self.whole_body * target, source, source_left) * self.whole_body,
-                Bone::Trunk => self.whole_body,
-                // A hand without fingers is straight where the other one is: it bends against its forearm as in the source.
-                Bone::None => self.driven_above(joint).map_or(self.whole_body, |above| self.corrections[above]),
-            };
-        }
-    }
-
-    fn driven_above(&self, joint: usize) -> Option<usize> {
-        std::iter::successors(self.target.parent(joint), |&j| self.target.parent(j)).find(|&j| self.map.source_of(j).is_some())
-    }
-
-    /// The bones that start at a joint of the target and at the one that drives it, both to joints (or ends) that correspond.
-    fn bone(&self, joint: usize, from: usize, target_roles: &Roles, source_rest: &[Vec3], target_rest: &[Vec3]) -> Bone {
-        let role = target_roles.role_of(joint);
-        let arms_hang_on_it = Landmarks::of(&self.target, target_roles).chest == Some(joint);
-        if role == Some(Role::Hips) || arms_hang_on_it || (role.is_none() && joint == 0) {
-            return Bone::Trunk;
-        }
-        let long = |v: Vec3| v.length() > 1e-4;
-        // Toes of a foot come before its heel, the forearm before a muscle: joints with roles first, then the nearest in the tree.
-        let mut below: Vec<usize> = (joint + 1..self.target.len())
-            .filter(|&j| is_below(&self.target, j, joint))
-            .collect();
-        below.sort_by_key(|&j| (target_roles.role_of(j).is_none(), j));
-        for below in below {
-            let Some(end) = self.map.source_of(below).filter(|&end| is_below(&self.source, end, from)) else {
-                continue;
-            };
-            let (ours, theirs) = (target_rest[below] - target_rest[joint], source_rest[end] - source_rest[from]);
-            if long(ours) && long(theirs) {
-                return Bone::Direction {
-                    target: ours,
-                    source: theirs,
-                };
-            }
-        }
-        match (self.target.joints()[joint].end_site, self.source.joints()[from].end_site) {
-            (Some(ours), Some(theirs)) if long(ours) && long(theirs) => Bone::Direction {
-                target: ours,
-                source: theirs,
-            },
-            _ => Bone::None,
-        }
+        })
     }
 
     /// The joint map.
@@ -249,12 +100,10 @@ impl Retargeting {
         for (joint, parent) in self.target.joints().iter().map(|j| j.parent).enumerate() {
             let above = parent.map_or(Quat::IDENTITY, |parent| worlds[parent]);
             let turned = self.world_rotation(joint, &world);
-            let local = self
-                .local_copy(joint, parent, pose)
-                .or_else(|| turned.map(|turned| above.conjugate() * turned));
             // The root has no rest rotation of its own where the whole body lies another way.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
-            let local = quat::renormalize(local.unwrap_or(rest));
+            let computed = || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));
+            let local = self.local_copy(joint, parent, pose).unwrap_or_else(computed);
             rotations.push(local);
             worlds.push(quat::renormalize(above * local));
         }
@@ -317,80 +166,6 @@ impl Retargeting {
     }
 }
 
-/// What is known about how a joint's frame lies at rest.
-enum Bone {
-    /// Bones that correspond, not of unit length.
-    Direction { target: Vec3, source: Vec3 },
-    /// Hips or chest: they lie as the body does.
-    Trunk,
-    /// Nothing.
-    None,
-}
-
-/// The turn from the direction `from` to `to`, the identity below 2°. Where they are opposite there are many; this one is about `left`, as
-/// legs and spines bend.
-fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
-    let turn = quat::between_directions(from, to);
-    let angle = quat::log(turn).length();
-    if angle < SAME_DIRECTION_RADIANS {
-        return Quat::IDENTITY;
-    }
-    let crosses_left = from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5);
-    if angle > std::f32::consts::PI - SAME_DIRECTION_RADIANS && crosses_left {
-        let half_turn = Quat::from_axis_angle(left, std::f32::consts::PI);
-        return quat::between_directions(half_turn * from, to) * half_turn;
-    }
-    turn
-}
-
-/// How a body lies at rest.
-struct BodyAxes {
-    /// From right to left, unit length.
-    left: Vec3,
-    /// Takes +X to the left and +Y along the back upwards.
-    rotation: Quat,
-}
-
-impl BodyAxes {
-    /// Axes from hips or shoulders and the back; those of the world where roles are missing. An axis within 15° of a world axis is that axis.
-    fn at_rest(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let rest = skeleton.rest_positions();
-        let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
-        let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?).filter(|v| v.length() > 1e-4);
-        let middle = |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
-        let low = middle(Role::thigh).or_else(|| at(Role::Hips));
-        let high = at(Role::Head).or_else(|| middle(Role::upper_arm)).or_else(|| at(Role::Spine));
-        let left = snapped(across(Role::thigh).or_else(|| across(Role::upper_arm)));
-        let up = snapped(low.zip(high).map(|(low, high)| high - low));
-        let (Some(left), Some(up)) = (left, up) else {
-            return Self {
-                left: Vec3::X,
-                rotation: Quat::IDENTITY,
-            };
-        };
-        let Some(up) = (up - left * left.dot(up)).try_normalize() else {
-            return Self {
-                left,
-                rotation: Quat::IDENTITY,
-            };
-        };
-        let rotation = quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up))));
-        Self { left, rotation }
-    }
-}
-
-/// A unit vector, exactly along an axis of the world where it is within 15° of one.
-fn snapped(v: Option<Vec3>) -> Option<Vec3> {
-    let v = v?.try_normalize()?;
-    Some(
-        Vec3::AXES
-            .into_iter()
-            .flat_map(|axis| [axis, -axis])
-            .find(|axis| axis.dot(v) > 0.966)
-            .unwrap_or(v),
-    )
-}
-
 /// Whether the map keeps parents and offsets.
 fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     if map.source_of(0) != Some(0) {
@@ -424,17 +199,7 @@ fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_role
 /// For the joints between hips and head that nothing drives: between which driven joints they lie, and how far along.
 fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(usize, usize, f32)>> {
     let mut shares = vec![None; target.len()];
-    let (Some(hips), Some(head)) = (
-        roles.get_within(Role::Hips, target.len()),
-        roles.get_within(Role::Head, target.len()),
-    ) else {
-        return shares;
-    };
-    let mut back: Vec<usize> = std::iter::successors(Some(head), |&j| target.parent(j))
-        .take_while(|&joint| joint != hips)
-        .collect();
-    back.push(hips);
-    back.reverse();
+    let back = back(target, roles);
     let driven: Vec<usize> = (0..back.len()).filter(|&i| map.source_of(back[i]).is_some()).collect();
     for pair in driven.windows(2) {
         for i in pair[0] + 1..pair[1] {
@@ -443,6 +208,3 @@ fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(
     }
     shares
 }
-
-#[cfg(test)]
-mod tests;

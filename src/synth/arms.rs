@@ -41,22 +41,22 @@ pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, 
         let amplitude = degrees(20.0 + 10.0 * quick) * swing * energy * (1.0 + 0.08 * a);
         let forward = wave(-0.07);
         Arm {
-            flexion: degrees(-14.0) + amplitude * (forward + 0.08 * forward * forward),
+            flexion: degrees(-19.0) + amplitude * (forward + 0.08 * forward * forward),
             abduction: degrees(15.0) - degrees(4.0) * forward,
-            inward: degrees(34.0) + degrees(9.0) * forward * swing,
-            elbow: degrees(88.0 + 3.0 * quick) + degrees(13.0) * wave(-0.02) * swing,
+            inward: degrees(22.0) + degrees(9.0) * forward * swing,
+            elbow: degrees(93.0 + 3.0 * quick) + degrees(13.0) * wave(-0.02) * swing,
             wrist: degrees(8.0),
         }
     } else {
         let quick = (gait.alike_mps / 1.4).clamp(0.3, 1.6);
-        let amplitude = degrees(3.0 + 14.5 * quick) * swing * energy * (1.0 + 0.10 * a) * going;
+        let amplitude = degrees(3.0 + 12.0 * quick) * swing * energy * (1.0 + 0.10 * a) * going;
         let forward = wave(0.035);
         // The elbow follows the upper arm a little later and straightens behind the body.
         let late = wave(0.08);
         Arm {
             flexion: degrees(-1.0) - degrees(4.0) * quick * going + amplitude * forward,
             abduction: degrees(7.0) + degrees(1.0) * (1.0 - going) - degrees(1.0) * forward * going,
-            inward: degrees(14.0) + degrees(6.0) * forward * going * swing.min(1.5),
+            inward: degrees(5.0) + degrees(4.0) * forward * going * swing.min(1.5),
             elbow: degrees(12.0)
                 + degrees(5.0 + 5.0 * quick) * going
                 + degrees(3.0 + 9.0 * quick) * late * (0.7 + 0.3 * late) * going * swing,

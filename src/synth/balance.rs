@@ -6,7 +6,7 @@ use super::gait::{gravity, pendulum_rate};
 use super::params::{Action, Params};
 use super::plan::{JumpTimes, Plan};
 use super::posture::Posture;
-use super::track::{State, quintic, ramp};
+use super::track::{State, quintic};
 use glam::{DVec2, Vec3};
 
 /// The longest a leg gets, as a share of its length: a knee is never quite straight (about 4° are left).
@@ -109,6 +109,8 @@ fn two_sided(values: &[DVec2], keep: f64) -> Vec<DVec2> {
 #[derive(Clone, Copy)]
 struct Leg {
     planted: bool,
+    /// Planted, or so soon to be that the hips must be low enough already.
+    bearing: bool,
     load: f64,
     progress: f64,
     /// From the hips' height to this hip joint's.
@@ -120,6 +122,8 @@ struct Leg {
 
 struct Legs<'a> {
     body: &'a Body,
+    /// The least flexion of the knee of a planted leg, radians.
+    least_flexion: f32,
     steps: Vec<[Leg; 2]>,
 }
 
@@ -134,6 +138,7 @@ impl<'a> Legs<'a> {
                     let ankle = DVec2::new(f64::from(foot.ankle.x), f64::from(foot.ankle.z));
                     Leg {
                         planted: foot.planted(),
+                        bearing: foot.planted() || foot.progress > if plan.gait.running { 0.92 } else { 0.86 },
                         load: foot.load,
                         progress: foot.progress,
                         hip_rise: f64::from(hip.y),
@@ -143,7 +148,7 @@ impl<'a> Legs<'a> {
                 })
             })
             .collect();
-        Self { body, steps }
+        Self { body, least_flexion: (if plan.gait.running { 15.0_f32 } else { 6.0 }).to_radians(), steps }
     }
 
     /// The height of the hips at which this leg is `reach` long; `None` where the leg is too short to reach at all.
@@ -154,9 +159,9 @@ impl<'a> Legs<'a> {
 
     /// The greatest height that the planted legs allow at a step.
     fn ceiling(&self, step: usize) -> f64 {
-        let longest = f64::from(self.body.leg() * LONGEST);
+        let longest = f64::from(self.body.reach_at_flexion(self.least_flexion));
         (self.steps[step].iter())
-            .filter(|leg| leg.planted)
+            .filter(|leg| leg.bearing)
             .map(|leg| Self::height_at(leg, longest).unwrap_or(0.3 * longest))
             .fold(f64::INFINITY, f64::min)
     }
@@ -213,39 +218,34 @@ fn kept_below(heights: &mut [f64], ceiling: impl Fn(usize) -> f64, half: usize) 
     }
 }
 
-/// Knee flexion of the stance leg in walking, radians: nearly straight at the strike, 15 to 20° as the weight comes at a free speed, nearly
-/// straight again at 40 % of the cycle (Perry and Burnfield 2010, figure 5.1). Slow walkers hardly flex.
-fn walking_flexion(progress: f64, depth: f64) -> f64 {
-    let wave = ramp(progress, -0.05, 0.24) * (1.0 - ramp(progress, 0.24, 0.68));
-    (5.0 + depth * wave).to_radians()
+/// Rise and fall of the hips in walking from lowest to highest, metres: 2.7 cm at 0.7 m/s and 4.8 cm at 1.6 m/s (Orendurff et al. 2004).
+fn walking_rise(alike_mps: f64) -> f64 {
+    (0.006 + 0.0265 * alike_mps).max(0.0)
 }
 
+/// The hips ride as high as the legs let them, on a wave that is lowest just after a heel strike and highest over the stance foot: what knees and
+/// heels have to make up for (Saunders, Inman and Eberhart 1953) then follows from the feet.
 fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
-    let quick = (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6);
-    let raw: Vec<f64> = {
-        let mut last = f64::from(legs.body.hip_height());
-        (0..plan.len())
-            .map(|step| {
-                let depth = 13.0 * quick * plan.going(plan.secs(step));
-                // A foot that pushes off pays no heed to its knee: there, the heel rises as far as the leg is too short.
-                let weight = |leg: &Leg| leg.load * (1.0 - 0.9 * ramp(leg.progress, 0.72, 0.95));
-                if let Some((height, _)) = legs.wanted(step, weight, |progress| walking_flexion(progress, depth)) {
-                    last = height;
-                }
-                last
-            })
-            .collect()
-    };
-    let steps_of = |secs: f64| ((secs / plan.dt_secs).round() as usize).max(2);
-    let mut heights = smoothed(&raw, steps_of(0.13 * plan.gait.cycle_secs));
-    let bounce = f64::from(params.style.bounce);
-    if (bounce - 1.0).abs() > 1e-6 {
-        let level = smoothed(&heights, steps_of(0.5 * plan.gait.cycle_secs));
-        for (height, level) in heights.iter_mut().zip(level) {
-            *height = level + (*height - level) * bounce;
-        }
-    }
-    kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.09 * plan.gait.cycle_secs));
+    const LOWEST: f64 = 0.03;
+    const STANDING_FLEXION: f64 = 6.0;
+    let cycle = plan.gait.cycle_secs;
+    let mut level = f64::from(legs.body.hip_height());
+    let raw: Vec<f64> = (0..plan.len())
+        .map(|step| {
+            level = legs.wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians()).map_or(level, |(height, _)| height);
+            level
+        })
+        .collect();
+    let steps_of = |share: f64| ((share * cycle / plan.dt_secs).round() as usize).max(2);
+    let rise = walking_rise(plan.gait.alike_mps) * f64::from(legs.body.scale) * f64::from(params.style.bounce);
+    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 })).into_iter().enumerate())
+        .map(|(step, level)| {
+            let secs = plan.secs(step);
+            level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
+        })
+        .collect();
+    // Over a whole step, so that the level gives way and the wave stays.
+    kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.25));
     heights
 }
 

@@ -114,7 +114,7 @@ impl Plant {
     fn release_rate(&self) -> f64 {
         let span = self.to - self.flat_to;
         if span.is_finite() && span > 0.0 {
-            1.6 * self.release_pitch / span
+            1.9 * self.release_pitch / span
         } else {
             0.0
         }

@@ -42,12 +42,12 @@ impl Gait {
         Self {
             running: false,
             cycle_secs: 2.0 * step_secs * size.sqrt(),
-            duty: (0.62 - 0.065 * (alike - 1.4)).clamp(0.56, 0.69),
+            duty: (0.603 - 0.055 * (alike - 1.4)).clamp(0.56, 0.67),
             half_width: f64::from(body.scale) * (0.055 - 0.012 * (quick - 1.0)) * f64::from(0.35 + 0.65 * style.stance_width),
             flat_from: 0.085,
-            flat_to: 0.36 - 0.06 * (quick - 1.0),
+            flat_to: 0.35 - 0.05 * (quick - 1.0),
             strike_pitch: -(19.0 * quick.powf(0.6)).to_radians(),
-            release_pitch: (54.0 * quick.powf(0.25)).to_radians(),
+            release_pitch: (61.0 * quick.powf(0.2)).to_radians(),
             alike_mps: alike,
         }
     }
@@ -61,7 +61,7 @@ impl Gait {
         let alike = speed_mps / size.sqrt();
         let strides_per_sec = 1.2 + 0.025 * alike + 0.008 * alike * alike;
         // A bouncier runner spends less of the cycle on the ground and so flies higher; gravity is not for sale.
-        let contact_secs = 0.52 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
+        let contact_secs = 0.45 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
         let quick = ((alike - 1.8) / 4.7).clamp(0.0, 1.0);
         Self {
             running: true,
@@ -69,9 +69,9 @@ impl Gait {
             duty: (contact_secs * strides_per_sec).clamp(0.2, 0.47),
             half_width: f64::from(body.scale) * (0.035 - 0.015 * quick) * f64::from(0.3 + 0.7 * style.stance_width),
             flat_from: 0.055,
-            flat_to: 0.55 * contact_secs * strides_per_sec,
+            flat_to: 0.48 * contact_secs * strides_per_sec,
             strike_pitch: -(10.0 * (1.0 - quick * 1.2)).max(0.0).to_radians(),
-            release_pitch: (50.0 + 8.0 * quick).to_radians(),
+            release_pitch: (56.0 + 6.0 * quick).to_radians(),
             alike_mps: alike,
         }
     }

@@ -44,15 +44,17 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         let trunk = posture.trunk(&plan, secs);
         pose_trunk(&trunk, &mut local);
         for side in 0..2 {
-            pose_leg(
-                &body,
-                moved.positions[step],
-                &trunk,
-                &moved.feet[step][side],
-                plan.path.at(secs).yaw,
-                side,
-                &mut local,
-            );
+            let foot = &moved.feet[step][side];
+            let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
+            let ankle = given_way(&body, foot, hip, plan.gait.running);
+            // The knee points between where the hips and where the toes point.
+            let heading = plan.path.at(secs).yaw;
+            let knee_yaw = (heading + 0.55 * (foot.yaw - heading)) as f32;
+            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, Vec3::new(knee_yaw.sin(), 0.0, knee_yaw.cos()));
+            local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
+            local[joint::LEG[side]] = thigh.conjugate() * shank;
+            local[joint::FOOT[side]] = shank.conjugate() * foot.rotation;
+            local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
             let arm = arm(&plan, &posture, params, side, secs);
             local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
             let clavicle = trunk.chest * local[joint::SHOULDER[side]];
@@ -130,24 +132,15 @@ fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
     Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32) * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
 }
 
-fn pose_leg(body: &Body, hips: Vec3, trunk: &Trunk, foot: &Foot, heading: f64, side: usize, local: &mut [Quat; joint::COUNT]) {
-    let hip = hips + trunk.pelvis * body.hip_in_hips[side];
-    let mut ankle = foot.ankle;
-    if !foot.planted() {
-        // In the air the foot gives way before the knee locks; close to the ground it does as planned.
-        let line = ankle - hip;
-        let length = line.length();
-        let leg = body.leg();
-        let limited = soft_limit(length, 0.985 * leg, LONGEST * leg);
-        let share = ramp(foot.progress, 0.0, 0.18) * (1.0 - ramp(foot.progress, 0.82, 1.0));
-        ankle += line * ((limited / length.max(1e-6) - 1.0) * share as f32);
+/// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to the ground it does as planned.
+fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
+    if foot.planted() {
+        return foot.ankle;
     }
-    // The knee points between where the hips and where the toes point.
-    let knee_yaw = heading + 0.55 * (foot.yaw - heading);
-    let knee_towards = Vec3::new(knee_yaw.sin() as f32, 0.0, knee_yaw.cos() as f32);
-    let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, knee_towards);
-    local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
-    local[joint::LEG[side]] = thigh.conjugate() * shank;
-    local[joint::FOOT[side]] = shank.conjugate() * foot.rotation;
-    local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
+    let line = foot.ankle - hip;
+    let length = line.length();
+    let (from, to) = if running { (0.955, 0.993) } else { (0.985, LONGEST) };
+    let limited = soft_limit(length, from * body.leg(), to * body.leg());
+    let share = ramp(foot.progress, 0.0, 0.14) * (1.0 - ramp(foot.progress, 0.84, 0.98));
+    foot.ankle + line * ((limited / length.max(1e-6) - 1.0) * share as f32)
 }

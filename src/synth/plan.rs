@@ -139,7 +139,7 @@ impl Plan {
         let place = self.path.at(secs);
         let rate = pendulum_rate(params.height_m);
         let outward = if side == 0 { half_width } else { -half_width };
-        let behind = f64::from(body.scale) * if self.gait.running { 0.075 } else { 0.05 };
+        let behind = f64::from(body.scale) * if self.gait.running { 0.20 } else { 0.105 };
         place.position - place.acceleration() / (rate * rate) + place.left() * outward - place.forward() * behind
     }
 }
@@ -161,31 +161,31 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     let degrees = f64::to_radians;
     if gait.running {
         let quick = ((gait.alike_mps - 1.8) / 4.7).clamp(0.0, 1.0);
-        let lift = (0.20 + 0.32 * quick) * (0.7 + 0.3 * energy);
+        let lift = (0.15 + 0.20 * quick) * (0.7 + 0.3 * energy);
         return Swing {
-            peak: (0.36, scale * lift),
-            low: (0.80, scale * (0.06 + 0.06 * quick)),
+            peak: (0.27, scale * lift),
+            low: (0.66, scale * (0.07 + 0.04 * quick)),
             pitch: [
-                (0.26, degrees(72.0 + 32.0 * quick)),
-                (0.60, degrees(28.0)),
+                (0.28, degrees(84.0 + 28.0 * quick)),
+                (0.60, degrees(38.0)),
                 (0.88, gait.strike_pitch - degrees(2.0)),
             ],
-            eager: 0.55,
-            late: 0.45,
+            eager: 0.6,
+            late: 0.4,
             spring: 0.0,
         };
     }
     let quick = (gait.alike_mps / 1.4).clamp(0.25, 1.6) * share;
     Swing {
-        peak: (0.30, scale * (0.035 + 0.03 * quick) * (0.6 + 0.4 * energy)),
+        peak: (0.27, scale * (0.04 + 0.035 * quick) * (0.6 + 0.4 * energy)),
         low: (0.62, scale * (0.018 + 0.008 * energy + 0.012 * quick)),
         pitch: [
-            (0.14, degrees(10.0) + degrees(52.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()),
+            (0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()),
             (0.58, degrees(4.0)),
             (0.88, gait.strike_pitch * share - degrees(3.0)),
         ],
-        eager: 0.6,
-        late: 0.6,
+        eager: 1.2,
+        late: 0.7,
         spring: 0.0,
     }
 }

@@ -143,7 +143,7 @@ impl Posture {
             ..Angles::default()
         };
         if self.running {
-            a.pelvis_turn = -degrees(6.0) * energy * wave(-0.06);
+            a.pelvis_turn = degrees(3.5) * energy * wave(0.0);
             a.pelvis_list = degrees(4.5) * energy * wave(0.14);
             a.pelvis_tilt = (degrees(8.0) + degrees(3.0) * quick) * self.lean + degrees(2.0) * energy * twice(0.02);
             a.chest_turn = degrees(11.0) * energy * wave(-0.08);
@@ -152,7 +152,7 @@ impl Posture {
             a.head_bow = degrees(3.0) + 0.25 * a.chest_bow;
         } else {
             a.pelvis_turn = -degrees(3.0 + 2.5 * quick) * energy * wave(-0.01);
-            a.pelvis_list = degrees(1.6 + 2.4 * quick) * energy * (0.85 * wave(0.17) + 0.15 * (3.0 * (phase - 0.17 * TAU)).cos());
+            a.pelvis_list = degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 3.1415).cos());
             a.pelvis_tilt = degrees(3.0) + degrees(1.5) * going * quick * self.lean + degrees(1.2) * energy * twice(0.04);
             a.chest_turn = degrees(2.0 + 2.6 * quick) * energy * wave(0.02);
             a.chest_list = degrees(1.4) * energy * wave(0.68);

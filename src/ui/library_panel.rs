@@ -27,7 +27,7 @@ pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut
     if pressed == Some(0) {
         out.actions.push(Action::OpenFiles);
     }
-    let samples_id = ui.id().with("samples");
+    let samples_id = ui.scope_id().with("samples");
     let mut samples_open = ui.data(|data| data.get_temp::<bool>(samples_id)).unwrap_or_default();
     if pressed == Some(1) {
         samples_open = !samples_open;

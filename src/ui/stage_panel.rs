@@ -7,7 +7,6 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Pos2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::math::Planar;
-use segue::metrics::MetricId;
 use segue::scene::{Camera, Lens, resting_point};
 use segue::session::{Key, Kind, Outcome, Pane, Session, Value, format_number};
 
@@ -69,16 +68,16 @@ struct Verdicts {
     worst: Option<usize>,
 }
 
-fn value_of(outcome: Option<&Outcome>, id: MetricId) -> Option<f64> {
+fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
     outcome?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
 }
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
-    ranking(panes, MetricId::SeamSpeed)
+    ranking(panes, "seam_dps")
 }
 
 /// Which panes have the lowest and the highest value; none where they do not differ.
-fn ranking(panes: &[Pane], id: MetricId) -> Verdicts {
+fn ranking(panes: &[Pane], id: &str) -> Verdicts {
     let values: Vec<(usize, f64)> =
         panes.iter().enumerate().filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?))).collect();
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
@@ -114,8 +113,9 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     }
     let Some(outcome) = pane.outcome.as_deref() else { return };
     let panes = session.panes();
-    let numbers: Vec<(String, String, Rank, &str)> = (outcome.metrics.iter())
-        .map(|metric| {
+    let shown = text::METRICS.iter().filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
+    let numbers: Vec<(String, &str, Rank, &str)> = shown
+        .map(|(metric, &label)| {
             let ranks = ranking(panes, metric.id);
             let rank = if ranks.best == Some(index) {
                 Rank::Best
@@ -124,11 +124,23 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
             } else {
                 Rank::Middle
             };
-            (metric.format(), format!("{} {}", metric.label, metric.unit), rank, metric.help)
+            (written(metric), label, rank, metric.help)
         })
         .collect();
     let strip: Vec<Metric<'_>> = numbers.iter().map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint }).collect();
     kit::pane_footer_ui(&strip, rect, ui);
+}
+
+/// A metric's number as it is read at a glance.
+fn written(metric: &segue::metrics::Metric) -> String {
+    let Some(value) = metric.value else { return "–".to_owned() };
+    let decimals = match metric.unit {
+        "s" => 2,
+        "cm" => 1,
+        _ => usize::from(value < 9.95),
+    };
+    let degree = if metric.unit == "°" { "°" } else { "" };
+    format!("{value:.decimals$}{degree}")
 }
 
 struct Words {
@@ -266,8 +278,8 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     let Some(first) = outcomes().next().filter(|_| low.is_finite()) else { return };
     let height = first.motion.roles.body_height(first.motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
-    bounds.add(low - glam::Vec3::new(0.4, 0.0, 0.4));
-    bounds.add(high + glam::Vec3::new(0.4, height, 0.4));
+    bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
+    bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
     let mut camera = camera_of(session);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));

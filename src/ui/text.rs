@@ -73,3 +73,13 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("drag", "turn the camera; with Shift or the right button, move it"),
     ("wheel, pinch", "zoom"),
 ];
+
+/// The artefact numbers under a pane, by id, with the short names that fit there.
+pub(crate) const METRICS: &[(&str, &str)] = &[
+    ("seam_deg", "jump"),
+    ("seam_dps", "seam °/s"),
+    ("skate_cm", "skate cm"),
+    ("penetration_cm", "sunk cm"),
+    ("lag_s", "lag s"),
+    ("spin_deg", "spin"),
+];

@@ -177,7 +177,7 @@ fn label_of(quantity: &str) -> &'static str {
 /// Which joint and what of it: a menu on the caption.
 fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out, ui: &mut Ui) {
     let rect = eframe::egui::Rect::from_min_max(eframe::egui::pos2(row.rect.right() - 220.0, row.rect.top()), row.rect.max);
-    let opener = ui.interact(rect, ui.id().with("curve menu"), eframe::egui::Sense::click());
+    let opener = ui.interact(rect, ui.scope_id().with("curve menu"), eframe::egui::Sense::click());
     opener.widget_info(|| eframe::egui::WidgetInfo::labeled(eframe::egui::Role::ComboBox, true, text::CURVES));
     kit::menu_ui(&opener, RectAlign::TOP_END, |ui| {
         if let Kind::Choice(choices) = Key::Curve.param().kind {

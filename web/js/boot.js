@@ -34,7 +34,7 @@ async function start(jsUrl, wasmUrl) {
 
   let bindings;
   try {
-    const module = import(jsUrl);
+    const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
     const response = download(wasmUrl);
     bindings = await module;
     await bindings.default({ module_or_path: response });

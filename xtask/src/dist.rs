@@ -32,6 +32,8 @@ pub fn build(profile: Profile) -> Result<()> {
         })?;
     }
     let tools = tools::web()?;
+    // Trunk builds offline (Trunk.toml), so that it brings no tools of its own; the packages must be here by then.
+    run(&mut cargo(&["fetch", "--quiet", "--locked", "--target=wasm32-unknown-unknown"]))?;
     let (name, args): (_, &[&str]) = match profile {
         Profile::Release => ("release", &["build", "--release"]),
         Profile::Dev => ("dev", &["build"]),

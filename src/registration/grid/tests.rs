@@ -130,22 +130,6 @@ fn windows_never_cross_an_end() {
     }
 }
 
-#[test]
-fn minima_are_sorted_and_a_plateau_counts_once() {
-    let grid = DistanceGrid {
-        stride: 1,
-        window: 1,
-        source_start: 0,
-        target_start: 0,
-        rows: 3,
-        columns: 4,
-        rms_m: vec![5.0, 9.0, 2.0, 2.0, 9.0, 9.0, 2.0, 9.0, 1.0, 9.0, 9.0, 9.0],
-    };
-    assert_eq!(grid.local_minima(), [(2, 0), (0, 2), (0, 0)]);
-    assert_eq!(grid.minimum(), Some((2, 0)));
-    assert_eq!(grid.get(0, 4), None);
-}
-
 proptest! {
     #[test]
     fn moving_a_clip_over_the_ground_changes_no_distance(yaw in -3.0f64..3.0, x in -50.0f64..50.0, z in -50.0f64..50.0) {

@@ -604,3 +604,6 @@ fn clip_info(entry: &Entry) -> ClipInfo {
         sha256: entry.sha256().map(str::to_owned),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,6 +2,7 @@ use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
 use crate::clip::{Contacts, Interpolation, resample, retarget};
 use crate::math::Planar;
+use crate::metrics::{Profile, Subject, TransitionMetrics};
 use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -36,7 +37,8 @@ struct Pair {
     b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
     incoming: Arc<Motion>,
-    sources: [blend::Source; 2],
+    /// What dissolve and metrics know of A and of `incoming`.
+    profiles: [Profile; 2],
 }
 
 impl Pair {
@@ -56,12 +58,15 @@ impl Pair {
             let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
             Arc::new(Motion::analyze(clip, Some(roles)))
         };
-        let sources = [a, &incoming].map(|m| blend::Source::with_frames(Arc::clone(&m.clip), &m.roles, m.ground_frames.clone()));
+        let profiles = [a, &incoming].map(|motion| {
+            let source = blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone());
+            Profile::new(Arc::new(source), &motion.roles, motion.contacts.clone())
+        });
         Ok(Self {
             a: Arc::clone(a),
             b: Arc::clone(b),
             incoming,
-            sources,
+            profiles,
         })
     }
 }
@@ -205,8 +210,8 @@ impl BlendInputs {
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let Self { pair, place, options } = self;
-        let [a, b] = &pair.sources;
-        let made = blend::dissolve(a, place.leave, b, place.enter, options).map_err(|error| error.to_string())?;
+        let [a, b] = &pair.profiles;
+        let made = blend::dissolve(a.source(), place.leave, b.source(), place.enter, options).map_err(|error| error.to_string())?;
         let fps = made.clip.fps();
         let secs = |frame: usize| frame as f64 / fps;
         let window = made.transition.clone();
@@ -226,7 +231,17 @@ impl BlendInputs {
             contacts,
             ground_frames: made.frames,
         };
-        let metrics = Vec::new();
+        let subject = Subject {
+            result: &motion.clip,
+            start: window.start,
+            end: window.end,
+            enter: place.enter,
+            a,
+            b,
+            roles: &motion.roles,
+            ground_m: 0.0,
+        };
+        let metrics = TransitionMetrics::measure(&subject).list().to_vec();
         let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
             slot,
             motion: Arc::clone(motion),

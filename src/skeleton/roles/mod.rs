@@ -8,7 +8,7 @@ mod tokens;
 
 use super::{Role, Side, Skeleton};
 use std::collections::BTreeMap;
-pub(crate) use tokens::are_counterparts;
+pub(crate) use tokens::{Tokens, are_counterparts, read};
 
 /// How the joint of a role was found; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -192,11 +192,15 @@ impl<'a> Shape<'a> {
         let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else {
             return;
         };
-        // A leaf without a bone of its own marks where the head ends.
+        // A leaf without a bone of its own marks where the head ends, and one of several leaves is an eye or an ear.
         let marks_the_end = self.skeleton.joints()[highest]
             .end_site
             .is_none_or(|end| end.length() < 1e-4 * self.height);
-        let head = if marks_the_end {
+        let has_brothers = self
+            .skeleton
+            .parent(highest)
+            .is_some_and(|parent| self.skeleton.children(parent).count() > 1);
+        let head = if marks_the_end || has_brothers {
             self.skeleton.parent(highest)
         } else {
             Some(highest)

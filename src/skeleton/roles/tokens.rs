@@ -44,27 +44,26 @@ const HELPERS: &[&str] = &[
 
 /// A joint's name, read.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Tokens {
+pub(crate) struct Tokens {
     /// The side that the name says, if it says one side only.
-    pub(super) side: Option<Side>,
+    pub(crate) side: Option<Side>,
     /// The words without side, numbers and noise, joined: `upleg`.
-    pub(super) core: String,
+    pub(crate) core: String,
     /// The same of the part behind the last separator, where the name has several: `head` of `torso_head`.
-    pub(super) last: String,
+    pub(crate) last: String,
     /// The numbers in the name, as written.
-    pub(super) numbers: Vec<String>,
+    pub(crate) numbers: Vec<String>,
     /// The name is that of an end site, a twist joint, an IK target.
-    pub(super) helper: bool,
+    pub(crate) helper: bool,
 }
 
 /// Whether two names differ in nothing but the side: `LeftHandIndex1` and `RightHandIndex1`.
-pub(crate) fn are_counterparts(a: &str, b: &str) -> bool {
-    let (a, b) = (read(a), read(b));
+pub(crate) fn are_counterparts(a: &Tokens, b: &Tokens) -> bool {
     a.side.is_some() && a.side.map(Side::other) == b.side && a.core == b.core && a.numbers == b.numbers && a.helper == b.helper
 }
 
 /// Reads a name: case, separators and camel humps split it into words.
-pub(super) fn read(name: &str) -> Tokens {
+pub(crate) fn read(name: &str) -> Tokens {
     // What stands before a colon is the name space of the file's author.
     let name = name.rsplit(':').next().unwrap_or(name);
     let mut sides = Vec::new();

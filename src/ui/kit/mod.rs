@@ -10,7 +10,11 @@
 mod button;
 mod chip;
 mod clip_row;
+mod curves;
 mod drop_zone;
+mod fact_row;
+#[cfg(all(test, feature = "ui-tests"))]
+mod gallery;
 pub(crate) mod icon;
 mod menu;
 mod metrics;
@@ -22,12 +26,16 @@ mod segmented;
 mod slider_row;
 mod switch_row;
 mod tabs;
+mod timeline;
+mod transport;
 mod words;
 
 pub(crate) use button::{Button, Tone, button_ui, icon_button_ui, link_ui};
 pub(crate) use chip::{Mood, Part, chip_size, chip_ui, paint_badge, paint_chip};
 pub(crate) use clip_row::{ClipRow, ClipRowResponse, clip_row_ui};
+pub(crate) use curves::{Curves, Series};
 pub(crate) use drop_zone::drop_zone_ui;
+pub(crate) use fact_row::fact_row_ui;
 pub(crate) use icon::{Icon, icon_ui, paint_icon, paint_logo};
 pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
 pub(crate) use metrics::{Metric, Rank, metric_strip_ui};
@@ -38,4 +46,6 @@ pub(crate) use segmented::segmented_ui;
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
 pub(crate) use switch_row::switch_row_ui;
 pub(crate) use tabs::tabs_ui;
+pub(crate) use timeline::{Moment, TimeAxis, Timeline, TimelineEvent, Track, timeline_ui};
+pub(crate) use transport::{Transport, TransportEvent, play_button_ui, transport_ui};
 pub(crate) use words::{ENGLISH, Words};

@@ -1,0 +1,37 @@
+use super::ImportError;
+use flate2::read::GzDecoder;
+use std::io::Read as _;
+
+/// No bundled take unpacks to more. A damaged file must not fill the memory.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// Unpacks a gzip file.
+///
+/// # Errors
+/// [`ImportError`] when it is damaged or unpacks to more than 64 MiB.
+pub fn unpack_gzip(name: &str, packed: &[u8]) -> Result<Vec<u8>, ImportError> {
+    let mut bytes = Vec::new();
+    let unpacked = GzDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut bytes);
+    match unpacked {
+        Ok(_) if bytes.len() as u64 <= MOST_BYTES => Ok(bytes),
+        Ok(_) => Err(ImportError::whole_file(name, "more than 64 MiB after unpacking", "a smaller file")),
+        Err(error) => Err(ImportError::whole_file(name, error.to_string(), "a gzip file")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flate2::{Compression, write::GzEncoder};
+    use std::io::Write as _;
+
+    #[test]
+    fn unpacks_or_says_why_not() {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(b"HIERARCHY").unwrap();
+        let packed = encoder.finish().unwrap();
+        assert_eq!(unpack_gzip("a.gz", &packed).unwrap(), b"HIERARCHY");
+        let cut = unpack_gzip("a.gz", &packed[..packed.len() - 4]).unwrap_err();
+        assert!(cut.to_string().starts_with("a.gz:1:1: found "), "{cut}");
+    }
+}

@@ -1,0 +1,117 @@
+use crate::blend::Source;
+use crate::clip::{Clip, Contacts};
+use crate::math::{quat, stats};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
+use glam::{Quat, Vec3};
+use std::sync::Arc;
+
+/// Steps that are looked at for what is usual in a clip: enough for a 99th percentile, and bounded for long clips.
+const SAMPLES: usize = 1_000;
+
+/// What the metrics know of a source clip, measured once per clip: what is usual in it, and what its feet do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    pub(super) source: Arc<Source>,
+    pub(super) contacts: Contacts,
+    /// Per side and frame: how far the stillest point of the foot moves over the ground in the step into that frame, metres.
+    pub(super) slides: [Vec<f32>; 2],
+    /// Per joint, 99th percentile: the turn from one frame to the next, radians.
+    pub(super) usual_turn: Vec<f32>,
+    /// Per joint, 99th percentile: the change of that turn (as a rotation vector) from one step to the next, radians.
+    pub(super) usual_change: Vec<f32>,
+    /// 99th percentile of the character's step over the ground, metres.
+    pub(super) usual_step: f32,
+}
+
+impl Profile {
+    /// Measures a clip. `contacts` are those of the same clip ([`Contacts::detect`]). O(frames × joints).
+    #[must_use]
+    pub fn new(source: Arc<Source>, roles: &Roles, contacts: Contacts) -> Self {
+        let clip = source.clip();
+        let (usual_turn, usual_change) = usual_turns(clip);
+        let steps: Vec<f32> = source
+            .frames()
+            .windows(2)
+            .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
+            .collect();
+        let usual_step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
+        let slides = slides(clip, roles);
+        Self {
+            source,
+            contacts,
+            slides,
+            usual_turn,
+            usual_change,
+            usual_step,
+        }
+    }
+
+    /// The clip with its character frames.
+    #[must_use]
+    pub fn source(&self) -> &Arc<Source> {
+        &self.source
+    }
+
+    /// When which foot is on the ground.
+    #[must_use]
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+}
+
+/// The rotation vector of the step from one local rotation to the next, radians, in the parent's frame.
+pub(super) fn turn(from: Quat, to: Quat) -> Vec3 {
+    quat::log(to * from.conjugate())
+}
+
+fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
+    let stride = clip.frames().div_ceil(SAMPLES).max(1);
+    let p99 = |values: &[f32]| stats::percentile(values, 0.99).unwrap_or(0.0);
+    (0..clip.skeleton().len())
+        .map(|joint| {
+            let (mut turns, mut changes) = (Vec::with_capacity(SAMPLES), Vec::with_capacity(SAMPLES));
+            for frame in (1..clip.frames()).step_by(stride) {
+                let of = |frame: usize| clip.rotations(frame)[joint];
+                let here = turn(of(frame - 1), of(frame));
+                turns.push(here.length());
+                if frame + 1 < clip.frames() {
+                    changes.push((turn(of(frame), of(frame + 1)) - here).length());
+                }
+            }
+            (p99(&turns), p99(&changes))
+        })
+        .unzip()
+}
+
+/// The points of a foot that may stand on the ground: ankle, ball and tip, each as a joint and a point in its frame.
+pub(super) fn foot_points(skeleton: &Skeleton, roles: &Roles, side: Side) -> Vec<(usize, Vec3)> {
+    let joint = |role| roles.get_within(role, skeleton.len());
+    let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
+    let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
+    foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
+}
+
+/// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
+pub(super) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
+    let steps = before
+        .iter()
+        .zip(after)
+        .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
+    steps.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+}
+
+fn slides(clip: &Clip, roles: &Roles) -> [Vec<f32>; 2] {
+    let points = Side::BOTH.map(|side| foot_points(clip.skeleton(), roles, side));
+    let mut slides = [Vec::with_capacity(clip.frames()), Vec::with_capacity(clip.frames())];
+    let mut before: [Vec<Vec3>; 2] = Default::default();
+    let mut world = WorldPose::default();
+    for frame in 0..clip.frames() {
+        clip.world_pose_into(frame, &mut world);
+        for ((points, slides), before) in points.iter().zip(&mut slides).zip(&mut before) {
+            let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+            slides.push(stillest_step(before, &now).map_or(0.0, Vec3::length));
+            *before = now;
+        }
+    }
+    slides
+}

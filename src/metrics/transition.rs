@@ -1,0 +1,412 @@
+use super::profile::{Profile, foot_points, stillest_step, turn};
+use super::{Better, Metric};
+use crate::clip::{Clip, facing};
+use crate::math::{Planar, wrap_angle};
+use crate::skeleton::{Roles, Side, WorldPose};
+use glam::{DVec2, Vec3};
+use std::ops::{Range, RangeInclusive};
+
+/// Seconds on each side of a transition in which stances are followed.
+const MARGIN_SECS: f64 = 0.5;
+/// Below this, degrees, no joint is named for a pose jump: nobody sees it.
+const VISIBLE_DEG: f64 = 0.1;
+/// Below this difference of velocities, metres per second, there is no change of speed to wait for.
+const LEAST_CHANGE_MPS: f64 = 0.1;
+
+/// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame `enter + (f - transition.start)` of clip B
+/// after it. Inside both are mixed.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The clip with the transition in it.
+    pub result: &'a Clip,
+    /// The first mixed frame of the result (for a cut: the first of B).
+    pub start: usize,
+    /// One past the last mixed frame; the start for a cut.
+    pub end: usize,
+    /// The frame of B that is shown, or mixed in, at `start`.
+    pub enter: usize,
+    /// The outgoing clip.
+    pub a: &'a Profile,
+    /// The incoming clip.
+    pub b: &'a Profile,
+    /// Roles of the result's joints.
+    pub roles: &'a Roles,
+    /// Height of the ground, metres: 0, or [`crate::clip::ground_height`] for clips that float or stand in the floor.
+    pub ground_m: f32,
+}
+
+/// What a viewer would point at in a transition.
+///
+/// "Usual" is the 99th percentile over the whole source clip or what the source does in the very frame that is shown, whichever is more; the
+/// larger of the two sources'. A clip that goes on as itself has no jump, then, however wild it is.
+///
+/// "Steps" go from one frame to the next; those of the transition are all steps into its frames and the one out of it, so that both borders
+/// count.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TransitionMetrics {
+    /// Pose jump, degrees. Over all joints and steps of the transition, the largest turn of a joint against its parent in one step, less what
+    /// is usual for that joint; 0 where no step is unusual.
+    pub seam_deg: Option<f64>,
+    /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.1°.
+    pub seam_joint: Option<usize>,
+    /// Velocity jump, degrees per second. Likewise the largest change of a joint's angular velocity (a vector in the parent's frame) from one step
+    /// to the next, less what is usual for that joint.
+    pub seam_dps: Option<f64>,
+    /// Place jump, centimetres. The largest step of the character over the ground, less what is usual.
+    pub jump_cm: Option<f64>,
+    /// Spin, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by the sources: the largest sum, over any run of consecutive
+    /// steps of the transition, of `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns meanwhile.
+    pub spin_deg: Option<f64>,
+    /// Foot slide, centimetres. A foot is planted while its source says so: A before the middle of the transition, B from it on. In every step
+    /// between planted frames, the step over the ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
+    /// point moves in the source, is added up as a vector; the value is the farthest that this sum gets in any stance which touches
+    /// the transition. Stances are followed for half a second on each side. `None` without feet or stances.
+    pub skate_cm: Option<f64>,
+    /// Penetration, centimetres. How deep the deepest joint or end site is below the ground in the transition.
+    pub penetration_cm: Option<f64>,
+    /// Lag, seconds from the transition's start until the last step whose velocity (forward and sideways, in the character's frame) is further
+    /// from the incoming clip's than 10 % of what lies between the two clips: the root mean square, over the transition, of the difference of
+    /// their velocities. `None` where that is below 0.1 m/s.
+    pub lag_s: Option<f64>,
+}
+
+impl TransitionMetrics {
+    /// Measures a transition. Reads only its frames and half a second around it; frames that do not exist are left out.
+    #[must_use]
+    pub fn measure(subject: &Subject<'_>) -> Self {
+        let last = subject.result.frames().saturating_sub(1);
+        if subject.result.frames() == 0 {
+            return Self::default();
+        }
+        let steps = subject.start.max(1)..=subject.end.max(subject.start).min(last);
+        let around = Around::new(subject, &steps);
+        let (seam_deg, seam_joint) = seam(subject, &steps);
+        Self {
+            seam_deg,
+            seam_joint,
+            seam_dps: velocity_seam(subject, &steps),
+            jump_cm: jump(subject, &steps, &around),
+            spin_deg: spin(subject, &steps, &around),
+            skate_cm: skate(subject, &steps, &around),
+            penetration_cm: around.depth_below(subject.ground_m).map(|depth| f64::from(depth) * 100.0),
+            lag_s: lag(subject, &steps, &around),
+        }
+    }
+
+    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    #[must_use]
+    pub fn list(&self) -> [Metric; 7] {
+        let metric = |id, label, value, unit, help| Metric {
+            id,
+            label,
+            value,
+            unit,
+            better: Better::Lower,
+            help,
+        };
+        [
+            metric(
+                "seam_deg",
+                "Pose jump",
+                self.seam_deg,
+                "°",
+                "How far a joint turns in one frame at the transition, beyond what it does in its own clips.",
+            ),
+            metric(
+                "seam_dps",
+                "Velocity jump",
+                self.seam_dps,
+                "°/s",
+                "How much a joint's angular velocity changes in one frame at the transition, beyond what it does in its own clips.",
+            ),
+            metric(
+                "jump_cm",
+                "Place jump",
+                self.jump_cm,
+                "cm",
+                "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
+            ),
+            metric(
+                "spin_deg",
+                "Spin",
+                self.spin_deg,
+                "°",
+                "How far the character turns inside the blend beyond what either clip turns meanwhile.",
+            ),
+            metric(
+                "skate_cm",
+                "Foot slide",
+                self.skate_cm,
+                "cm",
+                "How far a planted foot slides in the worst stance at the transition, beyond what it slides in its own clip.",
+            ),
+            metric(
+                "penetration_cm",
+                "Penetration",
+                self.penetration_cm,
+                "cm",
+                "How deep the lowest point of the body is below the ground during the transition.",
+            ),
+            metric(
+                "lag_s",
+                "Lag",
+                self.lag_s,
+                "s",
+                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's.",
+            ),
+        ]
+    }
+}
+
+impl Subject<'_> {
+    /// The frame of B that belongs to `frame` of the result.
+    fn in_b(&self, frame: usize) -> Option<usize> {
+        let frame = self.enter.saturating_add(frame).checked_sub(self.start)?;
+        (frame < self.b.source.frames().len()).then_some(frame)
+    }
+
+    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of the result.
+    fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
+        let a = (frame < self.a.source.frames().len()).then(|| self.a.source.step_into(frame));
+        [a, self.in_b(frame).map(|frame| self.b.source.step_into(frame))]
+    }
+
+    fn usual(&self, of: fn(&Profile) -> &[f32], joint: usize) -> f32 {
+        let get = |profile| of(profile).get(joint).copied().unwrap_or(0.0);
+        get(self.a).max(get(self.b))
+    }
+
+    /// Whether the source of `frame` has this foot on the ground, and how far it moves there in the step into the frame.
+    fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
+        let middle = usize::midpoint(self.start, self.end);
+        let (profile, frame) = if frame < middle {
+            (self.a, Some(frame))
+        } else {
+            (self.b, self.in_b(frame))
+        };
+        let slide = frame
+            .and_then(|frame| profile.slides[side.index()].get(frame))
+            .copied()
+            .unwrap_or(0.0);
+        (frame.is_some_and(|frame| profile.contacts.planted(side, frame)), slide)
+    }
+}
+
+/// Forward kinematics of the frames around a transition, done once.
+struct Around {
+    frames: Range<usize>,
+    /// Where the character stands and faces.
+    character: Vec<Planar>,
+    /// Per side, per frame: the foot's points.
+    feet: [Vec<Vec<Vec3>>; 2],
+    /// The lowest point of the body over the transition itself, metres.
+    lowest: Option<f32>,
+}
+
+impl Around {
+    fn new(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Self {
+        let clip = subject.result;
+        let margin = (MARGIN_SECS * clip.fps()).round() as usize;
+        let frames =
+            subject.start.saturating_sub(margin.max(1)).min(clip.frames())..steps.end().saturating_add(margin + 1).min(clip.frames());
+        let points = Side::BOTH.map(|side| foot_points(clip.skeleton(), subject.roles, side));
+        let tips: Vec<(usize, Vec3)> = clip
+            .skeleton()
+            .joints()
+            .iter()
+            .enumerate()
+            .filter_map(|(joint, j)| j.end_site.map(|end| (joint, end)))
+            .collect();
+        let motion_root = subject.a.source.motion_root().max(subject.b.source.motion_root());
+        let mut around = Self {
+            frames: frames.clone(),
+            character: vec![],
+            feet: [vec![], vec![]],
+            lowest: None,
+        };
+        let mut world = WorldPose::default();
+        let mut yaw = None;
+        for frame in frames {
+            clip.world_pose_into(frame, &mut world);
+            let at = world.positions.get(motion_root).copied().unwrap_or_default();
+            let mut standing = Planar::standing_at(at, Vec3::Z);
+            if let Some(facing) = facing(&world, subject.roles) {
+                yaw = Some(Planar::standing_at(at, facing).yaw);
+            }
+            standing.yaw = yaw.unwrap_or(0.0);
+            around.character.push(standing);
+            for (points, feet) in points.iter().zip(&mut around.feet) {
+                feet.push(points.iter().map(|&(joint, point)| world.point(joint, point)).collect());
+            }
+            if (subject.start.saturating_sub(1)..=*steps.end()).contains(&frame) {
+                let joints = world.positions.iter().map(|p| p.y);
+                let low = joints
+                    .chain(tips.iter().map(|&(joint, end)| world.point(joint, end).y))
+                    .min_by(f32::total_cmp);
+                around.lowest = around.lowest.into_iter().chain(low).min_by(f32::total_cmp);
+            }
+        }
+        around
+    }
+
+    /// The character's step into `frame`, in its own frame at the frame before.
+    fn step_into(&self, frame: usize) -> Option<Planar> {
+        let at = frame.checked_sub(self.frames.start)?;
+        Some(self.character.get(at.checked_sub(1)?)?.inverse().after(self.character.get(at)?))
+    }
+
+    fn depth_below(&self, ground: f32) -> Option<f32> {
+        self.lowest.map(|lowest| (ground - lowest).max(0.0))
+    }
+}
+
+/// How far a joint turns in the step into `frame`, radians.
+fn joint_turn(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
+    let before = frame.checked_sub(1)?;
+    let at = |frame: usize| (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten();
+    Some(turn(at(before)?, at(frame)?).length())
+}
+
+/// How much a joint's turn changes from the step into `frame` to the step out of it, radians.
+fn joint_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
+    let before = frame.checked_sub(1)?;
+    let at = |frame: usize| (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten();
+    let here = at(frame)?;
+    Some((turn(here, at(frame.checked_add(1)?)?) - turn(at(before)?, here)).length())
+}
+
+/// The largest of a joint's values in `frames`, less what is usual for that joint or what its sources do in the same frames: the value, and
+/// the joint where it is above 0.
+fn unusual(
+    subject: &Subject<'_>,
+    frames: RangeInclusive<usize>,
+    value: fn(&Clip, usize, usize) -> Option<f32>,
+    usual: fn(&Profile) -> &[f32],
+) -> (Option<f32>, Option<usize>) {
+    let clip = subject.result;
+    let mut worst: Option<f32> = None;
+    let mut of_joint = None;
+    for frame in frames {
+        for joint in 0..clip.skeleton().len() {
+            let Some(found) = value(clip, frame, joint) else { continue };
+            let threshold = worst.unwrap_or(0.0);
+            worst = Some(threshold);
+            let excess = found - subject.usual(usual, joint);
+            // The sources' own frames are looked at only where it matters.
+            if excess > threshold {
+                let in_a = value(subject.a.source.clip(), frame, joint);
+                let in_b = subject.in_b(frame).and_then(|frame| value(subject.b.source.clip(), frame, joint));
+                let own = in_a.into_iter().chain(in_b).fold(0.0, f32::max);
+                let excess = excess.min(found - own);
+                if excess > threshold {
+                    (worst, of_joint) = (Some(excess), Some(joint));
+                }
+            }
+        }
+    }
+    (worst, of_joint)
+}
+
+fn seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> (Option<f64>, Option<usize>) {
+    let (worst, joint) = unusual(subject, steps.clone(), joint_turn, |profile| &profile.usual_turn);
+    let degrees = worst.map(|turn| f64::from(turn).to_degrees());
+    (degrees, joint.filter(|_| degrees > Some(VISIBLE_DEG)))
+}
+
+fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option<f64> {
+    // Every frame between two steps of which one belongs to the transition.
+    let (worst, _) = unusual(subject, steps.start() - 1..=*steps.end(), joint_change, |profile| {
+        &profile.usual_change
+    });
+    worst.map(|change| f64::from(change).to_degrees() * subject.result.fps())
+}
+
+fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+    let usual = f64::from(subject.a.usual_step.max(subject.b.usual_step));
+    let excess = |frame| {
+        let own = subject.source_steps(frame).into_iter().flatten().map(|step| step.shift.length());
+        Some((around.step_into(frame)?.shift.length() - own.fold(usual, f64::max)).max(0.0))
+    };
+    steps.clone().filter_map(excess).reduce(f64::max).map(|metres| metres * 100.0)
+}
+
+fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+    // The largest sum of a run of steps (Kadane), for left and right turns.
+    let (mut left, mut right, mut worst) = (0.0_f64, 0.0_f64, None);
+    for frame in steps.clone() {
+        let Some(result) = around.step_into(frame) else { continue };
+        let sources = subject
+            .source_steps(frame)
+            .map(|step| step.map_or(0.0, |step| wrap_angle(step.yaw)));
+        let yaw = wrap_angle(result.yaw);
+        left = (left + yaw - sources[0].max(sources[1]).max(0.0)).max(0.0);
+        right = (right - yaw + sources[0].min(sources[1]).min(0.0)).max(0.0);
+        worst = Some(left.max(right).max(worst.unwrap_or(0.0)));
+    }
+    worst.map(f64::to_degrees)
+}
+
+fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+    let touches = subject.start.saturating_sub(1)..=*steps.end();
+    let mut worst: Option<f32> = None;
+    for side in Side::BOTH {
+        let feet = &around.feet[side.index()];
+        if feet.first().is_none_or(Vec::is_empty) {
+            continue;
+        }
+        let mut drift = Vec3::ZERO;
+        let mut farthest = None;
+        for (at, frame) in around.frames.clone().enumerate() {
+            let (planted, in_source) = subject.foot_in_source(side, frame);
+            if !planted {
+                (drift, farthest) = (Vec3::ZERO, None);
+                continue;
+            }
+            let stance = farthest.get_or_insert((0.0_f32, false));
+            // Only between two planted frames: the step onto the ground is no slide.
+            let before_planted = at > 0 && subject.foot_in_source(side, frame - 1).0;
+            if let Some(step) = before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten() {
+                let length = step.length();
+                if length > 0.0 {
+                    drift += step * ((length - in_source).max(0.0) / length);
+                }
+            }
+            stance.0 = stance.0.max(drift.length());
+            stance.1 |= touches.contains(&frame);
+            if stance.1 {
+                worst = Some(worst.map_or(stance.0, |worst| worst.max(stance.0)));
+            }
+        }
+    }
+    worst.map(|metres| f64::from(metres) * 100.0)
+}
+
+fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+    let fps = subject.result.fps();
+    let (mut squares, mut count, mut distances): (f64, usize, Vec<(usize, f64)>) = (0.0, 0, vec![]);
+    for frame in steps.clone() {
+        let (Some(result), [a, Some(b)]) = (around.step_into(frame), subject.source_steps(frame)) else {
+            continue;
+        };
+        let off = |step: Planar| -> DVec2 { (step.shift - b.shift) * fps };
+        distances.push((frame, off(result).length()));
+        // The step out of the transition is all B: it shows when B is reached, not how far it was.
+        if let Some(a) = a.filter(|_| frame < subject.end || subject.start == subject.end) {
+            squares += off(a).length_squared();
+            count += 1;
+        }
+    }
+    let between = (squares / count.max(1) as f64).sqrt();
+    if count == 0 || between < LEAST_CHANGE_MPS {
+        return None;
+    }
+    let reached = distances
+        .iter()
+        .rev()
+        .find(|(_, distance)| *distance > 0.1 * between)
+        .map_or(subject.start, |(frame, _)| frame + 1);
+    Some(reached.saturating_sub(subject.start) as f64 / fps)
+}
+
+#[cfg(test)]
+mod tests;

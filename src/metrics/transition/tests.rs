@@ -1,0 +1,373 @@
+use super::*;
+use crate::blend::{Dissolve, DissolveOptions, RootBlend, Source, WeightLaw, dissolve};
+use crate::clip::{ContactOptions, Contacts};
+use crate::registration::fixtures::Walk;
+use crate::synth::{Action, Params, synthesize};
+use glam::Quat;
+use std::sync::Arc;
+
+const FPS: f64 = 60.0;
+
+/// Stands with both feet on the ground, 3 cm above y = 0 at the tips of the feet.
+fn still(frames: usize) -> Clip {
+    Walk {
+        frames,
+        fps: FPS,
+        speed: 0.0,
+        cadence: 0.0,
+        swing: 0.0,
+        ..Walk::default()
+    }
+    .clip()
+}
+
+/// Glides without moving a limb.
+fn gliding(speed: f32) -> Clip {
+    Walk {
+        frames: 120,
+        fps: FPS,
+        speed,
+        cadence: 0.0,
+        swing: 0.0,
+        ..Walk::default()
+    }
+    .clip()
+}
+
+fn edited(clip: &Clip, edit: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
+    let mut roots = clip.root_translations().to_vec();
+    let mut rotations = vec![];
+    for (frame, root) in roots.iter_mut().enumerate() {
+        let mut pose = clip.rotations(frame).to_vec();
+        edit(frame, &mut pose, root);
+        rotations.extend(pose);
+    }
+    Clip::new("edited", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap()
+}
+
+fn profile(clip: &Clip) -> Profile {
+    let roles = Roles::detect(clip.skeleton());
+    let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
+    Profile::new(Arc::new(Source::new(Arc::new(clip.clone()), &roles)), &roles, contacts)
+}
+
+fn measure(result: &Clip, transition: Range<usize>, enter: usize, a: &Profile, b: &Profile) -> TransitionMetrics {
+    let roles = Roles::detect(result.skeleton());
+    let (start, end) = (transition.start, transition.end);
+    TransitionMetrics::measure(&Subject {
+        result,
+        start,
+        end,
+        enter,
+        a,
+        b,
+        roles: &roles,
+        ground_m: 0.0,
+    })
+}
+
+fn blended(a: &Profile, leave: usize, b: &Profile, enter: usize, options: &DissolveOptions) -> (Dissolve, TransitionMetrics) {
+    let out = dissolve(&a.source, leave, &b.source, enter, options).unwrap();
+    let metrics = measure(&out.clip, out.transition.clone(), enter, a, b);
+    (out, metrics)
+}
+
+fn near(value: Option<f64>, expected: f64, tolerance: f64) {
+    let value = value.unwrap_or(f64::NAN);
+    assert!((value - expected).abs() <= tolerance, "{value}, expected {expected}");
+}
+
+fn ramp(frame: usize, range: Range<usize>) -> f32 {
+    ((frame as f32 - range.start as f32) / range.len() as f32).clamp(0.0, 1.0)
+}
+
+#[test]
+fn a_still_clip_has_no_artefact() {
+    let a = profile(&still(90));
+    let metrics = measure(&still(90), 30..50, 30, &a, &a);
+    for (value, what) in [
+        (metrics.seam_deg, "seam"),
+        (metrics.seam_dps, "velocity"),
+        (metrics.jump_cm, "jump"),
+        (metrics.spin_deg, "spin"),
+        (metrics.skate_cm, "skate"),
+        (metrics.penetration_cm, "penetration"),
+    ] {
+        assert_eq!(value, Some(0.0), "{what}");
+    }
+    assert_eq!((metrics.seam_joint, metrics.lag_s), (None, None));
+}
+
+#[test]
+fn a_jump_of_30_degrees_is_30_degrees() {
+    let a = profile(&still(90));
+    let result = edited(&still(90), |frame, pose, _| {
+        if frame >= 30 {
+            pose[4] *= Quat::from_rotation_y(30_f32.to_radians());
+        }
+    });
+    let cut = measure(&result, 30..30, 30, &a, &a);
+    near(cut.seam_deg, 30.0, 1e-3);
+    near(cut.seam_dps, 30.0 * FPS, 0.05);
+    assert_eq!(cut.seam_joint, Some(4));
+    near(cut.jump_cm, 0.0, 1e-9);
+    near(cut.spin_deg, 0.0, 1e-9);
+    // Wherever it lies in the window, borders included.
+    for start in [20, 25, 30] {
+        near(measure(&result, start..start + 10, start, &a, &a).seam_deg, 30.0, 1e-3);
+    }
+    assert_eq!(measure(&result, 50..60, 50, &a, &a).seam_deg, Some(0.0));
+}
+
+#[test]
+fn what_is_usual_in_the_clip_is_no_seam() {
+    // A joint that turns at a steady 300° per second: no jump. The same joint that stops dead: 300° per second.
+    let turning = |stop: usize| {
+        edited(&still(200), |frame, pose, _| {
+            pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32)
+        })
+    };
+    let a = profile(&turning(1000));
+    let steady = measure(&turning(1000), 90..110, 90, &a, &a);
+    near(steady.seam_deg, 0.0, 1e-3);
+    near(steady.seam_dps, 0.0, 0.05);
+    let stopping = measure(&turning(100), 90..110, 90, &a, &profile(&still(200)));
+    near(stopping.seam_deg, 0.0, 1e-3);
+    near(stopping.seam_dps, 300.0, 0.1);
+}
+
+#[test]
+fn a_spin_is_counted_beyond_what_the_sources_turn() {
+    let spun = |clip: &Clip, degrees: f32| {
+        edited(clip, |frame, pose, _| {
+            pose[0] = Quat::from_rotation_y(degrees.to_radians() * ramp(frame, 30..60)) * pose[0]
+        })
+    };
+    let a = profile(&still(90));
+    for degrees in [180.0, -180.0, 360.0, 25.0] {
+        near(
+            measure(&spun(&still(90), degrees), 31..61, 31, &a, &a).spin_deg,
+            f64::from(degrees).abs(),
+            0.01,
+        );
+    }
+    // There and back again is a spin of one way.
+    let back = edited(&still(90), |frame, pose, _| {
+        pose[0] = Quat::from_rotation_y((ramp(frame, 30..45) - ramp(frame, 45..60)) * 90_f32.to_radians()) * pose[0];
+    });
+    near(measure(&back, 31..61, 31, &a, &a).spin_deg, 90.0, 0.01);
+    // A source that turns 60° per second allows as much, to its side.
+    let turning = Walk {
+        frames: 90,
+        fps: FPS,
+        speed: 0.0,
+        cadence: 0.0,
+        swing: 0.0,
+        turning: 60_f32.to_radians(),
+        ..Walk::default()
+    }
+    .clip();
+    let b = profile(&turning);
+    near(measure(&turning, 31..61, 31, &a, &b).spin_deg, 0.0, 0.01);
+    near(measure(&spun(&turning, 45.0), 31..60, 31, &a, &b).spin_deg, 45.0, 0.01);
+    near(measure(&spun(&turning, -45.0), 31..60, 31, &a, &b).spin_deg, 45.0 - 30.0, 0.01);
+}
+
+#[test]
+fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
+    let a = profile(&still(120));
+    assert!(a.contacts().planted(Side::Left, 40) && a.contacts().planted(Side::Right, 40));
+    let slid = |way: &dyn Fn(usize) -> f32| edited(&still(120), |frame, _, root| root.x += way(frame));
+    let once = measure(&slid(&|f| 0.05 * ramp(f, 50..60)), 45..65, 45, &a, &a);
+    near(once.skate_cm, 5.0, 1e-3);
+    near(once.jump_cm, 0.5, 1e-3);
+    // Back again: the farthest it got.
+    let back = measure(&slid(&|f| 0.05 * (ramp(f, 50..55) - ramp(f, 55..60))), 45..65, 45, &a, &a);
+    near(back.skate_cm, 5.0, 1e-3);
+    // Only one foot: the leg swings, the other stands.
+    let leg = edited(&still(120), |frame, pose, _| {
+        pose[7] = Quat::from_rotation_x(-0.2 * ramp(frame, 50..60))
+    });
+    let metrics = measure(&leg, 45..65, 45, &a, &a);
+    // The foot's points turn about the hip joint; the ankle, 0.85 m below it, moves least over the ground.
+    let way = |point: Vec3| (point - Quat::from_rotation_x(-0.2) * point).z.abs();
+    let least = way(Vec3::new(0.0, -0.85, 0.0)).min(way(Vec3::new(0.0, -0.91, 0.2)));
+    near(metrics.skate_cm, f64::from(least) * 100.0, 0.05);
+}
+
+#[test]
+fn a_foot_in_the_air_does_not_slide() {
+    let glides = gliding(1.0);
+    let a = profile(&glides);
+    assert_eq!(measure(&glides, 45..65, 45, &a, &a).skate_cm, None);
+    // What slides in its own clip is not blamed on the transition.
+    let slow = gliding(0.3);
+    let b = profile(&slow);
+    assert!(b.contacts().planted(Side::Left, 50));
+    near(measure(&slow, 45..65, 45, &b, &b).skate_cm, 0.0, 1e-3);
+}
+
+#[test]
+fn penetration_is_the_deepest_point_during_the_transition() {
+    let a = profile(&still(90));
+    let lowered = |at: usize| edited(&still(90), move |frame, _, root| root.y -= if frame == at { 0.08 } else { 0.0 });
+    near(measure(&lowered(40), 35..45, 35, &a, &a).penetration_cm, 5.0, 1e-3);
+    near(measure(&lowered(20), 35..45, 35, &a, &a).penetration_cm, 0.0, 1e-9);
+}
+
+#[test]
+fn lag_is_where_the_weights_say() {
+    let (a, b) = (profile(&gliding(1.0)), profile(&gliding(2.0)));
+    // The share 1 - w of the way is made: 0.9 at t = 0.9 for the line, at t = 0.8042 for 3t² - 2t³ (NumPy's roots), and at t = 0.7534 for the quintic.
+    for (law, t) in [
+        (WeightLaw::Linear, 0.9),
+        (WeightLaw::Smooth, 0.804_200),
+        (WeightLaw::Smoother, 0.753_364),
+    ] {
+        let options = DissolveOptions {
+            window: 60,
+            law,
+            ..DissolveOptions::default()
+        };
+        let (_, metrics) = blended(&a, 40, &b, 20, &options);
+        near(metrics.lag_s, t * 60.0 / FPS, 0.6 / FPS);
+    }
+    let (_, cut) = blended(
+        &a,
+        40,
+        &b,
+        20,
+        &DissolveOptions {
+            window: 0,
+            ..DissolveOptions::default()
+        },
+    );
+    assert_eq!(cut.lag_s, Some(0.0));
+    let (_, alike) = blended(&a, 40, &profile(&gliding(1.05)), 20, &DissolveOptions::default());
+    assert_eq!(alike.lag_s, None);
+}
+
+fn made(params: &Params) -> Profile {
+    profile(&synthesize(params).unwrap().clip)
+}
+
+#[test]
+fn a_walk_that_goes_on_as_itself_has_no_artefact() {
+    let walk = made(&Params {
+        turn_rate_dps: 20.0,
+        ..Params::new(Action::Walk)
+    });
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        for window in [0, 12, 30] {
+            let (_, metrics) = blended(
+                &walk,
+                60,
+                &walk,
+                60,
+                &DissolveOptions {
+                    window,
+                    root,
+                    ..DissolveOptions::default()
+                },
+            );
+            near(metrics.skate_cm, 0.0, 0.01);
+            near(metrics.jump_cm, 0.0, 0.01);
+            near(metrics.spin_deg, 0.0, 0.01);
+            near(metrics.penetration_cm, 0.0, 0.5);
+            near(metrics.seam_deg, 0.0, 0.01);
+            near(metrics.seam_dps, 0.0, 0.5);
+        }
+    }
+}
+
+#[test]
+fn shorter_windows_have_bigger_seams() {
+    let walk = made(&Params::new(Action::Walk));
+    for (other, enter) in [(made(&Params::new(Action::Run)), 17), (made(&Params::new(Action::Idle)), 40)] {
+        let at = |window: usize| {
+            blended(
+                &walk,
+                70,
+                &other,
+                enter,
+                &DissolveOptions {
+                    window,
+                    ..DissolveOptions::default()
+                },
+            )
+            .1
+        };
+        let (seams, speeds): (Vec<f64>, Vec<f64>) = [0, 2, 4, 8, 16, 32]
+            .map(at)
+            .iter()
+            .map(|m| (m.seam_deg.unwrap(), m.seam_dps.unwrap()))
+            .unzip();
+        assert!(seams.windows(2).all(|pair| pair[1] <= pair[0]), "{seams:?}");
+        assert!(speeds.windows(2).all(|pair| pair[1] <= pair[0]), "{speeds:?}");
+        assert!(seams[0] > 10.0 && seams[0] > 4.0 * seams[3], "{seams:?}");
+    }
+}
+
+#[test]
+fn the_ways_to_blend_differ_where_they_should() {
+    // A walk to the north and one to the south, 5 m apart.
+    let north = made(&Params::new(Action::Walk));
+    let clip = synthesize(&Params {
+        speed_mps: 1.0,
+        ..Params::new(Action::Walk)
+    })
+    .unwrap()
+    .clip;
+    let south = profile(&clip.transformed(&Planar::new(3.0, 5.0, 0.0)));
+    let at = |align: bool, root: RootBlend, window: usize| {
+        blended(
+            &north,
+            70,
+            &south,
+            30,
+            &DissolveOptions {
+                window,
+                align,
+                root,
+                law: WeightLaw::Smooth,
+            },
+        )
+        .1
+    };
+    let (velocity, flying, flash) = (
+        at(true, RootBlend::Velocity, 30),
+        at(false, RootBlend::World, 30),
+        at(false, RootBlend::World, 0),
+    );
+    assert!(velocity.spin_deg.unwrap() < 3.0, "{velocity:?}");
+    assert!(flying.spin_deg.unwrap() > 150.0, "{flying:?}");
+    assert!(flash.jump_cm.unwrap() > 400.0 && flash.seam_deg.unwrap() > 150.0, "{flash:?}");
+    assert!(
+        flying.skate_cm.unwrap() > 5.0 * velocity.skate_cm.unwrap().max(1.0),
+        "{flying:?} {velocity:?}"
+    );
+    assert!(flying.jump_cm.unwrap() > velocity.jump_cm.unwrap() + 10.0);
+}
+
+#[test]
+fn nothing_breaks_on_odd_subjects() {
+    let clip = still(20);
+    let (a, empty) = (profile(&clip), profile(&clip.crop(0..0).unwrap()));
+    for result in [
+        clip.clone(),
+        clip.crop(0..0).unwrap(),
+        clip.crop(0..1).unwrap(),
+        clip.crop(0..2).unwrap(),
+    ] {
+        for transition in [0..0, 0..20, 19..20, 20..20, 5..500, 900..1000, usize::MAX - 1..usize::MAX] {
+            for enter in [0, 19, 20, usize::MAX] {
+                for (a, b) in [(&a, &a), (&empty, &a), (&a, &empty)] {
+                    let metrics = measure(&result, transition.clone(), enter, a, b);
+                    assert!(metrics.list().iter().all(|m| m.value.is_none_or(|v| v.is_finite() && v >= 0.0)));
+                }
+            }
+        }
+    }
+    let ids: std::collections::BTreeSet<_> = TransitionMetrics::default().list().map(|m| m.id).into();
+    assert_eq!(ids.len(), 7);
+}

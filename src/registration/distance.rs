@@ -1,0 +1,124 @@
+use super::REFERENCE_HEIGHT_M;
+
+/// Distances between windows of two clips: one row per source frame, one column per target frame, every `stride` frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistanceGrid {
+    pub(super) stride: usize,
+    pub(super) window: usize,
+    pub(super) source_start: usize,
+    pub(super) target_start: usize,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    pub(super) rms_m: Vec<f32>,
+}
+
+impl DistanceGrid {
+    /// Rows: source windows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Columns: target windows.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Frames from one row or column to the next.
+    #[must_use]
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Frames of each window.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.window
+    }
+
+    /// The first frames of the windows of a cell: (source, target).
+    #[must_use]
+    pub fn frames(&self, row: usize, column: usize) -> (usize, usize) {
+        (self.source_start + row * self.stride, self.target_start + column * self.stride)
+    }
+
+    /// All root-mean-square distances per point, row-major, metres of the clips' own body (see [`Self::cm_scale`]).
+    #[must_use]
+    pub fn rms_m(&self) -> &[f32] {
+        &self.rms_m
+    }
+
+    /// One distance, metres; `None` outside the grid.
+    #[must_use]
+    pub fn get(&self, row: usize, column: usize) -> Option<f32> {
+        if row < self.rows && column < self.columns {
+            self.rms_m.get(row * self.columns + column).copied()
+        } else {
+            None
+        }
+    }
+
+    /// What turns [`rms_m`](Self::rms_m) into centimetres on the reference body.
+    #[must_use]
+    pub fn cm_scale(body_height: f64) -> f64 {
+        100.0 * REFERENCE_HEIGHT_M / body_height
+    }
+
+    /// The cell of the smallest distance, the first of equals; `None` for an empty grid.
+    #[must_use]
+    pub fn minimum(&self) -> Option<(usize, usize)> {
+        let (at, _) = self.rms_m.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
+        Some((at / self.columns, at % self.columns))
+    }
+
+    /// Cells no larger than their eight neighbours, smallest first. Of a plateau its first cell is taken; the border counts.
+    #[must_use]
+    pub fn local_minima(&self) -> Vec<(usize, usize)> {
+        let mut minima = Vec::new();
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                if self.is_minimum(row, column) {
+                    minima.push((row, column));
+                }
+            }
+        }
+        minima.sort_by(|a, b| self.rms_m[a.0 * self.columns + a.1].total_cmp(&self.rms_m[b.0 * self.columns + b.1]));
+        minima
+    }
+
+    fn is_minimum(&self, row: usize, column: usize) -> bool {
+        let here = self.rms_m[row * self.columns + column];
+        for r in row.saturating_sub(1)..(row + 2).min(self.rows) {
+            for c in column.saturating_sub(1)..(column + 2).min(self.columns) {
+                let there = self.rms_m[r * self.columns + c];
+                // Strictly smaller than what comes before it, so that a plateau is counted once.
+                if there < here || (there == here && (r, c) < (row, column)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minima_are_sorted_and_a_plateau_counts_once() {
+        let grid = DistanceGrid {
+            stride: 1,
+            window: 1,
+            source_start: 0,
+            target_start: 0,
+            rows: 3,
+            columns: 4,
+            rms_m: vec![5.0, 9.0, 2.0, 2.0, 9.0, 9.0, 2.0, 9.0, 1.0, 9.0, 9.0, 9.0],
+        };
+        assert_eq!(grid.local_minima(), [(2, 0), (0, 2), (0, 0)]);
+        assert_eq!(grid.minimum(), Some((2, 0)));
+        assert_eq!(grid.get(0, 4), None);
+    }
+}

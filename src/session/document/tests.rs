@@ -1,0 +1,215 @@
+use super::*;
+use crate::session::transport::Span;
+
+fn blend_window(session: &mut Session, frames: f64) {
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
+}
+
+fn settle(session: &mut Session) {
+    while session.work() {}
+}
+
+#[test]
+fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
+    let session = Session::new();
+    assert_eq!(session.panes().len(), 3);
+    assert_eq!(session.query(), "compare=blend_window:30,15,10");
+    for pane in session.panes() {
+        assert_eq!(pane.problem, None);
+        let outcome = pane.outcome.as_ref().unwrap();
+        let window = pane.variant.unwrap().1 as usize;
+        assert_eq!(outcome.transition.unwrap().window_frames, window);
+        assert_eq!(outcome.sources.len(), 2);
+        assert!(outcome.metrics.iter().any(|metric| metric.value.is_some()));
+    }
+    // The panes differ in the window alone.
+    let places: Vec<_> = session.panes().iter().map(|pane| pane.outcome.as_ref().unwrap().transition.unwrap()).collect();
+    assert!(places.windows(2).all(|pair| pair[0].leave_a_secs == pair[1].leave_a_secs && pair[0].enter_b_secs == pair[1].enter_b_secs));
+    assert!(session.params().is_on(Key::Play));
+}
+
+#[test]
+fn what_did_not_change_is_not_computed_again() {
+    let mut session = Session::new();
+    settle(&mut session);
+    let before = Arc::clone(session.main_outcome().unwrap());
+    session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(10.0))])).unwrap();
+    assert!(Arc::ptr_eq(&before, session.main_outcome().unwrap()));
+    session.apply(Command::Set(vec![(Key::WeightLaw, Value::Choice("linear"))])).unwrap();
+    assert!(!Arc::ptr_eq(&before, session.main_outcome().unwrap()));
+}
+
+#[test]
+fn a_bad_value_changes_nothing() {
+    let mut session = Session::new();
+    let query = session.query();
+    let both = vec![(Key::BlendWindow, Value::Number(20.0)), (Key::TurnRate, Value::Number(1e9))];
+    let error = session.apply(Command::Set(both)).unwrap_err();
+    assert!(error.to_string().contains("turn_rate"), "{error}");
+    assert_eq!(session.query(), query);
+    assert!(!session.can_undo());
+}
+
+#[test]
+fn a_drag_is_one_step_of_undo() {
+    let mut session = Session::new();
+    for frames in [31.0, 32.0, 40.0] {
+        blend_window(&mut session, frames);
+    }
+    session.apply(Command::Settle).unwrap();
+    blend_window(&mut session, 50.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 40.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+    assert!(!session.can_undo());
+    session.apply(Command::Redo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 40.0);
+}
+
+#[test]
+fn undo_leaves_the_playhead_and_the_camera_alone() {
+    let mut session = Session::new();
+    blend_window(&mut session, 20.0);
+    session.apply(Command::Seek(1.0)).unwrap();
+    session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(5.0))])).unwrap();
+    session.apply(Command::Undo).unwrap();
+    assert_eq!((session.now_secs(), session.params().number(Key::CameraYaw)), (1.0, 5.0));
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+}
+
+#[test]
+fn the_playhead_goes_round_in_the_span_between_the_marks() {
+    let mut session = Session::new();
+    session.apply(Command::Set(vec![(Key::In, Value::Number(1.0)), (Key::Out, Value::Number(2.0))])).unwrap();
+    assert_eq!(session.span(), Span { start: 1.0, end: 2.0 });
+    for _ in 0..100 {
+        assert!(session.tick(0.03));
+        assert!((1.0..=2.0).contains(&session.now_secs()));
+    }
+    session.apply(Command::TogglePlay).unwrap();
+    let now = session.now_secs();
+    assert!(!session.tick(0.5));
+    assert_eq!(session.now_secs(), now);
+    session.apply(Command::Step(1)).unwrap();
+    assert!((session.now_secs() - now - 1.0 / 60.0).abs() < 0.02);
+}
+
+fn made_bvh(seed: f64) -> Arc<[u8]> {
+    let mut session = Session::new();
+    session.apply(Command::Set(vec![(Key::Lab, Value::Choice("make")), (Key::Seed, Value::Number(seed))])).unwrap();
+    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    crate::formats::bvh::write(&clip, &crate::formats::bvh::WriteOptions::default()).into_bytes().into()
+}
+
+#[test]
+fn dropped_files_take_a_then_b_and_keep_their_bytes() {
+    let mut session = Session::new();
+    let first = session.load("first.bvh", made_bvh(1.0)).unwrap();
+    let second = session.load("dir/second.bvh", made_bvh(2.0)).unwrap();
+    assert_eq!(session.slot(Slot::A).unwrap().id, first.ids[0]);
+    assert_eq!(session.slot(Slot::B).unwrap().id, second.ids[0]);
+    assert!(first.ids[0].starts_with("first~") && first.ids[0].len() == "first~".len() + 8);
+    settle(&mut session);
+    assert!(session.panes().iter().all(|pane| pane.problem.is_none()));
+    // A third one joins the library and leaves the experiment alone.
+    session.load("third.bvh", made_bvh(3.0)).unwrap();
+    assert_eq!(session.slot(Slot::B).unwrap().id, second.ids[0]);
+}
+
+#[test]
+fn a_broken_file_is_named_and_nothing_changes() {
+    let mut session = Session::new();
+    let (query, clips) = (session.query(), session.clip_infos());
+    let error = session.load("broken.bvh", Arc::from(&b"HIERARCHY\nROOT Hips\n{\n  OFFSET 0 zero 0\n"[..])).unwrap_err();
+    assert!(error.to_string().starts_with("broken.bvh:4:12: found "), "{error}");
+    assert_eq!((session.query(), session.clip_infos()), (query, clips));
+    assert_eq!(session.notices().list().last().unwrap().level, Level::Error);
+}
+
+#[test]
+fn a_link_to_a_dropped_file_waits_for_it() {
+    let bytes = made_bvh(4.0);
+    let mut sender = Session::new();
+    sender.load("mine.bvh", Arc::clone(&bytes)).unwrap();
+    blend_window(&mut sender, 24.0);
+    let query = sender.query();
+
+    let mut receiver = Session::new();
+    receiver.apply(Command::OpenLink(query.clone())).unwrap();
+    let notice = receiver.notices().list().last().unwrap();
+    assert!(notice.text.contains("mine") && notice.text.contains("drop that file"), "{}", notice.text);
+    assert!(receiver.panes()[0].problem.is_some());
+    receiver.load("renamed.bvh", bytes).unwrap();
+    settle(&mut receiver);
+    assert_eq!(receiver.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned)), sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned)));
+    assert_eq!(receiver.panes()[0].problem, None);
+    assert_eq!(receiver.params().number(Key::BlendWindow), 24.0);
+}
+
+#[test]
+fn the_work_survives_storage() {
+    let bytes = made_bvh(5.0);
+    let mut session = Session::new();
+    let id = session.load("kept.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
+    session.apply(Command::Rename(id.clone(), "my walk".into())).unwrap();
+    session.apply(Command::Remove("idle".into())).unwrap();
+    blend_window(&mut session, 17.0);
+    let saved = session.saved();
+
+    let mut restored = Session::new();
+    restored.restore(&saved, |_| Some(Arc::clone(&bytes)), None);
+    settle(&mut restored);
+    settle(&mut session);
+    assert_eq!(restored.clip_infos(), session.clip_infos());
+    assert_eq!(restored.query(), session.query());
+
+    let mut without = Session::new();
+    without.restore(&saved, |_| None, None);
+    assert!(without.notices().list().iter().any(|notice| notice.text.contains("kept.bvh")));
+}
+
+#[test]
+fn removing_a_clip_that_plays_puts_another_in_its_place_and_undo_brings_it_back() {
+    let mut session = Session::new();
+    settle(&mut session);
+    session.apply(Command::Remove("walk".into())).unwrap();
+    assert!(session.slot(Slot::A).is_some_and(|entry| entry.id != "walk" && entry.id != "run"));
+    assert_eq!(session.panes()[0].problem, None);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.slot(Slot::A).unwrap().id, "walk");
+}
+
+#[test]
+fn a_bundled_take_is_asked_for_and_takes_its_place() {
+    let mut session = Session::new();
+    let sample = &Session::samples()[2];
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+    let packed = std::fs::read(format!("{}/assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    session.load_sample(sample, &packed).unwrap();
+    settle(&mut session);
+    assert_eq!(session.panes()[0].problem, None);
+    assert!(session.main_outcome().unwrap().motion.clip.frames() > 30);
+}
+
+#[test]
+fn made_clips_are_kept_and_travel_in_the_link() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=make&gait=run&turn_rate=20".into())).unwrap();
+    session.apply(Command::KeepMade).unwrap();
+    let id = "run(turn_rate:20)";
+    assert!(session.library().find(id).is_some());
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
+    assert_eq!(other.panes()[0].problem, None);
+    assert_eq!(other.main_outcome().unwrap().motion.clip.rotations(9), session.main_outcome().unwrap().motion.clip.rotations(9));
+}
+
+#[test]
+fn addresses_are_asked_for_and_others_are_refused() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into())).unwrap();
+    assert_eq!(session.take_requests(), [Request::Fetch("https://example.org/a.bvh".into())]);
+    assert!(session.notices().list().iter().any(|notice| notice.text.contains("ftp://x/b.bvh")));
+}

@@ -1,0 +1,261 @@
+//! Curves under the timeline, on the same axis of time.
+
+use super::paint::{Run, line_of, put};
+use super::timeline::{TimeAxis, clipped, hovered_time, nice_step};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{Align2, Color32, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2b, pos2, vec2};
+use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints};
+
+/// One curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Series<'a> {
+    /// Its name, short: `A`, `result`.
+    pub(crate) name: &'a str,
+    /// Its colour as a line.
+    pub(crate) color: Color32,
+    /// Its colour as text.
+    pub(crate) ink: Color32,
+    /// The one that matters: drawn thick, and last.
+    pub(crate) strong: bool,
+    /// Time in seconds and value, in rising time. Where a value is not finite, the curve has a gap.
+    pub(crate) points: &'a [[f64; 2]],
+}
+
+/// Curves over one axis of values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Curves<'a> {
+    /// What they show, for the space before them: `speed`.
+    pub(crate) title: &'a str,
+    /// The unit of their values.
+    pub(crate) unit: &'a str,
+    /// Digits after the point when a value is read off.
+    pub(crate) decimals: usize,
+    /// Always within sight: such as 0 for speeds.
+    pub(crate) include: Option<f64>,
+    /// The curves.
+    pub(crate) series: &'a [Series<'a>],
+}
+
+impl Curves<'_> {
+    /// The range of values that is shown: what there is, and a margin.
+    fn bounds(&self) -> (f64, f64) {
+        let values = self
+            .series
+            .iter()
+            .flat_map(|series| series.points.iter().map(|point| point[1]))
+            .chain(self.include);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in values.filter(|value| value.is_finite()) {
+            low = low.min(value);
+            high = high.max(value);
+        }
+        if low > high {
+            return (0.0, 1.0);
+        }
+        let margin = if high - low > 1e-9 * high.abs().max(1e-9) {
+            0.08 * (high - low)
+        } else {
+            0.5 * high.abs().max(1.0)
+        };
+        // What must be in sight as a limit, such as standing still, needs no margin beyond it.
+        let floor = if self.include == Some(low) {
+            low - 0.02 * (high - low)
+        } else {
+            low - margin
+        };
+        (floor, high + margin)
+    }
+}
+
+/// Draws the curves into `plot`, whose width is the axis of time.
+pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, ui: &mut Ui) {
+    if plot.width() < 2.0 || plot.height() < 2.0 || axis.duration <= 0.0 {
+        return;
+    }
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let (low, high) = curves.bounds();
+    let step = nice_step(high - low, f64::from(plot.height()) / 26.0);
+    let first = (low / step).ceil();
+    let marks = move || {
+        (0..)
+            .map(move |i| (first + f64::from(i)) * step)
+            .take_while(move |&value| value <= high)
+    };
+    let builder = UiBuilder::new().id_salt("curves").max_rect(plot);
+    ui.scope_builder(builder, |ui| {
+        let config = Plot::new("curves")
+            .width(plot.width())
+            .height(plot.height())
+            .min_size(vec2(1.0, 1.0))
+            .set_margin_fraction(vec2(0.0, 0.0))
+            .auto_bounds(Vec2b::FALSE)
+            .show_background(false)
+            .show_axes(false)
+            .show_grid([false, true])
+            .grid_color(palette.line)
+            .grid_fade(0.0)
+            .y_grid_spacer(move |_| marks().map(|value| GridMark { value, step_size: step }).collect())
+            .show_crosshair(false)
+            .allow_zoom(false)
+            .allow_drag(false)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_double_click_reset(false)
+            .allow_axis_zoom_drag(false)
+            .label_formatter(|_| None)
+            // The timeline takes the pointer: one scrubs over the curves as over the bars.
+            .sense(Sense::empty());
+        config.show(ui, |plot_ui| {
+            plot_ui.set_plot_bounds_x(0.0..=axis.duration);
+            plot_ui.set_plot_bounds_y(low..=high);
+            for strong in [false, true] {
+                for series in curves.series.iter().filter(|series| series.strong == strong) {
+                    let width = theme.scale() * if strong { 2.2 } else { 1.4 };
+                    for run in series
+                        .points
+                        .split(|point| !(point[0].is_finite() && point[1].is_finite()))
+                        .filter(|run| run.len() > 1)
+                    {
+                        let points: Vec<PlotPoint> = run.iter().map(|&[x, y]| PlotPoint::new(x, y)).collect();
+                        let stroke = Stroke::new(width, series.color);
+                        plot_ui.line(Line::new(series.name, PlotPoints::Owned(points)).stroke(stroke).allow_hover(false));
+                    }
+                }
+            }
+        });
+    });
+    // The scale of values: the lowest and the highest line say what they are, the others follow.
+    let shown: Vec<f64> = marks().collect();
+    let decimals = usize::from(step < 1.0) + usize::from(step < 0.1) + usize::from(step < 0.01);
+    for value in [shown.first(), shown.last().filter(|_| shown.len() > 1)].into_iter().flatten() {
+        let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
+        let text = format!("{value:.decimals$}").replace('-', "−");
+        let label = line_of(&[Run::new(&text, Type::Small, palette.muted)], f32::INFINITY, ui);
+        let place = pos2(plot.right() - 2.0, y.max(plot.top() + label.size().y));
+        let at = Align2::RIGHT_BOTTOM.anchor_size(place, label.size());
+        clipped(plot, ui).rect_filled(at.expand2(vec2(2.0, -2.0)), 2.0, palette.panel.gamma_multiply(0.7));
+        put(&clipped(plot, ui), place, Align2::RIGHT_BOTTOM, label);
+    }
+}
+
+/// The names of the curves in their colours, in the space before them.
+pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
+    let palette = palette_of(ui);
+    let title = [curves.title, curves.unit].join(" ");
+    let title = line_of(&[Run::new(title.trim(), Type::Small, palette.muted)], area.width(), ui);
+    let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
+    let mut runs = Vec::new();
+    for (index, series) in curves.series.iter().enumerate() {
+        if index > 0 {
+            runs.push(Run::new("·", Type::Small, palette.muted).after(space::XS));
+        }
+        runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 { space::XS } else { 0.0 }));
+    }
+    let names = line_of(&runs, area.width(), ui);
+    put(ui.painter(), at.left_bottom() + vec2(0.0, 2.0), Align2::LEFT_TOP, names);
+}
+
+/// What the curves say at the pointer: a dot on each, and their values with the unit.
+pub(super) fn hover_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, response: &Response, ui: &Ui) {
+    let Some(time) = hovered_time(axis, plot, response) else { return };
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let (low, high) = curves.bounds();
+    let painter = ui.painter();
+    let x = axis.x_of(time);
+    painter.vline(
+        painter.round_to_pixel_center(x),
+        plot.y_range(),
+        Stroke::new(1.0, palette.line_strong),
+    );
+    let written: Vec<(String, &Series<'_>)> = curves
+        .series
+        .iter()
+        .filter_map(|series| {
+            let value = value_at(series.points, time)?;
+            let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
+            painter.circle(pos2(x, y), 3.0 * theme.scale(), series.color, Stroke::new(1.5, palette.panel));
+            Some((format!("{value:.*}", curves.decimals).replace('-', "−"), series))
+        })
+        .collect();
+    if written.is_empty() {
+        return;
+    }
+    let seconds = format!("{time:.2} s");
+    let mut runs = vec![Run::new(&seconds, Type::Small, palette.muted)];
+    for (value, series) in &written {
+        runs.push(Run::new(series.name, Type::Small, series.ink).after(space::M));
+        runs.push(Run::new(value, Type::SmallStrong, palette.text).after(space::XS));
+    }
+    runs.push(Run::new(curves.unit, Type::Small, palette.muted).after(space::XS));
+    let galley = line_of(&runs, f32::INFINITY, ui);
+    let size = galley.size() + vec2(2.0 * space::S, space::S);
+    // Beside the pointer, on the side where there is room.
+    let left = if x + 12.0 + size.x < plot.right() {
+        x + 12.0
+    } else {
+        (x - 12.0 - size.x).max(plot.left())
+    };
+    let rect = Rect::from_min_size(pos2(left, plot.top() + 2.0), size);
+    let line = Stroke::new(theme.hairline(), palette.line);
+    painter.rect(rect, radius::M, palette.panel_raised, line, StrokeKind::Inside);
+    put(painter, rect.center(), Align2::CENTER_CENTER, galley);
+}
+
+/// The value between two points of a curve; none outside it or in a gap.
+fn value_at(points: &[[f64; 2]], time: f64) -> Option<f64> {
+    let after = points.partition_point(|point| point[0] < time);
+    let right = points.get(after)?;
+    if right[0] == time {
+        return Some(right[1]).filter(|value| value.is_finite());
+    }
+    let left = points.get(after.checked_sub(1)?)?;
+    let t = (time - left[0]) / (right[0] - left[0]);
+    Some(left[1] + t * (right[1] - left[1])).filter(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_between_points_are_on_the_line_between_them() {
+        let points = [[0.0, 1.0], [1.0, 3.0], [2.0, f64::NAN], [3.0, 0.0]];
+        assert_eq!(value_at(&points, 0.5), Some(2.0));
+        assert_eq!(value_at(&points, 1.0), Some(3.0));
+        assert_eq!(value_at(&points, 1.5), None);
+        assert_eq!(value_at(&points, -0.1), None);
+        assert_eq!(value_at(&points, 3.1), None);
+        assert_eq!(value_at(&[], 0.0), None);
+    }
+
+    #[test]
+    fn bounds_hold_all_that_is_finite() {
+        let points = [[0.0, 1.0], [1.0, f64::INFINITY], [2.0, 5.0]];
+        let series = [Series {
+            name: "A",
+            color: Color32::RED,
+            ink: Color32::RED,
+            strong: true,
+            points: &points,
+        }];
+        let curves = Curves {
+            include: Some(0.0),
+            series: &series,
+            ..Curves::default()
+        };
+        let (low, high) = curves.bounds();
+        assert!(low <= 0.0 && low > -0.5 && high > 5.0 && high < 6.0);
+        let flat = [[0.0, 2.0], [1.0, 2.0]];
+        let series = [Series {
+            points: &flat,
+            ..series[0]
+        }];
+        let (low, high) = Curves {
+            series: &series,
+            ..Curves::default()
+        }
+        .bounds();
+        assert!(low < 2.0 && high > 2.0);
+        assert_eq!(Curves::default().bounds(), (0.0, 1.0));
+    }
+}

@@ -1,0 +1,612 @@
+//! The kit laid out as a whole lab, to be looked at: with `SEGUE_GALLERY` set to a folder, the pictures are written there.
+
+use super::*;
+use crate::ui::theme::{Palette, Theme, Type, palette_of, space, theme_of};
+use eframe::egui::{
+    self, Align, CentralPanel, Frame, Layout, Margin, Panel, Rect, RectAlign, ScrollArea, Shape, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
+};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+
+/// What the mock remembers between frames: enough to be played with.
+#[derive(Clone, Debug)]
+struct Mock {
+    lab: usize,
+    mode: usize,
+    curve: usize,
+    window: f64,
+    leave: f64,
+    half_life: f64,
+    align: bool,
+    now: f64,
+    playing: bool,
+    space: usize,
+    caption: bool,
+    notices: bool,
+    transition: (f64, f64),
+    events: Vec<TimelineEvent>,
+}
+
+impl Default for Mock {
+    fn default() -> Self {
+        Self {
+            lab: 2,
+            mode: 1,
+            curve: 0,
+            window: 30.0,
+            leave: 2.93,
+            half_life: 0.27,
+            align: true,
+            now: 2.93,
+            playing: false,
+            space: 0,
+            caption: true,
+            notices: false,
+            transition: (2.6, 3.5),
+            events: Vec::new(),
+        }
+    }
+}
+
+const LABS: [(usize, &str); 10] = [
+    (0, "View"),
+    (1, "Make"),
+    (2, "Blend"),
+    (3, "Transition"),
+    (4, "Speed"),
+    (5, "Loop"),
+    (6, "Warp"),
+    (7, "Graph"),
+    (8, "Path"),
+    (9, "Match"),
+];
+
+const CLIPS: [(&str, &str, Part, &str); 5] = [
+    ("walk", "3.9 s · 120 fps · 30 joints", Part::A, ""),
+    ("run", "1.4 s · 120 fps · 30 joints", Part::B, ""),
+    ("walk, turn left", "4.3 s · 120 fps", Part::None, ""),
+    ("idle", "3.3 s · 60 fps", Part::None, ""),
+    (
+        "pirouette",
+        "4.9 s · 120 fps · T-pose dropped",
+        Part::None,
+        "The first frame is a T-pose and was left out.",
+    ),
+];
+
+fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
+    let theme = theme_of(ui);
+    let phone = ui.available_width() < 600.0;
+    let plain = |p: &Palette| Frame::new().fill(p.panel);
+    let p = theme.palette();
+    Panel::top("top")
+        .frame(plain(p).inner_margin(Margin::symmetric(16, 8)))
+        .show_separator_line(true)
+        .show(ui, |ui| top_ui(mock, phone, ui));
+    if phone {
+        Panel::bottom("params")
+            .exact_size(300.0)
+            .frame(plain(p).inner_margin(16))
+            .show(ui, |ui| {
+                ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
+            });
+        Panel::bottom("time")
+            .exact_size(130.0)
+            .frame(plain(p).inner_margin(Margin::symmetric(16, 10)))
+            .show(ui, |ui| time_ui(mock, phone, ui));
+    } else {
+        let height = 232.0 * theme.scale();
+        let frame = plain(p).inner_margin(Margin {
+            left: 16,
+            right: 16,
+            top: 10,
+            bottom: 12,
+        });
+        Panel::bottom("time")
+            .exact_size(height)
+            .frame(frame)
+            .show(ui, |ui| time_ui(mock, phone, ui));
+        let library = plain(p).inner_margin(Margin::symmetric(8, 12));
+        Panel::left("library")
+            .exact_size(232.0 * theme.scale())
+            .resizable(false)
+            .frame(library)
+            .show(ui, |ui| library_ui(mock, ui));
+        let parameters = plain(p).inner_margin(Margin::symmetric(16, 12));
+        Panel::right("parameters")
+            .exact_size(292.0 * theme.scale())
+            .resizable(false)
+            .frame(parameters)
+            .show(ui, |ui| {
+                ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
+            });
+    }
+    CentralPanel::default()
+        .frame(Frame::new().fill(p.ground))
+        .show(ui, |ui| stage_ui(mock, phone, ui));
+}
+
+fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
+    let p = palette_of(ui);
+    ui.horizontal(|ui| {
+        let scale = theme_of(ui).scale();
+        let (_, logo) = ui.allocate_space(vec2(22.0, 18.0) * scale);
+        paint_logo(logo, p.a, p.b, ui.painter());
+        let name = paint::line_of(&[paint::Run::new("Segue", Type::Title, p.text)], 200.0, ui);
+        let (_, at) = ui.allocate_space(name.size());
+        paint::put(ui.painter(), at.left_center(), egui::Align2::LEFT_CENTER, name);
+        ui.add_space(space::S);
+        let buttons = if phone { 130.0 } else { 430.0 * scale };
+        let width = ui.available_width() - buttons;
+        if let Some(lab) = tabs_ui("Lab", mock.lab, &LABS, width, ui) {
+            mock.lab = lab;
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            button_ui(Button::new(if phone { "Link" } else { "Copy link" }).primary().icon(Icon::Link), ui);
+            if phone {
+                icon_button_ui(Icon::Menu, "Menu", ui);
+            } else {
+                icon_button_ui(Icon::Contrast, "Dark or light", ui);
+                icon_button_ui(Icon::Redo, "Redo", ui);
+                icon_button_ui(Icon::Undo, "Undo", ui);
+                button_ui(Button::new("Lessons"), ui);
+                let compare = button_ui(Button::new("Compare · 3").trailing(Icon::ChevronDown), ui);
+                menu_ui(&compare, RectAlign::BOTTOM_END, |ui| {
+                    menu_item_ui(
+                        MenuItem {
+                            text: "Three windows",
+                            chosen: true,
+                            ..MenuItem::default()
+                        },
+                        ui,
+                    );
+                    menu_item_ui(
+                        MenuItem {
+                            text: "Three methods",
+                            shortcut: "⇧3",
+                            ..MenuItem::default()
+                        },
+                        ui,
+                    );
+                    menu_line_ui(ui);
+                    menu_item_ui(
+                        MenuItem {
+                            text: "Only one pane",
+                            icon: Some(Icon::Close),
+                            ..MenuItem::default()
+                        },
+                        ui,
+                    );
+                });
+            }
+        });
+    });
+}
+
+fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.horizontal(|ui| {
+        ui.add_space(space::S);
+        ui.vertical(|ui| section_header_ui("Library", ui));
+    });
+    let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
+    for (index, (name, detail, part, warning)) in CLIPS.into_iter().enumerate() {
+        clip_row_ui(
+            ClipRow {
+                name,
+                detail,
+                part,
+                warning,
+                selected: index == 2,
+                actions: &actions,
+            },
+            ui,
+        );
+    }
+    ui.add_space(space::M);
+    ui.scope(|ui| {
+        drop_zone_ui("Drop BVH, ASF + AMC, GLB", &["open…", "samples"], false, ui);
+    });
+    ui.add_space(space::M);
+    progress_row_ui("Distance matrix", Some(0.62), "1,240 of 2,000", ui);
+}
+
+fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.y = space::S;
+    section_header_ui("Blend", ui);
+    if let Some(mode) = segmented_ui("Method", mock.mode, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui) {
+        mock.mode = mode;
+    }
+    ui.add_space(space::XS);
+    let seconds = format!("{:.2} s", mock.window / 60.0);
+    let p = palette_of(ui);
+    let marks = [
+        Mark {
+            value: 15.0,
+            color: p.muted,
+        },
+        Mark {
+            value: 10.0,
+            color: p.muted,
+        },
+    ];
+    let row = SliderRow::new("Blend window", 1.0..=60.0, 15.0)
+        .whole()
+        .unit("frames")
+        .secondary(&seconds)
+        .marks(&marks);
+    let row = row.help("How long A fades into B. Long drags, short bursts.");
+    mock.window = slider_row_ui(mock.window, &row, ui).changed.unwrap_or(mock.window);
+    let row = SliderRow::new("Leave A at", 0.0..=3.9, 2.0).step(0.01).unit("s");
+    mock.leave = slider_row_ui(mock.leave, &row, ui).changed.unwrap_or(mock.leave);
+    let row = SliderRow::new("Enter B at", 0.0..=1.4, 0.2)
+        .step(0.01)
+        .unit("s")
+        .source(Source::Auto);
+    slider_row_ui(0.13, &row.help("Found automatically: best match of both windows, 4.1 cm."), ui);
+    let row = SliderRow::new("Half-life", 0.02..=2.0, 0.2).step(0.01).unit("s").log();
+    mock.half_life = slider_row_ui(mock.half_life, &row, ui).changed.unwrap_or(mock.half_life);
+    if let Some(curve) = segmented_ui("Curve", mock.curve, &[(0, "smooth"), (1, "linear"), (2, "smoother")], ui) {
+        mock.curve = curve;
+    }
+    ui.add_space(space::XS);
+    ui.spacing_mut().item_spacing.y = 2.0;
+    if let Some(on) = switch_row_ui("Align to A", mock.align, ui) {
+        mock.align = on;
+    }
+    switch_row_ui("Blend root by velocity", true, ui);
+    switch_row_ui("Foot lock", false, ui);
+    ui.add_space(space::XS);
+    if let Some(space) = choice_row_ui(
+        "Blend in",
+        mock.space,
+        &[(0, "joint rotations"), (1, "world space"), (2, "exponential map")],
+        ui,
+    ) {
+        mock.space = space;
+    }
+    ui.add_space(space::S);
+    ui.horizontal(|ui| {
+        button_ui(Button::new("Swap").icon(Icon::Swap), ui);
+        button_ui(Button::new("Reset").quiet().icon(Icon::Undo), ui);
+        button_ui(Button::new("Remove").tone(Tone::Danger).icon(Icon::Trash), ui);
+    });
+}
+
+fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
+    let p = palette_of(ui);
+    let stage = ui.available_rect_before_wrap();
+    let panes: &[(&str, &str, &str, Mood)] = &[
+        ("30", "0.50 s", "smoothest", Mood::Good),
+        ("15", "0.25 s", "", Mood::Plain),
+        ("10", "0.17 s", "roughest", Mood::Bad),
+    ];
+    let count = if phone { 1 } else { 3 };
+    let width = (stage.width() / count as f32).floor();
+    for (index, &(strong, secondary, chip, mood)) in panes.iter().take(count).enumerate() {
+        let pane = Rect::from_min_size(pos2(stage.left() + index as f32 * width, stage.top()), vec2(width, stage.height()));
+        mock_picture(pane, ui);
+        if index > 0 {
+            ui.painter().vline(pane.left(), pane.y_range(), Stroke::new(1.0, p.line));
+        }
+        pane_header_ui(
+            &PaneTitle {
+                strong,
+                text: "frames",
+                secondary,
+                chip,
+                mood,
+            },
+            pane,
+            ui,
+        );
+        let rank = [Rank::Best, Rank::Middle, Rank::Worst][index];
+        let metrics = [
+            Metric {
+                value: ["41", "126", "214"][index],
+                label: "seam °/s",
+                rank,
+                hint: "How much the speed of the joints jumps.",
+            },
+            Metric {
+                value: ["0.6", "0.9", "1.8"][index],
+                label: "skate cm",
+                rank: Rank::Middle,
+                hint: "",
+            },
+            Metric {
+                value: ["0.38", "0.19", "0.12"][index],
+                label: "lag s",
+                rank: Rank::Middle,
+                hint: "",
+            },
+            Metric {
+                value: "0°",
+                label: "spin",
+                rank: Rank::Middle,
+                hint: "",
+            },
+        ];
+        pane_footer_ui(&metrics, pane, ui);
+    }
+    if mock.caption && !phone {
+        let above = stage.with_max_y(stage.bottom() - 78.0);
+        caption_ui(
+            "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
+            above,
+            ui,
+        );
+    }
+    if mock.notices {
+        let long =
+            "pirouette.bvh: 3 of 4,712 numbers could not be read and were taken from the frame before. The rest is as it was recorded.";
+        let notices = [
+            Notice {
+                text: "walk.bvh was read: 470 frames.",
+                mood: Mood::Good,
+                action: "",
+            },
+            Notice {
+                text: long,
+                mood: Mood::Warning,
+                action: "Show the lines",
+            },
+        ];
+        toasts_ui(&notices, stage, ui);
+    }
+}
+
+/// Something like ground and body, to judge the overlays against.
+fn mock_picture(pane: Rect, ui: &Ui) {
+    let stage = &palette_of(ui).stage;
+    let painter = ui.painter().with_clip_rect(pane);
+    painter.add(Shape::gradient_rect(pane, egui::Direction::TopDown, [stage.sky, stage.horizon]));
+    let horizon = pane.top() + 0.55 * pane.height();
+    for i in -8..=8_i8 {
+        let x = pane.center().x + f32::from(i) * 30.0;
+        let far = pos2(x, horizon);
+        let near = pos2(pane.center().x + f32::from(i) * 120.0, pane.bottom());
+        painter.line_segment([far, near], Stroke::new(1.0, stage.grid));
+    }
+    let limb = |from: Vec2, to: Vec2, radius: f32, color| {
+        let at = |v: Vec2| pane.center() + v * pane.height() / 560.0;
+        painter.line_segment([at(from), at(to)], Stroke::new(2.0 * radius, color));
+        painter.circle_filled(at(from), radius, color);
+        painter.circle_filled(at(to), radius, color);
+    };
+    for (dx, color) in [
+        (90.0, palette_of(ui).a.gamma_multiply(0.4)),
+        (-120.0, palette_of(ui).b.gamma_multiply(0.4)),
+        (0.0, stage.clay),
+    ] {
+        let d = vec2(dx, 0.0);
+        limb(d + vec2(0.0, -150.0), d + vec2(4.0, -130.0), 20.0, color);
+        limb(d + vec2(4.0, -90.0), d + vec2(8.0, 0.0), 26.0, color);
+        limb(d + vec2(8.0, 10.0), d + vec2(40.0, 90.0), 15.0, color);
+        limb(d + vec2(40.0, 90.0), d + vec2(90.0, 170.0), 11.0, color);
+        limb(d + vec2(0.0, 10.0), d + vec2(-40.0, 100.0), 15.0, color);
+        limb(d + vec2(-40.0, 100.0), d + vec2(-50.0, 190.0), 11.0, color);
+    }
+}
+
+fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
+    let p = palette_of(ui);
+    ui.spacing_mut().item_spacing.y = space::S;
+    let transport = Transport {
+        playing: mock.playing,
+        repeat: true,
+        speed: 0.25,
+        now: mock.now,
+        frame: (mock.now * 120.0).round() as usize,
+        frames: 612,
+        caption: if phone { "A walk → B run" } else { "right foot · speed" },
+    };
+    match transport_ui(&transport, ui) {
+        Some(TransportEvent::SetPlaying(playing)) => mock.playing = playing,
+        Some(TransportEvent::Step(frames)) => mock.now += f64::from(frames) / 120.0,
+        _ => {}
+    }
+    let (from, to) = mock.transition;
+    let tracks = [
+        Track {
+            part: Part::A,
+            label: "A walk",
+            name: "walk",
+            start: 0.0,
+            end: to,
+            fade_in: 0.0,
+            fade_out: to - from,
+        },
+        Track {
+            part: Part::B,
+            label: "B run",
+            name: "run",
+            start: from,
+            end: 5.8,
+            fade_in: to - from,
+            fade_out: 0.0,
+        },
+    ];
+    let wave = |rate: f64, phase: f64, range: std::ops::Range<f64>| -> Vec<[f64; 2]> {
+        (0..=580_u32)
+            .map(|i| f64::from(i) / 100.0)
+            .filter(|t| range.contains(t))
+            .map(|t| [t, 1.4 + (t * rate + phase).sin()])
+            .collect()
+    };
+    let (a, b) = (wave(4.3, 0.4, 0.0..to), wave(6.6, 1.2, from..6.0));
+    let mix = |t: f64| ((t - from) / (to - from)).clamp(0.0, 1.0);
+    let blend = |&[t, _]: &[f64; 2]| {
+        let (one, other) = (1.4 + (t * 4.3 + 0.4).sin(), 1.4 + (t * 6.6 + 1.2).sin());
+        [t, one + mix(t) * (other - one)]
+    };
+    let result: Vec<[f64; 2]> = wave(1.0, 0.0, 0.0..6.0).iter().map(blend).collect();
+    let series = [
+        Series {
+            name: "A",
+            color: p.a,
+            ink: p.a_ink,
+            strong: false,
+            points: &a,
+        },
+        Series {
+            name: "B",
+            color: p.b,
+            ink: p.b_ink,
+            strong: false,
+            points: &b,
+        },
+        Series {
+            name: "result",
+            color: p.accent,
+            ink: p.accent_ink,
+            strong: true,
+            points: &result,
+        },
+    ];
+    let moments = [
+        Moment {
+            time: 1.2,
+            color: p.muted,
+            name: "foot planted",
+        },
+        Moment {
+            time: 3.05,
+            color: p.bad,
+            name: "foot slides",
+        },
+    ];
+    let curves = Curves {
+        title: "speed",
+        unit: "m/s",
+        decimals: 2,
+        include: Some(0.0),
+        series: &series,
+    };
+    let timeline = Timeline {
+        duration: 5.8,
+        now: mock.now,
+        fps: 120.0,
+        tracks: &tracks,
+        transition: Some(from..to),
+        transition_editable: true,
+        in_point: None,
+        out_point: None,
+        moments: &moments,
+        curves: (!phone).then_some(curves),
+    };
+    for event in timeline_ui(&timeline, ui) {
+        match event {
+            TimelineEvent::Seek(time) => mock.now = time,
+            TimelineEvent::SetTransitionStart(time) => mock.transition.0 = time,
+            TimelineEvent::SetTransitionEnd(time) => mock.transition.1 = time,
+            _ => {}
+        }
+        mock.events.push(event);
+    }
+}
+
+fn harness(size: Vec2, theme: Theme, mock: Mock) -> Harness<'static, Mock> {
+    let builder = Harness::builder()
+        .with_size(size)
+        .with_max_steps(40)
+        .with_context_setup(move |ctx| theme.install(ctx));
+    builder
+        .with_theme(if theme.dark { egui::Theme::Dark } else { egui::Theme::Light })
+        .build_ui_state(
+            move |ui, mock: &mut Mock| {
+                let rect = ui.ctx().content_rect();
+                ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| lab_ui(mock, ui));
+            },
+            mock,
+        )
+}
+
+/// Writes a picture where pictures were asked for. They are to be looked at, not compared: rasterisers differ.
+fn picture(name: &str, harness: &mut Harness<'_, Mock>) {
+    if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
+        let image = harness.render().expect("a rasteriser");
+        image
+            .save(std::path::Path::new(&folder).join(format!("{name}.png")))
+            .expect("a folder that can be written to");
+    }
+}
+
+const DESK: Vec2 = vec2(1440.0, 900.0);
+const DARK: Theme = Theme {
+    dark: true,
+    projector: false,
+};
+const LIGHT: Theme = Theme {
+    dark: false,
+    projector: false,
+};
+
+/// Every named widget lies within the window: nothing is cut off at its sides.
+fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
+    let window = Rect::from_min_size(pos2(0.0, 0.0), size).expand(1.0);
+    for name in ["Blend window", "Play", "Timeline", "Align to A", "dissolve"] {
+        let rect = harness.get_by_label(name).rect();
+        assert!(
+            rect.left() >= window.left() && rect.right() <= window.right(),
+            "{name} at {rect:?} in {size:?}"
+        );
+        assert!(
+            rect.height() >= 24.0 && rect.width() >= 24.0,
+            "{name} is too small to be hit: {rect:?}"
+        );
+    }
+}
+
+#[test]
+fn a_lab_fits_desk_projector_and_phone() {
+    let hall = Theme {
+        dark: true,
+        projector: true,
+    };
+    let places = [
+        ("desk-dark", DESK, DARK),
+        ("desk-light", DESK, LIGHT),
+        ("projector", vec2(1280.0, 720.0), hall),
+        ("phone", vec2(390.0, 844.0), DARK),
+        ("phone-light", vec2(390.0, 844.0), LIGHT),
+    ];
+    for (name, size, theme) in places {
+        let mut harness = harness(size, theme, Mock::default());
+        harness.run();
+        assert_nothing_sticks_out(size, &harness);
+        picture(name, &mut harness);
+    }
+}
+
+#[test]
+fn menus_notices_and_hovers_are_to_be_seen() {
+    let mut harness = harness(
+        DESK,
+        DARK,
+        Mock {
+            notices: true,
+            caption: false,
+            ..Mock::default()
+        },
+    );
+    harness.run();
+    harness.get_by_label("Compare · 3").click();
+    harness.run();
+    assert!(harness.get_by_label("Three windows").accesskit_node().is_selected().is_none());
+    harness.hover_at(pos2(620.0, 800.0));
+    harness.run();
+    picture("open-dark", &mut harness);
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label("Three windows").is_none());
+    harness.get_by_label("Blend window").focus();
+    harness.key_press(egui::Key::ArrowRight);
+    let name = harness.get_by_label_contains("idle, 3.3").rect();
+    harness.hover_at(name.center());
+    harness.run();
+    picture("focus-dark", &mut harness);
+    assert_eq!(harness.state().window, 31.0);
+}

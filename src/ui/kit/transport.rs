@@ -1,0 +1,147 @@
+//! The row above the timeline: play, where we are, and how fast.
+
+use super::button::{Button, button_ui, icon_button_ui};
+use super::icon::{Icon, paint_icon};
+use super::menu::{MenuItem, menu_item_ui, menu_ui};
+use super::paint::{Run, focus_ring, line_of, put};
+use super::words::Words;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+
+/// The speeds one may choose.
+const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// Where time is, as the row shows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Transport<'a> {
+    /// Time runs.
+    pub(crate) playing: bool,
+    /// It starts again at the end.
+    pub(crate) repeat: bool,
+    /// How fast: 1 is real time.
+    pub(crate) speed: f64,
+    /// Now, in seconds.
+    pub(crate) now: f64,
+    /// The frame shown, counted from 0.
+    pub(crate) frame: usize,
+    /// How many frames there are.
+    pub(crate) frames: usize,
+    /// What the curves below show, at the right end: `right foot · speed m/s`.
+    pub(crate) caption: &'a str,
+}
+
+/// What was asked of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum TransportEvent {
+    /// Run or stop.
+    SetPlaying(bool),
+    /// Start again at the end, or not.
+    SetRepeat(bool),
+    /// Run this fast.
+    SetSpeed(f64),
+    /// Go on by frames (negative: back), and stop.
+    Step(i32),
+}
+
+/// Play, steps, speed, the time and the frame; the caption at the right where there is room.
+pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<TransportEvent> {
+    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let scale = theme.scale();
+    let height = (36.0 * scale).round();
+    let width = ui.available_width();
+    // On a phone, the steps give way: the timeline itself is there to scrub.
+    let narrow = width < 520.0 * scale;
+    let (_, row) = ui.allocate_space(vec2(width, height));
+    let mut event = None;
+    let builder = UiBuilder::new()
+        .id_salt("transport")
+        .max_rect(row)
+        .layout(Layout::left_to_right(Align::Center));
+    let right_end = ui.scope_builder(builder, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if play_button_ui(transport.playing, ui) {
+            event = Some(TransportEvent::SetPlaying(!transport.playing));
+        }
+        ui.add_space(space::XS);
+        if !narrow {
+            if icon_button_ui(Icon::StepBack, words.step_back, ui).clicked() {
+                event = Some(TransportEvent::Step(-1));
+            }
+            if icon_button_ui(Icon::StepForward, words.step_forward, ui).clicked() {
+                event = Some(TransportEvent::Step(1));
+            }
+            if button_ui(Button::icon_only(Icon::Loop, words.repeat).selected(transport.repeat), ui).clicked() {
+                event = Some(TransportEvent::SetRepeat(!transport.repeat));
+            }
+        }
+        if let Some(speed) = speed_ui(transport.speed, ui) {
+            event = Some(TransportEvent::SetSpeed(speed));
+        }
+        ui.add_space(space::XS);
+        let time = format!("{:.2} s", transport.now);
+        let frame = format!("{} {} / {}", words.frame, transport.frame, transport.frames);
+        let mut runs = vec![Run::new(&time, Type::Strong, palette.text)];
+        if !narrow {
+            runs.push(Run::new(&frame, Type::Body, palette.muted).after(space::M));
+        }
+        let galley = line_of(&runs, f32::INFINITY, ui);
+        // As wide as the widest it becomes, so that what follows holds still.
+        let (_, rect) = ui.allocate_space(vec2(galley.size().x, height));
+        put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
+        rect.right()
+    });
+    let left = right_end.inner + space::L;
+    let caption = line_of(&[Run::new(transport.caption, Type::Body, palette.muted)], row.right() - left, ui);
+    put(ui.painter(), pos2(row.right(), row.center().y), Align2::RIGHT_CENTER, caption);
+    event
+}
+
+/// The round button that starts and stops time. Was it pressed?
+pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
+    let (palette, words) = (palette_of(ui), Words::of(ui));
+    let side = (34.0 * theme_of(ui).scale()).round();
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    let hot = ui.ctx().animate_bool(response.id, response.hovered() || response.has_focus());
+    let fill = palette.handle.lerp_to_gamma(palette.accent, 0.25 * hot);
+    ui.painter().circle_filled(rect.center(), side / 2.0 - 0.5 + hot * 0.5, fill);
+    let icon = if playing { Icon::Pause } else { Icon::Play };
+    // The weight of a triangle lies left of the middle of its box.
+    let nudge = if playing { 0.0 } else { 0.02 * side };
+    paint_icon(
+        icon,
+        rect.shrink(side * 0.27).translate(vec2(nudge, 0.0)),
+        palette.on_handle,
+        ui.painter(),
+    );
+    focus_ring(rect, (side / 2.0) as u8, &response, ui);
+    let name = if playing { words.pause } else { words.play };
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
+    let clicked = response.clicked();
+    response.on_hover_text(name);
+    clicked
+}
+
+fn speed_ui(speed: f64, ui: &mut Ui) -> Option<f64> {
+    let words = Words::of(ui);
+    let said = format!("{speed}×");
+    let opener = button_ui(Button::new(&said).quiet().name(words.speed).hint(words.speed), ui);
+    let mut picked = None;
+    menu_ui(&opener, RectAlign::TOP_START, |ui| {
+        for value in SPEEDS {
+            if menu_item_ui(
+                MenuItem {
+                    text: &format!("{value}×"),
+                    chosen: value == speed,
+                    ..MenuItem::default()
+                },
+                ui,
+            )
+            .clicked()
+            {
+                picked = Some(value);
+            }
+        }
+    });
+    picked.filter(|&value| value != speed)
+}
