@@ -1,1 +1,174 @@
-//! formats
+//! Motion files: from bytes to clips and back.
+//!
+//! [`import`] reads whatever it is given, by content rather than by name. Everything with a sensible reading is read, and what was odd about it
+//! comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
+//! that are there, never a number in a header.
+
+pub mod bvh;
+mod error;
+mod measure;
+mod raw;
+mod t_pose;
+mod text;
+mod warning;
+
+pub use error::ImportError;
+pub use measure::{CMU_METRES_PER_UNIT, Measure};
+pub use warning::{ImportWarning, WarningKind};
+
+use crate::clip::{Clip, UpAxis};
+
+/// What a person may know better than the file.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ImportOptions {
+    /// Metres per unit of length; found by the height of the character where `None` or no length.
+    pub metres_per_unit: Option<f64>,
+    /// The up axis; found by the stance of the character where `None`.
+    pub up: Option<UpAxis>,
+    /// Frames per second; what the file says where `None` or no rate.
+    pub fps: Option<f64>,
+    /// Larger files are refused.
+    pub max_bytes: usize,
+    /// Whether a first row that is a T-pose is left out; otherwise it is only marked.
+    pub drop_t_pose: bool,
+}
+
+impl Default for ImportOptions {
+    /// Everything as found, up to 512 MB, without a T-pose in front.
+    fn default() -> Self {
+        Self {
+            metres_per_unit: None,
+            up: None,
+            fps: None,
+            max_bytes: 512 << 20,
+            drop_t_pose: true,
+        }
+    }
+}
+
+/// One character of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportedClip {
+    /// The motion, in metres and Y up.
+    pub clip: Clip,
+    /// Whether the first row of the file is a T-pose that the motion does not start from. Frame 0 of `clip` is that row unless
+    /// [`t_pose_dropped`](Self::t_pose_dropped).
+    pub t_pose_first_row: bool,
+    /// Whether the first row was left out.
+    pub t_pose_dropped: bool,
+    /// The unit and up axis that were found or given; its text is a note for people.
+    pub measure: Measure,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// One clip for each character.
+    pub clips: Vec<ImportedClip>,
+    /// What was odd, one line per kind.
+    pub warnings: Vec<ImportWarning>,
+}
+
+/// Reads a motion file. `name` is the file's name: for errors, for the name of the clip, and for its ending where the content says nothing.
+///
+/// # Errors
+/// [`ImportError`] when the file is too large, of no known format, or broken.
+pub fn import(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+    Ok(import_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
+}
+
+/// [`import`] that reports the bytes read so far about every 256 KB, and stops with `None` when `progress` returns `false`.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_with_progress(
+    name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<Option<Imported>, ImportError> {
+    check_size(name, bytes, options)?;
+    if looks_like_bvh(bytes) || has_extension(name, "bvh") {
+        return bvh::read_with_progress(name, bytes, options, progress);
+    }
+    let found = match name.rsplit_once('.') {
+        Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
+        _ => "a file of unknown format".to_owned(),
+    };
+    Err(ImportError::whole_file(name, found, "a BVH file (.bvh)").with_hint("convert it to BVH, or rename it if it is one"))
+}
+
+/// Whether the first word is one that BVH files start with.
+fn looks_like_bvh(bytes: &[u8]) -> bool {
+    /// Comments may come first; UTF-16 has two bytes for each.
+    const HEAD: usize = 16 << 10;
+    let head = text::decode(bytes.get(..HEAD).unwrap_or(bytes));
+    bvh::starts_like_bvh(&head)
+}
+
+fn has_extension(name: &str, extension: &str) -> bool {
+    name.rsplit_once('.')
+        .is_some_and(|(_, found)| found.eq_ignore_ascii_case(extension))
+}
+
+/// The file's name without folders and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match file.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem,
+        _ => file,
+    }
+}
+
+fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), ImportError> {
+    if bytes.len() <= options.max_bytes {
+        return Ok(());
+    }
+    let found = format!("a file of {} MB", bytes.len().div_ceil(1 << 20));
+    Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20)).with_hint("cut the motion into parts"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_known_by_its_content_or_its_name() {
+        let options = ImportOptions::default();
+        let text = b"# a comment\nROOT Hips { OFFSET 0 1 0 }";
+        assert_eq!(import("dir/walk.txt", text, &options).unwrap().clips[0].clip.name(), "walk");
+        assert_eq!(
+            import("walk.BVH", b"nothing", &options).unwrap_err().to_string(),
+            "walk.BVH:1:1: found `nothing`, expected `HIERARCHY` and a `ROOT`"
+        );
+        let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a BVH file (.bvh)"
+        );
+        assert!(error.hint.is_some());
+        assert!(import("", b"", &options).is_err());
+    }
+
+    #[test]
+    fn the_size_is_checked_first() {
+        let options = ImportOptions {
+            max_bytes: 10 << 20,
+            ..ImportOptions::default()
+        };
+        let error = import("big.bvh", &vec![b' '; (10 << 20) + 1], &options).unwrap_err();
+        assert_eq!(error.to_string(), "big.bvh:1:1: found a file of 11 MB, expected at most 10 MB");
+    }
+
+    #[test]
+    fn stems() {
+        for (name, expected) in [
+            ("a/b.c/walk.bvh", "walk"),
+            ("C:\\x\\run.1.bvh", "run.1"),
+            (".bvh", ".bvh"),
+            ("walk", "walk"),
+        ] {
+            assert_eq!(stem(name), expected);
+        }
+    }
+}

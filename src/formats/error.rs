@@ -1,0 +1,88 @@
+use super::text::position;
+
+/// Why a file could not be read: where, what stood there, and what would have been right.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}:{column}: found {found}, expected {expected}")]
+pub struct ImportError {
+    /// The file's name, as the caller gave it.
+    pub file: String,
+    /// The line, counted from 1. CRLF, LF and a lone CR each end one line.
+    pub line: usize,
+    /// The column in characters, counted from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What would have been read.
+    pub expected: String,
+    /// What the person can do about it, where there is something better to say than `expected`.
+    pub hint: Option<String>,
+}
+
+impl ImportError {
+    /// An error about the file as a whole.
+    pub(super) fn whole_file(file: &str, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self {
+            file: file.to_owned(),
+            line: 1,
+            column: 1,
+            found: found.into(),
+            expected: expected.into(),
+            hint: None,
+        }
+    }
+
+    pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+}
+
+/// An [`ImportError`] before its byte offset is turned into line and column. Lines are counted only when there is something to report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub(super) at: usize,
+    pub(super) found: String,
+    pub(super) expected: String,
+    pub(super) hint: Option<String>,
+}
+
+impl Fault {
+    pub(super) fn new(at: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self {
+            at,
+            found: found.into(),
+            expected: expected.into(),
+            hint: None,
+        }
+    }
+
+    pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    pub(super) fn locate(self, file: &str, text: &[u8]) -> ImportError {
+        let (line, column) = position(text, self.at);
+        ImportError {
+            file: file.to_owned(),
+            line,
+            column,
+            found: self.found,
+            expected: self.expected,
+            hint: self.hint,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_reads_as_place_found_expected() {
+        let fault = Fault::new(7, "`x`", "a number");
+        let error = fault.locate("walk.bvh", "ä\r\nbü\rx".as_bytes());
+        assert_eq!(error.to_string(), "walk.bvh:2:3: found `x`, expected a number");
+        assert_eq!(Fault::new(8, "a", "b").locate("f", "ä\r\nbü\rx".as_bytes()).line, 3);
+    }
+}

@@ -1,0 +1,319 @@
+//! How long a file's unit is, and which of its axes is up. No motion format says; the size and stance of a person do.
+
+use super::raw::RawMotion;
+use crate::clip::{Provenance, UpAxis};
+use crate::skeleton::Skeleton;
+use glam::Vec3;
+use std::fmt;
+
+/// Metres per unit of the CMU motion capture database: inches scaled by 0.45, as its skeleton files say (`:units … length 0.45`).
+pub const CMU_METRES_PER_UNIT: f64 = 0.0254 / 0.45;
+
+/// Heights in file units (from, below) that make a person of a unit. Between people of 1.2 to 2.2 m there is no overlap; for the gaps, the bound
+/// is where both neighbours are equally far from a person of 1.7 m, but for centimetres, which are more common than inches.
+const UNITS: [(f64, f64, f64); 7] = [
+    (0.3, 3.1, 1.0),
+    (3.1, 9.7, 0.3048),
+    (9.7, 22.6, 0.1),
+    (22.6, 45.0, CMU_METRES_PER_UNIT),
+    (45.0, 95.0, 0.0254),
+    (95.0, 500.0, 0.01),
+    (500.0, 5000.0, 0.001),
+];
+
+/// An axis along which a body is longer than along another by this is up.
+const CLEARLY: f32 = 1.25;
+
+/// How a file was measured, and by what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// The unit and the up axis that the clip was read with.
+    pub provenance: Provenance,
+    /// The height of the character at rest, in the file's units.
+    pub height_units: f64,
+    /// Whether the unit was found by the height rather than given.
+    pub unit_detected: bool,
+    /// Whether the height fits no unit, so that centimetres were taken.
+    pub unit_unknown: bool,
+    /// Whether the up axis was found by the stance rather than given.
+    pub up_detected: bool,
+}
+
+impl Measure {
+    /// The height of the character at rest, metres.
+    #[must_use]
+    pub fn height_metres(&self) -> f64 {
+        self.height_units * self.provenance.metres_per_unit
+    }
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let metres = self.provenance.metres_per_unit;
+        let unit = match metres {
+            1.0 => "metres".to_owned(),
+            0.3048 => "feet".to_owned(),
+            0.1 => "decimetres".to_owned(),
+            0.0254 => "inches".to_owned(),
+            0.01 => "centimetres".to_owned(),
+            0.001 => "millimetres".to_owned(),
+            CMU_METRES_PER_UNIT => "CMU units of 5.64 cm".to_owned(),
+            _ => format!("units of {metres} m"),
+        };
+        let how = if self.unit_detected { "read as" } else { "set to" };
+        let up = match self.provenance.up {
+            UpAxis::Y => "Y up",
+            UpAxis::Z => "Z up",
+        };
+        write!(
+            f,
+            "{:.1} units tall, {how} {unit}: {:.2} m; {up}",
+            self.height_units,
+            self.height_metres()
+        )
+    }
+}
+
+/// Measures a motion in file units and axes. What is given is taken as it is.
+pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<UpAxis>) -> Measure {
+    let rest = Body::of(&raw.rest_points());
+    let frames = sampled_frames(raw);
+    let found_up = up.unwrap_or_else(|| up_axis(&raw.rest_points(), &rest, &frames));
+    let axis = index(found_up);
+    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames do.
+    let upright = rest.extent()[axis] > 0.35 * rest.extent().max_element();
+    let mut heights: Vec<f32> = frames.iter().map(|body| body.extent()[axis]).collect();
+    heights.sort_by(f32::total_cmp);
+    let height = match heights.get(heights.len() / 2) {
+        Some(&median) if !upright => median,
+        _ => {
+            let height = rest.extent()[axis];
+            // No legs: the root's height stands for them.
+            let has_legs = rest.low[axis] < -0.2 * height;
+            let offset = raw.joints.first().map_or(0.0, |root| root.offset[axis]);
+            let root = if offset == 0.0 {
+                raw.root_translations.first().map_or(0.0, |root| root[axis])
+            } else {
+                offset
+            };
+            if has_legs { height } else { height + root.max(0.0) }
+        }
+    };
+    let height = f64::from(height);
+    let given = metres_per_unit.filter(|unit| unit.is_finite() && *unit > 0.0);
+    let detected = UNITS
+        .iter()
+        .find(|(from, below, _)| (*from..*below).contains(&height))
+        .map(|unit| unit.2);
+    Measure {
+        provenance: Provenance {
+            metres_per_unit: given.or(detected).unwrap_or(0.01),
+            up: found_up,
+        },
+        height_units: height,
+        unit_detected: given.is_none(),
+        unit_unknown: given.is_none() && detected.is_none(),
+        up_detected: up.is_none(),
+    }
+}
+
+fn index(up: UpAxis) -> usize {
+    match up {
+        UpAxis::Y => 1,
+        UpAxis::Z => 2,
+    }
+}
+
+/// The box around a body.
+#[derive(Clone, Copy)]
+struct Body {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Body {
+    fn of(points: &[Vec3]) -> Self {
+        let finite = points.iter().copied().filter(|p| p.is_finite());
+        let around = finite.fold(None, |b: Option<Self>, p| {
+            Some(b.map_or(Self { low: p, high: p }, |b| Self {
+                low: b.low.min(p),
+                high: b.high.max(p),
+            }))
+        });
+        around.unwrap_or(Self {
+            low: Vec3::ZERO,
+            high: Vec3::ZERO,
+        })
+    }
+
+    fn extent(&self) -> Vec3 {
+        self.high - self.low
+    }
+
+    /// How far the lowest point is from the ground, were this axis up: as a share of the height.
+    fn off_ground(&self, axis: usize) -> f32 {
+        self.low[axis].abs() / self.extent()[axis].max(f32::MIN_POSITIVE)
+    }
+}
+
+/// Up to eight frames spread over the clip.
+fn sampled_frames(raw: &RawMotion) -> Vec<Body> {
+    const SAMPLES: usize = 8;
+    let frames = raw.frames();
+    let Ok(skeleton) = Skeleton::new(raw.joints.clone()) else {
+        return Vec::new();
+    };
+    (0..SAMPLES.min(frames))
+        .map(|i| Body::of(&raw.world_points(&skeleton, i * frames / SAMPLES.min(frames))))
+        .collect()
+}
+
+/// The up axis, Y where nothing speaks for Z.
+fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
+    let by_rest = longer_axis(rest.extent(), lateral_axis(rest_points, rest));
+    // Frames in which the feet are on the ground of one axis and far from that of the other.
+    let share = |votes: &dyn Fn(&Body) -> bool| frames.iter().filter(|body| votes(body)).count() as f32 / frames.len().max(1) as f32;
+    let stands = |body: &Body, up: usize, other: usize| body.off_ground(up) < 0.15 && body.off_ground(other) > 0.3;
+    match by_rest {
+        // A four-legged body is longer than it is tall, but its feet are on the ground.
+        Some(UpAxis::Z) if share(&|body| stands(body, 1, 2)) > 0.7 && share(&|body| stands(body, 2, 1)) < 0.1 => UpAxis::Y,
+        // The root turns a Y-up rest pose upright in a Z-up world.
+        Some(UpAxis::Y) if share(&|body| stands(body, 2, 1) && body.extent().z > 2.0 * body.extent().y) > 0.9 => UpAxis::Z,
+        Some(up) => up,
+        None => frames.first().and_then(|body| longer_axis(body.extent(), None)).unwrap_or_default(),
+    }
+}
+
+/// Which of Y and Z is up by a body's size along both, when they are clearly different and the arms do not run along one of them.
+fn longer_axis(extent: Vec3, lateral: Option<usize>) -> Option<UpAxis> {
+    // Lying along X: what is left says nothing.
+    if extent.y.max(extent.z) < 0.35 * extent.x {
+        return None;
+    }
+    match lateral {
+        Some(1) => Some(UpAxis::Z),
+        Some(2) => Some(UpAxis::Y),
+        _ if extent.z > CLEARLY * extent.y => Some(UpAxis::Z),
+        _ if extent.y > CLEARLY * extent.z => Some(UpAxis::Y),
+        _ => None,
+    }
+}
+
+/// The axis across which the rest pose is its own mirror image: left to right.
+fn lateral_axis(points: &[Vec3], rest: &Body) -> Option<usize> {
+    /// Every point is compared with every other; rigs are smaller, and what is larger is no rig.
+    const MOST: usize = 512;
+    if points.len() > MOST {
+        return None;
+    }
+    let tolerance = 0.02 * rest.extent().max_element();
+    (0..3).find(|&axis| {
+        let (mut aside, mut mirrored) = (0_u32, 0_u32);
+        for point in points.iter().filter(|p| p[axis].abs() > tolerance) {
+            let mut image = *point;
+            image[axis] = -image[axis];
+            aside += 1;
+            mirrored += u32::from(points.iter().any(|p| p.distance(image) < tolerance));
+        }
+        aside >= 4 && f64::from(mirrored) > 0.8 * f64::from(aside)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::Joint;
+    use glam::Quat;
+
+    /// A person 1.66 m tall in T-pose, facing +Z with Y up, from pelvis to feet, head and hands.
+    fn person(map: impl Fn(Vec3) -> Vec3, root: Vec3) -> RawMotion {
+        let parts = [
+            (None, [0.0, 0.0, 0.0], None),
+            (Some(0), [0.1, -0.05, 0.0], None),
+            (Some(1), [0.0, -0.42, 0.0], None),
+            (Some(2), [0.0, -0.41, 0.0], Some([0.0, -0.06, 0.15])),
+            (Some(0), [-0.1, -0.05, 0.0], None),
+            (Some(4), [0.0, -0.42, 0.0], None),
+            (Some(5), [0.0, -0.41, 0.0], Some([0.0, -0.06, 0.15])),
+            (Some(0), [0.0, 0.5, 0.0], Some([0.0, 0.22, 0.0])),
+            (Some(7), [0.2, 0.0, 0.0], None),
+            (Some(8), [0.6, 0.0, 0.0], None),
+            (Some(7), [-0.2, 0.0, 0.0], None),
+            (Some(10), [-0.6, 0.0, 0.0], None),
+        ];
+        let joint = |(parent, offset, end): (Option<usize>, [f32; 3], Option<[f32; 3]>)| Joint {
+            name: String::new(),
+            parent,
+            offset: map(offset.into()),
+            end_site: end.map(|end| map(end.into())),
+            channels: vec![],
+        };
+        let joints: Vec<Joint> = parts.into_iter().map(joint).collect();
+        RawMotion {
+            rotations: vec![Quat::IDENTITY; joints.len()],
+            joints,
+            root_translations: vec![map(root)],
+            tracks: vec![],
+        }
+    }
+
+    const STANDING: Vec3 = Vec3::new(3.0, 0.94, -2.0);
+
+    #[test]
+    fn every_usual_unit_is_found_by_the_height_of_a_person() {
+        for (_, _, unit) in UNITS {
+            let raw = person(|v| v / unit as f32, STANDING);
+            let found = measure(&raw, None, None);
+            assert_eq!(
+                found.provenance,
+                Provenance {
+                    metres_per_unit: unit,
+                    up: UpAxis::Y
+                },
+                "{found}"
+            );
+            assert!((found.height_metres() - 1.66).abs() < 1e-3, "{found}");
+        }
+        assert!(measure(&person(|v| v * 1e-3, STANDING), None, None).unit_unknown);
+        assert!(measure(&person(|v| v * 1e30, STANDING), None, None).unit_unknown);
+    }
+
+    #[test]
+    fn up_is_found_whichever_way_the_person_faces() {
+        let facing_z = |v: Vec3| v;
+        let facing_x = |v: Vec3| Vec3::new(v.z, v.y, -v.x);
+        let z_up = |v: Vec3| Vec3::new(v.x, -v.z, v.y);
+        let z_up_facing_x = |v: Vec3| Vec3::new(v.z, v.x, v.y);
+        assert_eq!(measure(&person(facing_z, STANDING), None, None).provenance.up, UpAxis::Y);
+        assert_eq!(measure(&person(facing_x, STANDING), None, None).provenance.up, UpAxis::Y);
+        assert_eq!(measure(&person(z_up, STANDING), None, None).provenance.up, UpAxis::Z);
+        assert_eq!(measure(&person(z_up_facing_x, STANDING), None, None).provenance.up, UpAxis::Z);
+    }
+
+    #[test]
+    fn a_root_that_turns_the_rest_pose_upright_counts() {
+        let mut raw = person(|v| v, Vec3::new(0.0, -2.0, 0.94));
+        raw.rotations[0] = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+        assert_eq!(measure(&raw, None, None).provenance.up, UpAxis::Z);
+    }
+
+    #[test]
+    fn what_is_given_is_taken() {
+        let found = measure(&person(|v| v, STANDING), Some(0.5), Some(UpAxis::Z));
+        assert_eq!(
+            found.provenance,
+            Provenance {
+                metres_per_unit: 0.5,
+                up: UpAxis::Z
+            }
+        );
+        assert!(!found.unit_detected && !found.up_detected);
+        assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
+    }
+
+    #[test]
+    fn the_note_is_a_sentence() {
+        let said = measure(&person(|v| v * 100.0, STANDING), None, None).to_string();
+        assert_eq!(said, "166.0 units tall, read as centimetres: 1.66 m; Y up");
+    }
+}

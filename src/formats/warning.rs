@@ -1,0 +1,237 @@
+use super::text::position;
+use std::fmt;
+
+/// A kind of oddity that a file was read in spite of, or a note on how it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WarningKind {
+    /// Names are no UTF-8.
+    Latin1Names,
+    /// A joint's CHANNELS line gives another number than it has names. The names count.
+    ChannelCount {
+        /// The number in the file.
+        declared: String,
+        /// The number of names after it.
+        named: usize,
+    },
+    /// Scale channels: their values are skipped.
+    ScaleChannels,
+    /// An End Site with channels: their values are skipped.
+    EndSiteChannels,
+    /// A joint has more than one End Site: the first one that is not at the joint itself is kept.
+    SeveralEndSites,
+    /// A joint has no OFFSET line.
+    MissingOffset,
+    /// There is no MOTION section, or no row in it.
+    NoFrames,
+    /// `Frames:` gives another number than there are rows. The rows count.
+    FrameCount {
+        /// What the header says.
+        declared: String,
+        /// The rows that there are.
+        found: usize,
+    },
+    /// `Frame Time:` is missing or no time. 30 frames per second are taken.
+    FrameTime {
+        /// What the header says; `None` where it says nothing.
+        found: Option<String>,
+    },
+    /// `Frame Time:` is longer than a second or shorter than a ten-thousandth of one, and taken as it is.
+    UnlikelyFrameTime {
+        /// Seconds.
+        secs: f64,
+    },
+    /// The last row is cut off, and dropped.
+    TruncatedRow {
+        /// The numbers that it has.
+        found: usize,
+        /// The numbers of a row.
+        expected: usize,
+    },
+    /// No line holds exactly one frame: the numbers are taken one after the other.
+    RowsAcrossLines,
+    /// Values that are no numbers: each repeats the last good one of its channel.
+    NotFinite,
+    /// Numbers are written with a decimal comma.
+    DecimalCommas,
+    /// Two numbers without a space between them, split before the sign.
+    MissingSpaces,
+    /// All OFFSETs are zero: the rest pose is taken from the position channels of the first row.
+    RestFromFirstRow,
+    /// The first row is a T-pose in front of the motion.
+    TPose {
+        /// Whether it was left out.
+        dropped: bool,
+    },
+    /// No unit of length makes this skeleton the size of a person: centimetres are taken.
+    UnknownUnit,
+}
+
+/// One line on one kind of oddity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportWarning {
+    /// What it is.
+    pub kind: WarningKind,
+    /// How often it occurs; at least 1.
+    pub count: usize,
+    /// The line, counted from 1, where it occurs first; `None` where it is about the whole file.
+    pub line: Option<usize>,
+}
+
+/// `1 row` or `3 rows`.
+fn number_of(count: usize, thing: &str) -> String {
+    if count == 1 {
+        format!("1 {thing}")
+    } else {
+        format!("{count} {thing}s")
+    }
+}
+
+impl fmt::Display for ImportWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n = |thing: &str| number_of(self.count, thing);
+        let one = self.count == 1;
+        let place = match self.line {
+            Some(line) if one => format!(" (line {line})"),
+            Some(line) => format!(" (first: line {line})"),
+            None => String::new(),
+        };
+        match &self.kind {
+            WarningKind::Latin1Names => {
+                write!(
+                    f,
+                    "{}{place} {} not UTF-8; read as Latin-1",
+                    n("name"),
+                    if one { "is" } else { "are" }
+                )
+            }
+            WarningKind::ChannelCount { declared, named } => {
+                let lines = if one {
+                    "1 CHANNELS line gives a number that disagrees"
+                } else {
+                    "CHANNELS lines give numbers that disagree"
+                };
+                let lines = if one { lines.to_owned() } else { format!("{} {lines}", self.count) };
+                write!(
+                    f,
+                    "{lines} with the names after it{place}, such as {declared} for {named}; the names count"
+                )
+            }
+            WarningKind::ScaleChannels => write!(f, "{}{place} ignored", n("scale channel")),
+            WarningKind::EndSiteChannels => write!(f, "{} of End Sites{place} ignored", n("channel")),
+            WarningKind::SeveralEndSites => write!(f, "{} with more than one End Site{place}; one was kept", n("joint")),
+            WarningKind::MissingOffset => write!(f, "{} without OFFSET{place}; placed on the parent", n("joint")),
+            WarningKind::NoFrames => write!(f, "the file holds a skeleton and no motion"),
+            WarningKind::FrameCount { declared, found } => {
+                write!(
+                    f,
+                    "the header says {declared} frames{place}, the file holds {found}; the rows count"
+                )
+            }
+            WarningKind::FrameTime { found: None } => write!(f, "no frame time; 30 frames per second are taken"),
+            WarningKind::FrameTime { found: Some(found) } => {
+                write!(f, "a frame time of {found} is no time{place}; 30 frames per second are taken")
+            }
+            WarningKind::UnlikelyFrameTime { secs } => {
+                write!(
+                    f,
+                    "a frame time of {secs} s is unlikely{place}; taken as written, the frame rate can be set by hand"
+                )
+            }
+            WarningKind::TruncatedRow { found, expected } => {
+                write!(
+                    f,
+                    "the last row holds {} instead of {expected}{place}; dropped",
+                    number_of(*found, "number")
+                )
+            }
+            WarningKind::RowsAcrossLines => write!(
+                f,
+                "no line holds exactly one frame{place}; the numbers were read one after the other"
+            ),
+            WarningKind::NotFinite => {
+                write!(
+                    f,
+                    "{}{place} {} no number; the last good value was held",
+                    n("value"),
+                    if one { "is" } else { "are" }
+                )
+            }
+            WarningKind::DecimalCommas => write!(f, "the numbers have decimal commas{place}; read as points"),
+            WarningKind::MissingSpaces => write!(f, "{} between numbers{place}; split before the sign", n("missing space")),
+            WarningKind::RestFromFirstRow => write!(f, "all OFFSETs are zero; the rest pose was taken from the first row"),
+            WarningKind::TPose { dropped: true } => write!(f, "the first row is a T-pose{place}; dropped"),
+            WarningKind::TPose { dropped: false } => write!(f, "the first row is a T-pose{place}; kept and marked"),
+            WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
+        }
+    }
+}
+
+/// Oddities while they are counted; places are byte offsets until the end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
+    entries: Vec<(WarningKind, usize, Option<usize>)>,
+}
+
+impl Tally {
+    /// Counts one oddity. Those of one kind become one line, which keeps the details and the place of the first.
+    pub(super) fn add(&mut self, kind: WarningKind, at: Option<usize>) {
+        let same = |entry: &&mut (WarningKind, usize, Option<usize>)| std::mem::discriminant(&entry.0) == std::mem::discriminant(&kind);
+        match self.entries.iter_mut().find(same) {
+            Some((_, count, _)) => *count += 1,
+            None => self.entries.push((kind, 1, at)),
+        }
+    }
+
+    pub(super) fn into_warnings(self, text: &[u8]) -> Vec<ImportWarning> {
+        let warning = |(kind, count, at): (_, _, Option<usize>)| ImportWarning {
+            kind,
+            count,
+            line: at.map(|at| position(text, at).0),
+        };
+        self.entries.into_iter().map(warning).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_for_each_kind() {
+        let mut tally = Tally::default();
+        tally.add(WarningKind::MissingSpaces, Some(2));
+        tally.add(WarningKind::NoFrames, None);
+        tally.add(WarningKind::MissingSpaces, Some(4));
+        let lines: Vec<String> = tally.into_warnings(b"a\nb\nc").iter().map(ToString::to_string).collect();
+        assert_eq!(
+            lines,
+            [
+                "2 missing spaces between numbers (first: line 2); split before the sign",
+                "the file holds a skeleton and no motion"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_sentences_are_plain() {
+        let say = |kind, count, line| ImportWarning { kind, count, line }.to_string();
+        let row = WarningKind::TruncatedRow { found: 95, expected: 96 };
+        assert_eq!(
+            say(row, 1, Some(412)),
+            "the last row holds 95 numbers instead of 96 (line 412); dropped"
+        );
+        let channels = || WarningKind::ChannelCount {
+            declared: "3".into(),
+            named: 6,
+        };
+        assert_eq!(
+            say(channels(), 1, Some(5)),
+            "1 CHANNELS line gives a number that disagrees with the names after it (line 5), such as 3 for 6; the names count"
+        );
+        assert!(say(channels(), 2, Some(5)).starts_with("2 CHANNELS lines give numbers that disagree"));
+        assert_eq!(
+            say(WarningKind::NotFinite, 1, Some(9)),
+            "1 value (line 9) is no number; the last good value was held"
+        );
+    }
+}
