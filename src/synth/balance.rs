@@ -2,15 +2,35 @@
 
 use super::body::Body;
 use super::foot::{Foot, foot_at};
-use super::gait::{gravity, pendulum_rate};
+use super::gait::{gravity, pendulum_height};
 use super::params::{Action, Params};
 use super::plan::{JumpTimes, Plan};
 use super::posture::Posture;
 use super::track::{State, quintic};
 use glam::{DVec2, Vec3};
 
-/// The longest a leg gets, as a share of its length: a knee is never quite straight (about 4° are left).
+/// The longest a swinging leg gets, as a share of its length: a knee is never quite straight (4° are left).
 pub(super) const LONGEST: f32 = 0.9994;
+
+/// The least flexion of the knee of a planted leg, radians. It is about 5° in walking (Perry and Burnfield 2010); runners land and leave with more.
+pub(super) fn least_flexion(running: bool) -> f32 {
+    if running { 15.0_f32.to_radians() } else { 6.0_f32.to_radians() }
+}
+
+/// How long a leg may be while it bears, and shortly before and after; a leg that pushes off or has just left is bent by nearly 20° at least, for its
+/// foot trails behind.
+fn longest_bearing(foot: &Foot, running: bool, body: &Body) -> Option<f64> {
+    let least = least_flexion(running);
+    let pushing = if running { 0.30 } else { 0.35 };
+    let flexion = match (foot.planted(), foot.progress) {
+        (true, progress) if progress < 0.93 => least,
+        (false, progress) if !running && progress > 0.86 => least,
+        (true, _) => pushing,
+        (false, progress) if progress < 0.15 => pushing,
+        _ => return None,
+    };
+    Some(f64::from(body.reach_at_flexion(flexion)))
+}
 
 /// The hips over the grid of a plan.
 pub(super) struct Hips {
@@ -49,13 +69,14 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
 /// shift of weight before a first step and the lean before a stop are all in it. What is filtered is how far p is from the foothold that the planned
 /// way itself calls for, so that a steady gait keeps its speed and its circle exactly.
 fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &Params) -> Vec<DVec2> {
-    let rate = pendulum_rate(params.height_m);
+    let height = pendulum_height(params.height_m);
+    let rate = (gravity() / height).sqrt();
     let places: Vec<_> = (0..plan.len()).map(|step| plan.path.at(plan.secs(step))).collect();
     let mut away: Vec<Option<DVec2>> = (feet.iter().zip(&places))
         .map(|(pair, place)| {
             let load: f64 = pair.iter().map(|foot| foot.load).sum();
             let pressure = pair.iter().map(|foot| foot.pressure * foot.load).sum::<DVec2>() / load;
-            (load > 1e-6).then(|| place.to_local(pressure - place.position + place.acceleration() / (rate * rate)))
+            (load > 1e-6).then(|| place.to_local(pressure - place.position + place.lean(gravity()) * height))
         })
         .collect();
     bridge(&mut away);
@@ -109,8 +130,8 @@ fn two_sided(values: &[DVec2], keep: f64) -> Vec<DVec2> {
 #[derive(Clone, Copy)]
 struct Leg {
     planted: bool,
-    /// Planted, or so soon to be that the hips must be low enough already.
-    bearing: bool,
+    /// How long this leg may be, metres; `None` in the air.
+    longest: Option<f64>,
     load: f64,
     progress: f64,
     /// From the hips' height to this hip joint's.
@@ -122,8 +143,6 @@ struct Leg {
 
 struct Legs<'a> {
     body: &'a Body,
-    /// The least flexion of the knee of a planted leg, radians.
-    least_flexion: f32,
     steps: Vec<[Leg; 2]>,
 }
 
@@ -138,7 +157,7 @@ impl<'a> Legs<'a> {
                     let ankle = DVec2::new(f64::from(foot.ankle.x), f64::from(foot.ankle.z));
                     Leg {
                         planted: foot.planted(),
-                        bearing: foot.planted() || foot.progress > if plan.gait.running { 0.92 } else { 0.86 },
+                        longest: longest_bearing(foot, plan.gait.running, body),
                         load: foot.load,
                         progress: foot.progress,
                         hip_rise: f64::from(hip.y),
@@ -148,7 +167,7 @@ impl<'a> Legs<'a> {
                 })
             })
             .collect();
-        Self { body, least_flexion: (if plan.gait.running { 15.0_f32 } else { 6.0 }).to_radians(), steps }
+        Self { body, steps }
     }
 
     /// The height of the hips at which this leg is `reach` long; `None` where the leg is too short to reach at all.
@@ -157,12 +176,10 @@ impl<'a> Legs<'a> {
         (up > 0.0).then(|| leg.ankle_height + up.sqrt() - leg.hip_rise)
     }
 
-    /// The greatest height that the planted legs allow at a step.
+    /// The greatest height that the legs on the ground, and those about to leave or meet it, allow at a step.
     fn ceiling(&self, step: usize) -> f64 {
-        let longest = f64::from(self.body.reach_at_flexion(self.least_flexion));
         (self.steps[step].iter())
-            .filter(|leg| leg.bearing)
-            .map(|leg| Self::height_at(leg, longest).unwrap_or(0.3 * longest))
+            .filter_map(|leg| leg.longest.map(|longest| Self::height_at(leg, longest).unwrap_or(0.3 * longest)))
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -232,18 +249,22 @@ fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
     let mut level = f64::from(legs.body.hip_height());
     let raw: Vec<f64> = (0..plan.len())
         .map(|step| {
-            level = legs.wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians()).map_or(level, |(height, _)| height);
+            level = legs
+                .wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians())
+                .map_or(level, |(height, _)| height);
             level
         })
         .collect();
     let steps_of = |share: f64| ((share * cycle / plan.dt_secs).round() as usize).max(2);
     let rise = walking_rise(plan.gait.alike_mps) * f64::from(legs.body.scale) * f64::from(params.style.bounce);
-    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 })).into_iter().enumerate())
-        .map(|(step, level)| {
-            let secs = plan.secs(step);
-            level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
-        })
-        .collect();
+    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 }))
+        .into_iter()
+        .enumerate())
+    .map(|(step, level)| {
+        let secs = plan.secs(step);
+        level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
+    })
+    .collect();
     // Over a whole step, so that the level gives way and the wave stays.
     kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.25));
     heights

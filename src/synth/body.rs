@@ -47,6 +47,8 @@ pub(super) struct Body {
     pub(super) hip_in_hips: [Vec3; 2],
     /// The joint of the toes in the frame of the foot.
     pub(super) ball_in_foot: Vec3,
+    /// The tip of the toes in the frame of the toes.
+    pub(super) tip_in_toes: Vec3,
     /// The contact point of the heel in the frame of the foot.
     pub(super) heel_in_foot: Vec3,
     /// Height over that of the reference adult of 1.75 m.
@@ -64,6 +66,7 @@ impl Body {
                 at(-HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0),
             ],
             ball_in_foot: at(0.0, BALL_HEIGHT - ANKLE_HEIGHT, BALL_AHEAD),
+            tip_in_toes: at(0.0, -0.5 * BALL_HEIGHT, TOES),
             heel_in_foot: at(0.0, -ANKLE_HEIGHT, -HEEL_BEHIND),
             scale: height_m / 1.75,
         }

@@ -34,8 +34,10 @@ pub(super) struct Plant {
 pub(super) struct Swing {
     pub(super) peak: (f64, f64),
     pub(super) low: (f64, f64),
-    /// Pitch knots between release and strike: (share, radians).
-    pub(super) pitch: [(f64, f64); 3],
+    /// Pitch knots after the release: (share, radians).
+    pub(super) pitch: [(f64, f64); 2],
+    /// Pitch shortly before the strike, over that at the strike.
+    pub(super) toes_up: f64,
     /// How much of the least bending way's acceleration the foot starts and ends with, over the ground.
     pub(super) eager: f64,
     pub(super) late: f64,
@@ -234,14 +236,30 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
         swing.spring,
         if swing.spring > 0.0 { -swing.spring } else { end_rate.y },
     );
-    let [a, b, c] = swing.pitch;
+    let [a, b] = swing.pitch;
     let pitch = Spline::clamped(
-        &[(0.0, plant.release_pitch), timed(a), timed(b), timed(c), (span, next.strike_pitch)],
+        &[
+            (0.0, plant.release_pitch),
+            timed(a),
+            timed(b),
+            timed((0.88, next.strike_pitch + swing.toes_up)),
+            (span, next.strike_pitch),
+        ],
         plant.release_rate(),
         next.strike_rate(),
     )
     .at(now);
-    let toe_pitch = pitch * ramp(share, 0.0, 0.5) + pitch.min(0.0) * (1.0 - ramp(share, 0.0, 0.5));
+    // The toes leave the ground flat, come into line with the foot, and are flat again where the ball lands first.
+    let landing = if next.strike_pitch > 0.0 { ramp(share, 0.55, 1.0) } else { 0.0 };
+    let in_line = ramp(share, 0.0, 0.5) * (1.0 - landing);
+    let toe_pitch = pitch * in_line + pitch.min(0.0) * (1.0 - in_line);
     let yaw = plant.yaw + (next.yaw - plant.yaw) * ramp(share, 0.05, 0.92);
-    (ground.with_y(height.at(now)), yaw, pitch, toe_pitch, share)
+    // Whatever the knots say, heel and toes clear the ground: a lift that begins with no slope and makes up for most of what is missing.
+    let ball = height.at(now);
+    let heel = ball + pitched(body.heel_in_foot - body.ball_in_foot, pitch).0.y;
+    let tip = ball + pitched(body.tip_in_toes, toe_pitch).0.y;
+    let clearance = 0.02 * f64::from(body.scale) * ramp(share, 0.0, 0.3) * (1.0 - ramp(share, 0.7, 1.0));
+    let missing = (clearance - heel.min(tip)).max(0.0);
+    let lift = missing * missing / (missing + 0.006);
+    (ground.with_y(ball + lift), yaw, pitch, toe_pitch, share)
 }

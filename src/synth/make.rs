@@ -1,7 +1,7 @@
 //! From a plan to frames.
 
 use super::arms::arm;
-use super::balance::{LONGEST, hips};
+use super::balance::{LONGEST, hips, least_flexion};
 use super::body::{Body, humanoid, joint};
 use super::foot::Foot;
 use super::leg::{soft_limit, two_bones};
@@ -48,12 +48,11 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
             let ankle = given_way(&body, foot, hip, plan.gait.running);
             // The knee points between where the hips and where the toes point.
-            let heading = plan.path.at(secs).yaw;
-            let knee_yaw = (heading + 0.55 * (foot.yaw - heading)) as f32;
-            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, Vec3::new(knee_yaw.sin(), 0.0, knee_yaw.cos()));
+            let hinge = trunk.pelvis * Vec3::X * 0.45 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
+            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, hinge);
             local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
             local[joint::LEG[side]] = thigh.conjugate() * shank;
-            local[joint::FOOT[side]] = shank.conjugate() * foot.rotation;
+            local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot);
             local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
             let arm = arm(&plan, &posture, params, side, secs);
             local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
@@ -132,6 +131,17 @@ fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
     Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32) * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
 }
 
+/// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well off the ground.
+fn bent_ankle(rotation: Quat, foot: &Foot) -> Quat {
+    if foot.planted() {
+        return rotation;
+    }
+    let turn = log(rotation);
+    let angle = turn.length();
+    let free = (ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
+    exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
+}
+
 /// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to the ground it does as planned.
 fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     if foot.planted() {
@@ -142,5 +152,12 @@ fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     let (from, to) = if running { (0.955, 0.993) } else { (0.985, LONGEST) };
     let limited = soft_limit(length, from * body.leg(), to * body.leg());
     let share = ramp(foot.progress, 0.0, 0.14) * (1.0 - ramp(foot.progress, 0.84, 0.98));
-    foot.ankle + line * ((limited / length.max(1e-6) - 1.0) * share as f32)
+    let given = length + (limited - length) * share as f32;
+    // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as the foot meets the ground.
+    let longest = soft_limit(given, body.reach_at_flexion(least_flexion(running)), body.reach_at_flexion(0.02));
+    // Nor does a heel come nearer to the seat than a flexion of about 130°.
+    let nearest = -soft_limit(-longest, -0.60 * body.leg(), -0.44 * body.leg());
+    let along = line * ((longest - length) / length.max(1e-6));
+    let outward = line.with_y(0.0) * ((nearest - longest) / length.max(1e-6));
+    foot.ankle + along + outward
 }

@@ -2,9 +2,9 @@
 
 use super::body::Body;
 use super::foot::{Plant, Swing};
-use super::gait::{Gait, pendulum_rate};
+use super::gait::{Gait, gravity, pendulum_height};
 use super::params::{Action, Params};
-use super::path::Path;
+use super::path::{Path, Place};
 use super::track::ramp;
 use glam::DVec2;
 
@@ -137,10 +137,20 @@ impl Plan {
     /// from its foot by ω²(x - foot), away from where the body is heading. Standing feet are wider apart.
     pub(super) fn foothold(&self, side: usize, secs: f64, half_width: f64, params: &Params, body: &Body) -> DVec2 {
         let place = self.path.at(secs);
-        let rate = pendulum_rate(params.height_m);
         let outward = if side == 0 { half_width } else { -half_width };
-        let behind = f64::from(body.scale) * if self.gait.running { 0.20 } else { 0.105 };
-        place.position - place.acceleration() / (rate * rate) + place.left() * outward - place.forward() * behind
+        // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
+        let eased = Place {
+            thrust: 0.5 * place.thrust,
+            ..place
+        };
+        let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
+        let behind = f64::from(body.scale)
+            * if self.gait.running {
+                0.20 - 0.03 * self.gait.quick_run()
+            } else {
+                0.105
+            };
+        place.position + support + place.left() * outward - place.forward() * behind
     }
 }
 
@@ -160,18 +170,15 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     let energy = f64::from(params.style.energy);
     let degrees = f64::to_radians;
     if gait.running {
-        let quick = ((gait.alike_mps - 1.8) / 4.7).clamp(0.0, 1.0);
-        let lift = (0.15 + 0.20 * quick) * (0.7 + 0.3 * energy);
+        let quick = gait.quick_run();
+        let lift = (0.18 + 0.13 * quick) * (0.7 + 0.3 * energy);
         return Swing {
             peak: (0.27, scale * lift),
             low: (0.66, scale * (0.07 + 0.04 * quick)),
-            pitch: [
-                (0.28, degrees(84.0 + 28.0 * quick)),
-                (0.60, degrees(38.0)),
-                (0.88, gait.strike_pitch - degrees(2.0)),
-            ],
-            eager: 0.6,
-            late: 0.4,
+            pitch: [(0.28, degrees(84.0 + 28.0 * quick)), (0.60, degrees(38.0))],
+            toes_up: degrees(-2.0),
+            eager: 0.75,
+            late: 1.4,
             spring: 0.0,
         };
     }
@@ -182,8 +189,8 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
         pitch: [
             (0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()),
             (0.58, degrees(4.0)),
-            (0.88, gait.strike_pitch * share - degrees(3.0)),
         ],
+        toes_up: degrees(-3.0),
         eager: 1.2,
         late: 0.7,
         spring: 0.0,
@@ -281,7 +288,7 @@ fn stop(plan: &mut Plan, params: &Params, body: &Body) {
     let closed = end - 1.2;
     plan.phase_zero = closed - 0.5 * cycle;
     plan.moving = (f64::NEG_INFINITY, closed + 0.1);
-    let (from, to) = (closed - 1.15 * cycle, closed + 0.28);
+    let (from, to) = (closed - 1.4 * cycle, closed + 0.25);
     plan.set_path(|t| {
         let share = 1.0 - ramp(t, from, to);
         (speed * share, yaw_rate * share)

@@ -68,7 +68,8 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         let swing = Swing {
             peak: (0.35, 0.055 * f64::from(body.scale)),
             low: (0.72, 0.040 * f64::from(body.scale)),
-            pitch: [(0.2, 0.50), (0.6, 0.12), (0.88, 0.05)],
+            pitch: [(0.2, 0.50), (0.6, 0.12)],
+            toes_up: -0.05,
             eager: 0.3,
             late: 0.3,
             spring: 0.0,
@@ -129,7 +130,8 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
         let swing = Swing {
             peak: (0.45, 1.25 * rise),
             low: (0.80, 0.62 * rise),
-            pitch: [(0.15, 1.05), (0.5, 0.75), (0.85, LAND_PITCH + 0.12)],
+            pitch: [(0.15, 1.05), (0.5, 0.75)],
+            toes_up: 0.12,
             eager: 0.8,
             late: 0.6,
             spring: 0.3 * gravity() * air * 0.5,
