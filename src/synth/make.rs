@@ -1,9 +1,10 @@
 //! From a plan to frames.
 
 use super::arms::arm;
-use super::balance::{LONGEST, hips, least_flexion};
+use super::balance::hips;
 use super::body::{Body, humanoid, joint};
 use super::foot::Foot;
+use super::height::{LONGEST, least_flexion};
 use super::leg::{soft_limit, two_bones};
 use super::params::{Action, Params, SynthError};
 use super::plan::{Plan, plan};
@@ -27,11 +28,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
     let body = Body::new(params.height_m);
     let plan = plan(params, &body);
     let posture = Posture::new(&plan, params);
-    let missing = ClipError::Length {
-        what: "footholds",
-        found: 0,
-        expected: 2,
-    };
+    let missing = ClipError::Length { what: "footholds", found: 0, expected: 2 };
     let moved = hips(&plan, &posture, params, &body).ok_or(missing)?;
     let mut rotations = Vec::with_capacity(plan.frames * joint::COUNT);
     let mut roots = Vec::with_capacity(plan.frames);
@@ -52,7 +49,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, hinge);
             local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
             local[joint::LEG[side]] = thigh.conjugate() * shank;
-            local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot);
+            local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot, body.ankle_height());
             local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
             let arm = arm(&plan, &posture, params, side, secs);
             local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
@@ -63,27 +60,17 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         }
         rotations.extend(local.map(renormalize));
         roots.push(moved.positions[step]);
-        contacts.push([0, 1].map(|side| FootContact {
-            heel: moved.feet[step][side].heel_down,
-            toe: moved.feet[step][side].toe_down,
-        }));
+        contacts.push([0, 1].map(|side| FootContact { heel: moved.feet[step][side].heel_down, toe: moved.feet[step][side].toe_down }));
         phase.push(plan.cycles(secs).rem_euclid(1.0) as f32);
     }
     let clip = Clip::new(name(params), skeleton, f64::from(params.fps), rotations, roots)?;
-    Ok(Synthesized {
-        clip,
-        truth: truth(&plan, params, phase, contacts),
-    })
+    Ok(Synthesized { clip, truth: truth(&plan, params, phase, contacts) })
 }
 
 fn truth(plan: &Plan, params: &Params, phase: Vec<f32>, contacts: Vec<[FootContact; 2]>) -> Truth {
     let strides = matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
     let cycle_secs = plan.gait.cycle_secs;
-    let speed = if Params::speed_range(params.action).is_some() {
-        f64::from(params.speed_mps)
-    } else {
-        0.0
-    };
+    let speed = if Params::speed_range(params.action).is_some() { f64::from(params.speed_mps) } else { 0.0 };
     Truth {
         speed_mps: speed as f32,
         turn_rate_dps: if strides { params.turn_rate_dps } else { 0.0 },
@@ -132,13 +119,14 @@ fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
 }
 
 /// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well off the ground.
-fn bent_ankle(rotation: Quat, foot: &Foot) -> Quat {
+fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     if foot.planted() {
         return rotation;
     }
     let turn = log(rotation);
     let angle = turn.length();
-    let free = (ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
+    let high = ramp(f64::from(foot.ankle.y / ankle_height), 2.5, 4.5);
+    let free = (high * ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
     exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
 }
 
@@ -155,9 +143,5 @@ fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     let given = length + (limited - length) * share as f32;
     // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as the foot meets the ground.
     let longest = soft_limit(given, body.reach_at_flexion(least_flexion(running)), body.reach_at_flexion(0.02));
-    // Nor does a heel come nearer to the seat than a flexion of about 130°.
-    let nearest = -soft_limit(-longest, -0.60 * body.leg(), -0.44 * body.leg());
-    let along = line * ((longest - length) / length.max(1e-6));
-    let outward = line.with_y(0.0) * ((nearest - longest) / length.max(1e-6));
-    foot.ankle + along + outward
+    foot.ankle + line * (longest / length.max(1e-6) - 1.0)
 }

@@ -8,8 +8,8 @@ use super::path::{Path, Place};
 use super::track::ramp;
 use glam::DVec2;
 
-/// Seconds that are made before and after the clip, so that filters see what comes and came: e^(-3.2 × 4) of an edge is left.
-const MARGIN_SECS: f64 = 4.0;
+/// Seconds that are made before and after the clip, so that filters see what comes and came: e^(-3.2 × 3) of an edge's centimetres is left.
+const MARGIN_SECS: f64 = 3.0;
 /// The coarsest time step that is planned with.
 const COARSEST_SECS: f64 = 1.0 / 110.0;
 
@@ -70,11 +70,7 @@ impl Plan {
 
     /// How much of a gait is going on, 0 to 1.
     pub(super) fn going(&self, secs: f64) -> f64 {
-        if self.top_speed > 0.0 && self.jump.is_none() {
-            (self.path.at(secs).speed / self.top_speed).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+        if self.top_speed > 0.0 && self.jump.is_none() { (self.path.at(secs).speed / self.top_speed).clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
@@ -87,11 +83,13 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     let speed = f64::from(params.speed_mps);
     let asked = (f64::from(params.duration_secs) * fps).round().max(1.0);
     let running = params.action == Action::Run;
-    let mut gait = if running {
-        Gait::run(speed, body, &params.style)
-    } else {
-        Gait::walk(speed.max(0.4), body, &params.style)
-    };
+    let mut gait = if running { Gait::run(speed, body, &params.style) } else { Gait::walk(speed.max(0.4), body, &params.style) };
+    if running {
+        // Nobody keeps such a curve; a shorter contact keeps the legs from being torn apart by it.
+        gait.duty /= 1.0 + 0.6 * ramp(sideways(params), 0.0, 1.2);
+        gait.flat_from = gait.flat_from.min(0.25 * gait.duty);
+        gait.flat_to = gait.flat_to.min(0.5 * gait.duty);
+    }
     let mut frames = asked as usize + 1;
     let mut period = None;
     if matches!(params.action, Action::Walk | Action::Run) {
@@ -139,17 +137,9 @@ impl Plan {
         let place = self.path.at(secs);
         let outward = if side == 0 { half_width } else { -half_width };
         // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
-        let eased = Place {
-            thrust: 0.5 * place.thrust,
-            ..place
-        };
+        let eased = Place { thrust: 0.5 * place.thrust, ..place };
         let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
-        let behind = f64::from(body.scale)
-            * if self.gait.running {
-                0.20 - 0.03 * self.gait.quick_run()
-            } else {
-                0.105
-            };
+        let behind = f64::from(body.scale) * if self.gait.running { 0.20 - 0.03 * self.gait.quick_run() } else { 0.105 };
         place.position + support + place.left() * outward - place.forward() * behind
     }
 }
@@ -165,19 +155,26 @@ pub(super) fn toe_out(side: usize, running: bool) -> f64 {
     if side == 0 { angle.to_radians() } else { -angle.to_radians() }
 }
 
+/// Acceleration into the curve over gravity.
+fn sideways(params: &Params) -> f64 {
+    f64::from((params.speed_mps * params.turn_rate_dps.to_radians()).abs()) / gravity()
+}
+
 fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     let scale = f64::from(body.scale);
     let energy = f64::from(params.style.energy);
     let degrees = f64::to_radians;
     if gait.running {
         let quick = gait.quick_run();
-        let lift = (0.18 + 0.13 * quick) * (0.7 + 0.3 * energy);
+        // Deep in a curve there is less room under the hips.
+        let lateral = sideways(params);
+        let lift = (0.17 + 0.13 * quick) * (0.7 + 0.3 * energy) / (1.0 + lateral * lateral);
         return Swing {
             peak: (0.27, scale * lift),
             low: (0.66, scale * (0.07 + 0.04 * quick)),
             pitch: [(0.28, degrees(84.0 + 28.0 * quick)), (0.60, degrees(38.0))],
             toes_up: degrees(-2.0),
-            eager: 0.75,
+            eager: 0.65,
             late: 1.4,
             spring: 0.0,
         };
@@ -186,10 +183,7 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     Swing {
         peak: (0.27, scale * (0.04 + 0.035 * quick) * (0.6 + 0.4 * energy)),
         low: (0.62, scale * (0.018 + 0.008 * energy + 0.012 * quick)),
-        pitch: [
-            (0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()),
-            (0.58, degrees(4.0)),
-        ],
+        pitch: [(0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()), (0.58, degrees(4.0))],
         toes_up: degrees(-3.0),
         eager: 1.2,
         late: 0.7,
@@ -212,11 +206,7 @@ fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, bod
         yaw: plan.path.at(middle).yaw + toe_out(side, gait.running),
         strike_pitch: gait.strike_pitch * share,
         release_pitch: gait.release_pitch * (0.35 + 0.65 * share),
-        load_secs: if gait.running {
-            0.3 * gait.duty * cycle
-        } else {
-            (gait.duty - 0.5) * cycle
-        },
+        load_secs: if gait.running { 0.3 * gait.duty * cycle } else { (gait.duty - 0.5) * cycle },
         stances_per_sec: (gait.duty * cycle).recip(),
         swing: swing_of(gait, share, params, body),
     }
@@ -226,14 +216,10 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
     let (speed, yaw_rate) = (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     plan.set_path(|_| (speed, yaw_rate));
     let cycle = plan.gait.cycle_secs;
-    let (first, last) = (
-        (plan.secs(0) / cycle).floor() as i64 - 1,
-        (plan.secs(plan.len()) / cycle).ceil() as i64 + 1,
-    );
+    let (first, last) = ((plan.secs(0) / cycle).floor() as i64 - 1, (plan.secs(plan.len()) / cycle).ceil() as i64 + 1);
     for side in 0..2 {
-        plan.plants[side] = (first..=last)
-            .map(|k| regular(plan, side, (k as f64 + 0.5 * side as f64) * cycle, 1.0, params, body))
-            .collect();
+        plan.plants[side] =
+            (first..=last).map(|k| regular(plan, side, (k as f64 + 0.5 * side as f64) * cycle, 1.0, params, body)).collect();
     }
 }
 
@@ -270,11 +256,7 @@ fn start(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.35 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k > first {
-                plant
-            } else {
-                standing(plant, plan, side, params, body, true)
-            }
+            if k > first { plant } else { standing(plant, plan, side, params, body, true) }
         });
         plan.plants[side] = plants.collect();
     }
@@ -299,11 +281,7 @@ fn stop(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.2 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k < 0 {
-                plant
-            } else {
-                standing(plant, plan, side, params, body, false)
-            }
+            if k < 0 { plant } else { standing(plant, plan, side, params, body, false) }
         });
         plan.plants[side] = plants.collect();
     }

@@ -88,11 +88,7 @@ impl Posture {
             loops: matches!(params.action, Action::Idle | Action::Walk | Action::Run),
             energy: f64::from(params.style.energy),
             lean: f64::from(params.style.lean),
-            quick: if plan.gait.running {
-                plan.gait.alike_mps / 3.5
-            } else {
-                (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6)
-            },
+            quick: if plan.gait.running { plan.gait.alike_mps / 3.5 } else { (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6) },
             size: f64::from(params.height_m) / 1.75,
             person: person(params.seed, 1),
             period_secs: (plan.frames.max(2) - 1) as f64 * plan.dt_secs * plan.substeps as f64,
@@ -149,10 +145,11 @@ impl Posture {
             a.chest_turn = degrees(11.0) * energy * wave(-0.08);
             a.chest_list = degrees(1.5) * energy * wave(0.64);
             a.chest_bow = (degrees(4.5) + degrees(4.5) * quick) * self.lean + degrees(1.5) * twice(0.06);
-            a.head_bow = degrees(3.0) + 0.25 * a.chest_bow;
+            a.head_bow = degrees(2.0) + 0.15 * a.chest_bow;
         } else {
             a.pelvis_turn = -degrees(3.0 + 2.5 * quick) * energy * wave(-0.01);
-            a.pelvis_list = degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 3.1415).cos());
+            a.pelvis_list =
+                degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 0.5 * TAU).cos());
             a.pelvis_tilt = degrees(3.0) + degrees(1.5) * going * quick * self.lean + degrees(1.2) * energy * twice(0.04);
             a.chest_turn = degrees(2.0 + 2.6 * quick) * energy * wave(0.02);
             a.chest_list = degrees(1.4) * energy * wave(0.68);
