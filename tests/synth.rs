@@ -132,6 +132,26 @@ fn feet_stay_above_the_ground() {
     }
 }
 
+/// The shortest distance between the segments `a` and `b`, by sampling: good to a few millimetres on a foot.
+fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
+    let at = |segment: [Vec3; 2], i: u8| segment[0].lerp(segment[1], f32::from(i) / 16.0);
+    let pairs = (0..=16).flat_map(|i| (0..=16).map(move |j| (i, j)));
+    pairs.map(|(i, j)| at(a, i).distance(at(b, j))).fold(f32::INFINITY, f32::min)
+}
+
+#[test]
+fn feet_do_not_go_through_each_other() {
+    let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
+    all.extend([-90.0, 45.0, 120.0].map(|spin_degrees| Params { spin_degrees, ..Params::new(Action::Spin) }));
+    all.extend([-90.0, 60.0].map(|turn_rate_dps| Params { turn_rate_dps, ..walk(1.0) }));
+    for params in all {
+        let closest = (soles(&made(&params), params.height_m).iter())
+            .map(|[left, right]| distance([left[0], left[2]], [right[0], right[2]]))
+            .fold(f32::INFINITY, f32::min);
+        assert!(closest > 0.045, "{closest} m in {params:?}");
+    }
+}
+
 #[test]
 fn the_mean_speed_is_the_one_asked_for() {
     for turn_rate_dps in [0.0, 30.0, -90.0] {

@@ -21,6 +21,8 @@ pub(super) struct Plant {
     /// Pitch at `from` and `to`, radians, positive with the heel up.
     pub(super) strike_pitch: f64,
     pub(super) release_pitch: f64,
+    /// The ankle's distance from the middle of the body across its heading, metres; positive on either side.
+    pub(super) half_width: f64,
     /// How the weight comes and goes, seconds after `from` and before `to`.
     pub(super) load_secs: f64,
     /// The share of a stance that one second is, for feet that stand for ever.
@@ -41,6 +43,8 @@ pub(super) struct Swing {
     /// How much of the least bending way's acceleration the foot starts and ends with, over the ground.
     pub(super) eager: f64,
     pub(super) late: f64,
+    /// What the way over the ground bulges by in the middle, world (x, z), metres: around the other leg on a curve, where the chord would go through it.
+    pub(super) aside: DVec2,
     /// Rate of the ball straight up at its start and end, m/s; not 0 only where it leaves the ground with the whole body.
     pub(super) spring: f64,
 }
@@ -185,7 +189,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let (a0, a1) = (cubic_start_acceleration(from, to, span), cubic_start_acceleration(reversed.0, reversed.1, span));
     from.acceleration = a0 * swing.eager;
     to.acceleration = a1 * swing.late;
-    let ground = quintic(from, to, span, now);
+    let bulge = 16.0 * (share * (1.0 - share)).powi(2);
+    let ground = quintic(from, to, span, now) + DVec3::new(swing.aside.x, 0.0, swing.aside.y) * bulge;
     let timed = |(share, value): (f64, f64)| (share * span, value);
     let height = Spline::clamped(
         &[(0.0, start.y), timed((swing.peak.0, start.y + swing.peak.1)), timed((swing.low.0, start.y + swing.low.1)), (span, end.y)],

@@ -122,6 +122,7 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
         Action::Idle | Action::Spin => super::spot::on_the_spot(&mut plan, params, body),
         Action::Jump => super::spot::jump(&mut plan, params, body),
     }
+    plan.keep_legs_apart(params, body);
     plan
 }
 
@@ -134,13 +135,39 @@ impl Plan {
     /// Where the foot of a side belongs while the body passes the place of `secs`: to its side, and, since an inverted pendulum accelerates away
     /// from its foot by ω²(x - foot), away from where the body is heading. Standing feet are wider apart.
     pub(super) fn foothold(&self, side: usize, secs: f64, half_width: f64, params: &Params, body: &Body) -> DVec2 {
-        let place = self.path.at(secs);
-        let outward = if side == 0 { half_width } else { -half_width };
-        // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
-        let eased = Place { thrust: 0.5 * place.thrust, ..place };
-        let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
-        let behind = f64::from(body.scale) * if self.gait.running { 0.20 - 0.03 * self.gait.quick_run() } else { 0.105 };
-        place.position + support + place.left() * outward - place.forward() * behind
+        foothold_at(&self.path.at(secs), side, half_width, self.gait, params, body)
+    }
+}
+
+/// Where the foot of a side belongs while the body passes `place`; see [`Plan::foothold`].
+fn foothold_at(place: &Place, side: usize, half_width: f64, gait: Gait, params: &Params, body: &Body) -> DVec2 {
+    let outward = if side == 0 { half_width } else { -half_width };
+    // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
+    let eased = Place { thrust: 0.5 * place.thrust, ..*place };
+    let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
+    let behind = f64::from(body.scale) * if gait.running { 0.20 - 0.03 * gait.quick_run() } else { 0.105 };
+    place.position + support + place.left() * outward - place.forward() * behind
+}
+
+impl Plan {
+    /// Bends the way of every swing around the other leg: half-way, the foot is as far to its side of the body as on the ground, and a little
+    /// farther where it turns on the spot.
+    fn keep_legs_apart(&mut self, params: &Params, body: &Body) {
+        let spinning = self.action == Action::Spin;
+        let room = if spinning { 0.06 * f64::from(body.scale) } else { 0.0 };
+        for side in 0..2 {
+            for index in 1..self.plants[side].len() {
+                let (from, to) = (self.plants[side][index - 1], self.plants[side][index]);
+                let middle = 0.5 * (from.to + to.from);
+                let place = self.path.at(middle);
+                let facing = if spinning { Place { yaw: 0.5 * (from.yaw + to.yaw) - toe_out(side, false), ..place } } else { place };
+                let half_width = 0.5 * (from.half_width + to.half_width) + room;
+                let wanted = foothold_at(&facing, side, half_width, self.gait, params, body);
+                let left = facing.left();
+                let missing = (wanted - 0.5 * (from.ankle + to.ankle)).dot(left);
+                self.plants[side][index - 1].swing.aside = left * missing;
+            }
+        }
     }
 }
 
@@ -176,6 +203,7 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
             toes_up: degrees(-2.0),
             eager: 0.65,
             late: 1.4,
+            aside: DVec2::ZERO,
             spring: 0.0,
         };
     }
@@ -187,6 +215,7 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
         toes_up: degrees(-3.0),
         eager: 1.2,
         late: 0.7,
+        aside: DVec2::ZERO,
         spring: 0.0,
     }
 }
@@ -203,6 +232,7 @@ fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, bod
         flat_to: from + gait.flat_to * cycle,
         to,
         ankle: plan.foothold(side, middle, gait.half_width, params, body),
+        half_width: gait.half_width,
         yaw: plan.path.at(middle).yaw + toe_out(side, gait.running),
         strike_pitch: gait.strike_pitch * share,
         release_pitch: gait.release_pitch * (0.35 + 0.65 * share),
@@ -226,7 +256,8 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
 /// A plant that has stood since ever (`from` = -∞) or will for ever (`to` = ∞).
 fn standing(mut plant: Plant, plan: &Plan, side: usize, params: &Params, body: &Body, before: bool) -> Plant {
     let at = if before { f64::NEG_INFINITY } else { f64::INFINITY };
-    plant.ankle = plan.foothold(side, at, standing_half_width(params, body), params, body);
+    plant.half_width = standing_half_width(params, body);
+    plant.ankle = plan.foothold(side, at, plant.half_width, params, body);
     plant.yaw = plan.path.at(at).yaw + toe_out(side, false);
     if before {
         (plant.from, plant.flat_from) = (at, at);

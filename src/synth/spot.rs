@@ -6,6 +6,7 @@ use super::gait::gravity;
 use super::params::{Action, Params};
 use super::plan::{JumpTimes, Plan, standing_half_width, toe_out};
 use super::track::ramp;
+use glam::DVec2;
 
 fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
     let ever = f64::INFINITY;
@@ -15,6 +16,7 @@ fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
         flat_to: ever,
         to: ever,
         ankle: plan.foothold(side, -ever, standing_half_width(params, body), params, body),
+        half_width: standing_half_width(params, body),
         yaw: plan.path.at(-ever).yaw + toe_out(side, false),
         strike_pitch: 0.0,
         release_pitch: 0.0,
@@ -24,7 +26,7 @@ fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
     }
 }
 
-/// Standing, and turning on the spot in steps of which none turns a foot by more than about 110°.
+/// Standing, and turning on the spot in steps of which none turns a foot by more than about 100°.
 pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
     plan.top_speed = 0.0;
     plan.moving = (0.0, 0.0);
@@ -35,7 +37,8 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         return;
     }
     // Each foot takes the same number of steps; the one on the inner side opens first, the other closes up.
-    let pairs = (angle.abs() / 110.0_f64.to_radians()).ceil().max(1.0);
+    let degrees = angle.abs().to_degrees();
+    let pairs = if degrees <= 60.0 { 1.0 } else { (degrees / 100.0).ceil().max(2.0) };
     let steps = 2 * pairs as usize;
     let (period, air) = (0.50 * f64::from(body.scale).sqrt(), 0.36 * f64::from(body.scale).sqrt());
     let lift = 0.55;
@@ -61,9 +64,13 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
             toes_up: -0.05,
             eager: 0.3,
             late: 0.3,
+            aside: DVec2::ZERO,
             spring: 0.0,
         };
-        let behind = 0.05 * f64::from(body.scale);
+        // On the way the feet are set wider, the leading one farther ahead and the trailing one farther back, so that no toe comes to stand on a heel.
+        let passing = if step + 2 >= steps { 0.0 } else { f64::from(body.scale) };
+        let outward = outward * (1.0 + 0.5 * passing);
+        let behind = 0.105 * f64::from(body.scale) + if side == inner { -0.03 } else { 0.06 } * passing;
         let ankle = facing.left() * outward - facing.forward() * behind;
         let resting = stand(plan, side, params, body);
         if let Some(before) = plants[side].last_mut() {
@@ -109,6 +116,7 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
             toes_up: 0.12,
             eager: 0.8,
             late: 0.6,
+            aside: DVec2::ZERO,
             spring: 0.3 * gravity() * air * 0.5,
         };
         let away = Plant { flat_to: off - 0.2 * size, to: off, release_pitch: OFF_PITCH, swing, ..first };
