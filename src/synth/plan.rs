@@ -10,6 +10,8 @@ use glam::DVec2;
 
 /// Seconds that are made before and after the clip, so that filters see what comes and came: e^(-3.2 × 3) of an edge's centimetres is left.
 const MARGIN_SECS: f64 = 3.0;
+/// How far the ankles of a standing adult of 1.75 m are behind the middle of the body, metres: it rests over the middle of the feet.
+pub(super) const STANDING_BEHIND: f64 = 0.05;
 /// The coarsest time step that is planned with.
 const COARSEST_SECS: f64 = 1.0 / 110.0;
 
@@ -132,8 +134,16 @@ impl Plan {
         self.path = Path::integrate(self.secs(0), self.dt_secs, self.len(), rates);
     }
 
+    /// Where the foot of a body belongs that stands at the place of `secs`: wider apart, and under the body.
+    pub(super) fn standing_foothold(&self, side: usize, secs: f64, params: &Params, body: &Body) -> DVec2 {
+        let place = self.path.at(secs);
+        let half_width = standing_half_width(params, body);
+        let outward = if side == 0 { half_width } else { -half_width };
+        place.position + place.left() * outward - place.forward() * (STANDING_BEHIND * f64::from(body.scale))
+    }
+
     /// Where the foot of a side belongs while the body passes the place of `secs`: to its side, and, since an inverted pendulum accelerates away
-    /// from its foot by ω²(x - foot), away from where the body is heading. Standing feet are wider apart.
+    /// from its foot by ω²(x - foot), away from where the body is heading.
     pub(super) fn foothold(&self, side: usize, secs: f64, half_width: f64, params: &Params, body: &Body) -> DVec2 {
         foothold_at(&self.path.at(secs), side, half_width, self.gait, params, body)
     }
@@ -257,7 +267,7 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
 fn standing(mut plant: Plant, plan: &Plan, side: usize, params: &Params, body: &Body, before: bool) -> Plant {
     let at = if before { f64::NEG_INFINITY } else { f64::INFINITY };
     plant.half_width = standing_half_width(params, body);
-    plant.ankle = plan.foothold(side, at, plant.half_width, params, body);
+    plant.ankle = plan.standing_foothold(side, at, params, body);
     plant.yaw = plan.path.at(at).yaw + toe_out(side, false);
     if before {
         (plant.from, plant.flat_from) = (at, at);

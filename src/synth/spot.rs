@@ -4,7 +4,7 @@ use super::body::Body;
 use super::foot::{Plant, Swing};
 use super::gait::gravity;
 use super::params::{Action, Params};
-use super::plan::{JumpTimes, Plan, standing_half_width, toe_out};
+use super::plan::{JumpTimes, Plan, STANDING_BEHIND, standing_half_width, toe_out};
 use super::track::ramp;
 use glam::DVec2;
 
@@ -15,7 +15,7 @@ fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
         flat_from: -ever,
         flat_to: ever,
         to: ever,
-        ankle: plan.foothold(side, -ever, standing_half_width(params, body), params, body),
+        ankle: plan.standing_foothold(side, -ever, params, body),
         half_width: standing_half_width(params, body),
         yaw: plan.path.at(-ever).yaw + toe_out(side, false),
         strike_pitch: 0.0,
@@ -70,7 +70,7 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         // On the way the feet are set wider, the leading one farther ahead and the trailing one farther back, so that no toe comes to stand on a heel.
         let passing = if step + 2 >= steps { 0.0 } else { f64::from(body.scale) };
         let outward = outward * (1.0 + 0.5 * passing);
-        let behind = 0.105 * f64::from(body.scale) + if side == inner { -0.03 } else { 0.06 } * passing;
+        let behind = STANDING_BEHIND * f64::from(body.scale) + if side == inner { -0.03 } else { 0.06 } * passing;
         let ankle = facing.left() * outward - facing.forward() * behind;
         let resting = stand(plan, side, params, body);
         if let Some(before) = plants[side].last_mut() {
@@ -108,7 +108,7 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
     // The feet land ahead of the body, which comes to rest over them.
     for side in 0..2 {
         let first = stand(plan, side, params, body);
-        let ankle = plan.foothold(side, f64::INFINITY, standing_half_width(params, body), params, body);
+        let ankle = plan.standing_foothold(side, f64::INFINITY, params, body);
         let swing = Swing {
             peak: (0.45, 1.25 * rise),
             low: (0.80, 0.62 * rise),
