@@ -467,7 +467,7 @@ fn any_params() -> impl Strategy<Value = Params> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 160, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 160, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_valid_parameter_makes_a_sound_clip(params in any_params()) {
@@ -482,10 +482,11 @@ proptest! {
         prop_assert!(worst_slip(&made, params.height_m) < 1e-3, "slip {}", worst_slip(&made, params.height_m));
         prop_assert!(deepest(&made, params.height_m) < 2e-3, "depth {}", deepest(&made, params.height_m));
         // Nothing flips from one frame to the next, at any frame rate.
+        let fastest = 62.0 * (1.75 / params.height_m).sqrt();
         for frame in 1..made.clip.frames() {
             for (joint, (a, b)) in made.clip.rotations(frame - 1).iter().zip(made.clip.rotations(frame)).enumerate() {
                 let speed = quat::angle_between(*a, *b) * params.fps;
-                prop_assert!(speed < 62.0, "{speed} rad/s in joint {joint} at frame {frame}");
+                prop_assert!(speed < fastest, "{speed} rad/s in joint {joint} at frame {frame}");
             }
         }
     }
