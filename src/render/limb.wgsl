@@ -144,27 +144,27 @@ fn shade(albedo: vec3f, world: vec3f, normal: vec3f, reaching: vec2f) -> Shade {
     let base = to_linear(albedo);
 
     // A broad main light from over the camera's shoulder, wrapped softly around; sky from above, the floor's light from below.
-    let key = pow(clamp((dot(normal, view.key.xyz) + 0.4) / 1.4, 0.0, 1.0), 1.5) * reaching.y;
+    let key = pow(clamp((dot(normal, view.key.xyz) + 0.35) / 1.35, 0.0, 1.0), 1.7) * reaching.y;
     let upward = normal.y * 0.5 + 0.5;
-    let near_floor = exp(-max(world.y, 0.0) * 5.0);
-    let under = mix(0.26, 0.16, near_floor) * vec3f(1.0, 0.985, 0.97);
-    let sky = mix(under, vec3f(0.50, 0.52, 0.56), upward) * reaching.x;
-    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.10 * reaching.x;
-    var light = sky + fill * vec3f(0.9, 0.96, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.96);
+    let near_floor = exp(-max(world.y, 0.0) * 4.0);
+    let under = mix(0.20, 0.12, near_floor) * vec3f(1.0, 0.985, 0.97);
+    let sky = mix(under, vec3f(0.36, 0.38, 0.425), upward) * reaching.x;
+    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.08 * reaching.x;
+    let light = sky + fill * vec3f(0.85, 0.94, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.955);
 
     let half_way = normalize(view.key.xyz + to_eye);
-    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 26.0) * 0.075 * reaching.y;
+    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 30.0) * 0.06 * reaching.y;
 
     var out: Shade;
     let rim = 1.0 - facing;
-    out.rim = rim * rim * rim;
+    out.rim = rim * rim;
     out.linear = base * light + gloss;
     return out;
 }
 
 // What has sunk into the ground is seen through it, faintly.
 fn sink(color: vec3f, world: vec3f) -> vec3f {
-    let depth = smoothstep(0.0, -0.012, world.y + 0.004);
+    let depth = smoothstep(-0.008, -0.03, world.y);
     return mix(color, to_linear(view.floor.rgb), depth * 0.72);
 }
 
@@ -173,7 +173,7 @@ fn fs_solid(in: Surface) -> @location(0) vec4f {
     let normal = normalize(in.normal);
     let reaching = light_reaching(in.world, normal);
     let lit = shade(in.color.rgb, in.world, normal, reaching);
-    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.05, 0.9, lit.rim));
+    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.06, 0.85, lit.rim));
     return vec4f(to_srgb(sink(rimmed, in.world)) + dither(in.clip.xy), 1.0);
 }
 
@@ -191,7 +191,7 @@ fn fs_ghost(in: Surface) -> @location(0) vec4f {
     // Flat in the middle and denser at the rim, like a shell of tinted glass.
     let base = to_linear(in.color.rgb);
     let tinted = mix(base, lit.linear * 1.15, 0.45);
-    let density = clamp(in.color.a * (0.82 + 0.9 * lit.rim), 0.0, 1.0);
+    let density = clamp(in.color.a * (0.80 + 0.75 * lit.rim * lit.rim), 0.0, 1.0);
     let over_ground = mix(0.45, 1.0, smoothstep(-0.02, 0.0, in.world.y));
     return vec4f(to_srgb(tinted), density * over_ground);
 }

@@ -45,6 +45,7 @@ struct Recipe<'a> {
     depth: Option<(wgpu::CompareFunction, bool)>,
     topology: wgpu::PrimitiveTopology,
     cull: Option<wgpu::Face>,
+    stencil: wgpu::StencilState,
 }
 
 const OVER: wgpu::BlendState = wgpu::BlendState::ALPHA_BLENDING;
@@ -72,6 +73,22 @@ const SHADE: wgpu::BlendState = wgpu::BlendState {
     },
     alpha: wgpu::BlendComponent::REPLACE,
 };
+
+/// Where two limbs of a ghost share a surface, it is coloured once: the stencil keeps the number of the ghost that was there last.
+fn once_per_ghost() -> wgpu::StencilState {
+    let face = wgpu::StencilFaceState {
+        compare: wgpu::CompareFunction::NotEqual,
+        fail_op: wgpu::StencilOperation::Keep,
+        depth_fail_op: wgpu::StencilOperation::Keep,
+        pass_op: wgpu::StencilOperation::Replace,
+    };
+    wgpu::StencilState {
+        front: face,
+        back: face,
+        read_mask: 0xff,
+        write_mask: 0xff,
+    }
+}
 
 fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -149,6 +166,7 @@ impl Pipelines {
             depth: None,
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: None,
+            stencil: wgpu::StencilState::default(),
         };
         let quad = wgpu::PrimitiveTopology::TriangleStrip;
         let line_recipe = |label, depth| Recipe {
@@ -170,6 +188,7 @@ impl Pipelines {
             depth: Some(depth),
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(cull),
+            stencil: wgpu::StencilState::default(),
         };
         use wgpu::CompareFunction::{Less, LessEqual};
         use wgpu::Face::{Back, Front};
@@ -201,7 +220,10 @@ impl Pipelines {
                 writes: wgpu::ColorWrites::empty(),
                 ..limb_recipe("ghost depth", ["vs_limb", "fs_depth"], (Less, true), None, Back)
             }),
-            ghost: make(&limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)),
+            ghost: make(&Recipe {
+                stencil: once_per_ghost(),
+                ..limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)
+            }),
             view_layout,
             figure_layout,
             composite_layout,
@@ -231,7 +253,7 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(write),
             depth_compare: Some(compare),
-            stencil: wgpu::StencilState::default(),
+            stencil: recipe.stencil.clone(),
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {

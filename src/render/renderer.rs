@@ -282,7 +282,10 @@ impl StageRenderer {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Discard,
                 }),
-                stencil_ops: None,
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Discard,
+                }),
             }),
             ..Default::default()
         });
@@ -353,8 +356,9 @@ impl StageRenderer {
         }
         quads(pass, space_line, strokes, &pane.strokes[1]);
         // Each ghost first finds its front, then colours it: far ones first.
-        for (index, figure) in figures().filter(|(_, figure)| figure.ghost) {
+        for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
             set_figure(pass, index);
+            pass.set_stencil_reference(number as u32 % 255 + 1);
             for pipeline in [ghost_depth, ghost] {
                 pass.set_pipeline(pipeline);
                 self.draw_limbs(pass, figure);

@@ -79,6 +79,8 @@ fn fs_shadow(in: Blot) -> @location(0) vec4f {
     let sigma = mix(in.blur.z, mix(in.blur.x, in.blur.y, t), lying);
     let across = blurred_box(-radius - in.at.y, radius - in.at.y, sigma);
     let along = blurred_box(-0.85 * in.size.y - in.at.x, len + 0.85 * in.size.z - in.at.x, sigma);
-    let dark = clamp(across * along, 0.0, 1.0) * figure.about.z;
+    // What is high up only dims a wide area: that much light comes around it.
+    let high = mix(1.0, 0.42, smoothstep(0.05, 0.45, sigma / 0.26));
+    let dark = clamp(across * along, 0.0, 1.0) * high * figure.about.z;
     return vec4f(0.0, 0.0, 0.0, dark);
 }

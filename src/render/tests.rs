@@ -146,7 +146,7 @@ fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) ->
     pane.focus = here;
     pane.camera = Camera {
         target: here + Vec3::Y * 0.93,
-        yaw: 1.15,
+        yaw: 0.95,
         pitch: 0.13,
         distance: 4.6,
         ..Camera::default()
