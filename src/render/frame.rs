@@ -1,11 +1,12 @@
 //! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
 
+use super::renderer::Quality;
 use glam::{Vec3, Vec4};
 use segue::scene::{Color, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
 use std::ops::Range;
 
-/// Limbs of one body that shade the others.
-const OCCLUDERS: usize = 32;
+/// Limbs of one body that melt into the others and shade them.
+const NEIGHBOURS: usize = 48;
 /// From this radius in pixels on a limb is drawn with the fine mesh.
 const FINE_FROM_PIXELS: f32 = 9.0;
 
@@ -66,7 +67,7 @@ impl ViewUniform {
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct FigureUniform {
     about: [f32; 4],
-    occluders: [[f32; 4]; 2 * OCCLUDERS],
+    neighbours: [[f32; 4]; 3 * NEIGHBOURS],
 }
 
 /// One body in the instance buffers.
@@ -127,7 +128,7 @@ fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
 
 impl Frame {
     /// Fills the frame from a stage that is drawn into `size` pixels.
-    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2]) {
+    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2], quality: Quality) {
         self.clear = stage.look.background_top;
         self.views.clear();
         self.figures.clear();
@@ -141,7 +142,7 @@ impl Frame {
             if viewport.width == 0 || viewport.height == 0 {
                 continue;
             }
-            let figures = self.add_figures(pane, viewport);
+            let figures = self.add_figures(pane, viewport, quality);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
                 self.strokes
@@ -160,7 +161,7 @@ impl Frame {
         }
     }
 
-    fn add_figures(&mut self, pane: &Pane, viewport: Viewport) -> Range<usize> {
+    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, quality: Quality) -> Range<usize> {
         let first = self.figures.len();
         let height = viewport.height as f32;
         let [_, _, back] = pane.camera.axes();
@@ -185,7 +186,7 @@ impl Frame {
                 depth: if depth.is_finite() { depth } else { 0.0 },
             });
             self.figure_uniforms
-                .push(figure_uniform(if figure.ghost { &[] } else { limbs }, figure.shadow));
+                .push(figure_uniform(if quality == Quality::Full { limbs } else { &[] }, figure.shadow));
         }
         self.sort_figures(first);
         first..self.figures.len()
@@ -235,14 +236,17 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
 fn figure_uniform(limbs: &[Limb], shadow: f32) -> FigureUniform {
     let mut uniform = FigureUniform {
         about: [0.0, 0.0, shadow, 0.0],
-        occluders: [[0.0; 4]; 2 * OCCLUDERS],
+        neighbours: [[0.0; 4]; 3 * NEIGHBOURS],
     };
     let mut count = 0;
-    for (limb, pair) in limbs.iter().zip(uniform.occluders.chunks_exact_mut(2)) {
-        // Between the half width and the half depth of a flattened limb.
-        let mean = 0.5 + 0.5 * limb.flatness;
-        pair[0] = limb.a.extend(limb.radius_a * mean).to_array();
-        pair[1] = limb.b.extend(limb.radius_b * mean).to_array();
+    let seen = limbs.iter().filter(|limb| limb_instance(limb).is_some());
+    for (limb, triple) in seen.zip(uniform.neighbours.chunks_exact_mut(3)) {
+        // As the mesh is bent: the flattening is across the axis.
+        let flat = limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
+        let flatness = if flat.length() > 1e-3 { limb.flatness.max(0.05) } else { 1.0 };
+        triple[0] = limb.a.extend(limb.radius_a).to_array();
+        triple[1] = limb.b.extend(limb.radius_b).to_array();
+        triple[2] = flat.normalize_or_zero().extend(flatness).to_array();
         count += 1;
     }
     uniform.about[0] = count as f32;

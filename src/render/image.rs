@@ -87,7 +87,7 @@ pub(crate) fn render_to_image(
     device
         .poll(wgpu::PollType::Wait {
             submission_index: Some(submitted),
-            timeout: Some(Duration::from_secs(20)),
+            timeout: Some(Duration::from_secs(180)),
         })
         .map_err(|e| device_error(&e))?;
     receiver.try_recv().map_err(|e| device_error(&e))?.map_err(|e| device_error(&e))?;

@@ -26,7 +26,8 @@ pub(super) struct Pipelines {
     pub(super) space_line: wgpu::RenderPipeline,
     pub(super) solid: wgpu::RenderPipeline,
     pub(super) edge: wgpu::RenderPipeline,
-    pub(super) ghost_depth: wgpu::RenderPipeline,
+    /// Only the depth of the limbs' fronts.
+    pub(super) front: wgpu::RenderPipeline,
     pub(super) ghost: wgpu::RenderPipeline,
     pub(super) composite: wgpu::RenderPipeline,
     pub(super) sample_count: u32,
@@ -214,11 +215,11 @@ impl Pipelines {
             }),
             flat_line: make(&line_recipe("line", None)),
             space_line: make(&line_recipe("line in space", Some((LessEqual, true)))),
-            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (Less, true), None, Back)),
+            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back)),
             edge: make(&limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)),
-            ghost_depth: make(&Recipe {
+            front: make(&Recipe {
                 writes: wgpu::ColorWrites::empty(),
-                ..limb_recipe("ghost depth", ["vs_limb", "fs_depth"], (Less, true), None, Back)
+                ..limb_recipe("limb front", ["vs_limb", "fs_depth"], (Less, true), None, Back)
             }),
             ghost: make(&Recipe {
                 stencil: once_per_ghost(),

@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::pipelines::{COMPOSITE, GROUND, LIMB, LINE, RING, SHADOW};
-use super::{Image, StageRenderer, render_to_image};
+use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
 use segue::clip::Clip;
@@ -72,8 +72,12 @@ fn gpu() -> Option<Gpu> {
 }
 
 impl Gpu {
+    /// Draws as on a machine with a graphics card, and keeps the picture.
     fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
+        self.renderer.set_quality(Quality::Full);
+        let start = Instant::now();
         let image = render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
+        eprintln!("{name}: {:.2} s", start.elapsed().as_secs_f64());
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/stage");
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join(format!("{name}.png")), image.to_png().unwrap()).unwrap();
@@ -544,7 +548,7 @@ fn time_to_build_and_encode() {
     let actors = actors();
     let mut stage = stage(&actors, [1440, 900], 3, false, 1.0);
     let mut frame = Frame::default();
-    frame.build(&stage, [1440, 900]);
+    frame.build(&stage, [1440, 900], Quality::Full);
     let rounds = 200u32;
     let (mut bodies, mut build, mut prepare) = (0.0, 0.0, 0.0);
     let pose = actors.walk.world_pose(50);
@@ -562,7 +566,7 @@ fn time_to_build_and_encode() {
         }
         bodies += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        frame.build(&stage, [1440, 900]);
+        frame.build(&stage, [1440, 900], Quality::Full);
         build += start.elapsed().as_secs_f64();
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let start = Instant::now();

@@ -338,7 +338,7 @@ impl Look {
         floor_radius: 4.2,
         grid: [0.42, 0.48, 0.6, 0.3],
         shadow: 0.5,
-        clay: rgb(0xa3_a9_b9),
+        clay: rgb(0xae_b4_c4),
         edge: [0.16, 0.19, 0.26, 0.8],
         edge_width: 1.1,
         rim: 0.45,

@@ -133,7 +133,7 @@ impl Human<'_> {
         // Half of the width is an adult's, half is the skeleton's own.
         let pelvis = (0.076 + (half_hips + 0.06) * 0.5).clamp(0.11, 0.19);
         let ribs = (0.074 + (half_shoulders - 0.03) * 0.5).clamp(0.11, 0.2);
-        let waist = 0.5 * (pelvis + ribs) * 0.8;
+        let waist = 0.5 * (pelvis + ribs) * 0.87;
 
         let mut spine: Vec<usize> = self.ancestors(chest).take_while(|&j| j != hips).collect();
         spine.push(hips);
@@ -158,7 +158,8 @@ impl Human<'_> {
         let (belly, lower_ribs, upper_ribs) = (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
         self.add(low, pelvis, belly, waist);
         self.flatten_last(forward, 0.70);
-        self.add(belly, waist, lower_ribs, ribs * 0.90);
+        // A ball that two pieces share is a little smaller in the second, lest both surfaces flicker through each other.
+        self.add(belly, waist * 0.985, lower_ribs, ribs * 0.91);
         self.flatten_last(forward, 0.70);
         self.add(lower_ribs, ribs * 0.90, upper_ribs, ribs);
         self.flatten_last(forward, 0.70);
@@ -167,19 +168,18 @@ impl Human<'_> {
         let seat = |this: &Self, hip: usize| {
             this.anchor(
                 hips,
-                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.030 * s),
-            )
+                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.026 * s))
         };
         let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
-        self.add(seat_left, 0.086, seat_right, 0.086);
+        self.add(seat_left, 0.083, seat_right, 0.083);
         let breast = |this: &Self, arm: usize| {
             this.anchor(
                 chest,
-                this.rest[arm].lerp(shoulder_middle, 0.56) - up * (0.080 * s) + forward * (0.030 * s),
+                this.rest[arm].lerp(shoulder_middle, 0.56) - up * (0.078 * s) + forward * (0.018 * s),
             )
         };
         let (breast_left, breast_right) = (breast(self, arm_left), breast(self, arm_right));
-        self.add(breast_left, 0.080, breast_right, 0.080);
+        self.add(breast_left, 0.077, breast_right, 0.077);
         for (side, arm) in [(1.0, arm_left), (-1.0, arm_right)] {
             let girdle = self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
             self.add(
@@ -232,7 +232,7 @@ impl Human<'_> {
             self.on(head, up * (crown - 0.100) + forward * 0.083),
             self.on(head, up * (crown - 0.138) + forward * 0.098),
         );
-        self.add(cranium, 0.094, chin, 0.057);
+        self.add(cranium, 0.092, chin, 0.056);
         self.flatten_last(left, 0.83);
         self.add(brow, 0.010, tip, 0.0125);
         self.cover(head);
