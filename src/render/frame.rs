@@ -2,11 +2,15 @@
 
 use super::renderer::Quality;
 use glam::{Vec3, Vec4};
-use segue::scene::{Color, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
+use segue::scene::{Color, Figure, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
 use std::ops::Range;
 
 /// Limbs of one body that melt into the others and shade them.
 const NEIGHBOURS: usize = 48;
+/// How many of them a limb looks at.
+const NEAREST: usize = 12;
+/// Ends the list of the nearest.
+const NONE: u8 = 255;
 /// From this radius in pixels on a limb is drawn with the fine mesh.
 const FINE_FROM_PIXELS: f32 = 9.0;
 
@@ -17,6 +21,7 @@ pub(super) struct LimbInstance {
     b: [f32; 4],
     flat: [f32; 4],
     color: [u8; 4],
+    near: [u8; NEAREST],
 }
 
 #[repr(C)]
@@ -176,6 +181,11 @@ impl Frame {
             self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
             let middle = self.limbs.len() as u32;
             self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(limb_instance));
+            // Nobody sees how limbs melt in a body that is small all over.
+            if quality == Quality::Full && middle > start {
+                let bodys_own = &mut self.limbs[start as usize..];
+                find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own);
+            }
             // Limbs come with the biggest first: the trunk says where the body is.
             let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
             self.figures.push(FigureDraw {
@@ -185,8 +195,7 @@ impl Frame {
                 ghost: figure.ghost,
                 depth: if depth.is_finite() { depth } else { 0.0 },
             });
-            self.figure_uniforms
-                .push(figure_uniform(if quality == Quality::Full { limbs } else { &[] }, figure.shadow));
+            self.figure_uniforms.push(figure_uniform(limbs, figure));
         }
         self.sort_figures(first);
         first..self.figures.len()
@@ -213,6 +222,7 @@ fn limb_instance(limb: &Limb) -> Option<LimbInstance> {
         b: limb.b.extend(limb.radius_b).to_array(),
         flat: limb.flat.extend(limb.flatness).to_array(),
         color: bytes(limb.color),
+        near: [NONE; NEAREST],
     })
 }
 
@@ -233,24 +243,53 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
     })
 }
 
-fn figure_uniform(limbs: &[Limb], shadow: f32) -> FigureUniform {
+fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
+    let solid = if figure.ghost { 0.0 } else { 1.0 };
     let mut uniform = FigureUniform {
-        about: [0.0, 0.0, shadow, 0.0],
+        about: [0.0, solid, figure.shadow, 0.0],
         neighbours: [[0.0; 4]; 3 * NEIGHBOURS],
     };
-    let mut count = 0;
-    let seen = limbs.iter().filter(|limb| limb_instance(limb).is_some());
-    for (limb, triple) in seen.zip(uniform.neighbours.chunks_exact_mut(3)) {
+    for (limb, triple) in limbs.iter().zip(uniform.neighbours.chunks_exact_mut(3)) {
         // As the mesh is bent: the flattening is across the axis.
         let flat = limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
         let flatness = if flat.length() > 1e-3 { limb.flatness.max(0.05) } else { 1.0 };
         triple[0] = limb.a.extend(limb.radius_a).to_array();
         triple[1] = limb.b.extend(limb.radius_b).to_array();
         triple[2] = flat.normalize_or_zero().extend(flatness).to_array();
-        count += 1;
     }
-    uniform.about[0] = count as f32;
     uniform
+}
+
+/// Notes for every instance which limbs of its body, by their numbers in `limbs`, take the most light from it or touch it.
+fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance]) {
+    for instance in instances {
+        let (a, b) = (Vec4::from(instance.a), Vec4::from(instance.b));
+        let points = [a.truncate(), (a.truncate() + b.truncate()) * 0.5, b.truncate()];
+        let mut scores = [0.0f32; NEAREST];
+        for (index, limb) in limbs.iter().enumerate() {
+            if (limb.a, limb.b) == (points[0], points[2]) && limb.radius_a == a.w || limb_instance(limb).is_none() {
+                continue;
+            }
+            // The gap between the limbs, in radii of the other: measured from both ends and the middle.
+            let span = limb.b - limb.a;
+            let scale = span.length_squared().max(1e-9).recip();
+            let gap = |point: Vec3| {
+                let t = ((point - limb.a).dot(span) * scale).clamp(0.0, 1.0);
+                point.distance(limb.a + span * t)
+            };
+            let radius = limb.radius_a.max(limb.radius_b);
+            let nearest = points.into_iter().map(gap).fold(f32::INFINITY, f32::min);
+            let score = radius / (nearest - a.w.max(b.w)).max(0.1 * radius).max(1e-6);
+            // Insert into the list, the strongest first.
+            if score > scores[NEAREST - 1] {
+                let at = scores.partition_point(|&s| s >= score);
+                scores[at..].rotate_right(1);
+                instance.near[at..].rotate_right(1);
+                scores[at] = score;
+                instance.near[at] = index as u8;
+            }
+        }
+    }
 }
 
 fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {

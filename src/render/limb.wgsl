@@ -1,7 +1,7 @@
 // Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
 
 struct Figure {
-    // Number of neighbours, unused, strength of the shadow, unused.
+    // Unused, 1 for a solid body, strength of the shadow, unused.
     about: vec4f,
     // Three for each limb of the body: centre and radius of its first ball, of its second, direction and scale of its flattening.
     neighbours: array<vec4f, 144>,
@@ -18,6 +18,10 @@ struct Limb {
     // Direction and scale of the flattening.
     @location(3) flat_axis: vec4f,
     @location(4) color: vec4f,
+    // The limbs of the body that lie nearest, by number; 255 ends the list.
+    @location(5) near_a: vec4u,
+    @location(6) near_b: vec4u,
+    @location(7) near_c: vec4u,
 }
 
 struct Surface {
@@ -25,6 +29,9 @@ struct Surface {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
+    @location(3) @interpolate(flat) near_a: vec4u,
+    @location(4) @interpolate(flat) near_b: vec4u,
+    @location(5) @interpolate(flat) near_c: vec4u,
 }
 
 struct Bent {
@@ -81,6 +88,9 @@ fn vs_limb(limb: Limb) -> Surface {
     out.normal = bent.normal;
     out.clip = view.clip_from_world * vec4f(bent.world, 1.0);
     out.color = limb.color;
+    out.near_a = limb.near_a;
+    out.near_b = limb.near_b;
+    out.near_c = limb.near_c;
     return out;
 }
 
@@ -96,6 +106,9 @@ fn vs_edge(limb: Limb) -> Surface {
     let deeper = view.clip_from_world * vec4f(out.world - towards_eye(out.world) * 0.016, 1.0);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
     out.color = limb.color;
+    out.near_a = limb.near_a;
+    out.near_b = limb.near_b;
+    out.near_c = limb.near_c;
     return out;
 }
 
@@ -112,26 +125,24 @@ struct Around {
 // Normal: of every limb that lies within a third of its radius, weighted by how near its surface is; seams between limbs vanish like in clay.
 // Sky: the closed form of a ball before the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb. Main light: the angle
 // between the light and the edge of that ball, softened by the width of the light.
-fn look_around(world: vec3f, normal: vec3f) -> Around {
-    var melted = normal * 1e-3;
+fn look_around(in: Surface) -> Around {
+    let world = in.world;
+    let normal = normalize(in.normal);
+    var melted = normal;
     var sky = 1.0;
     var key = 1.0;
-    let count = i32(figure.about.x);
-    for (var i = 0; i < count; i++) {
-        let a = figure.neighbours[3 * i];
-        let b = figure.neighbours[3 * i + 1];
+    var near = array<vec4u, 3>(in.near_a, in.near_b, in.near_c);
+    for (var k = 0u; k < 12u; k++) {
+        let i = near[k / 4u][k % 4u];
+        if i > 47u {
+            break;
+        }
+        let a = figure.neighbours[3u * i];
+        let b = figure.neighbours[3u * i + 1u];
         let from_a = world - a.xyz;
         let span = b.xyz - a.xyz;
-        let along = clamp(dot(from_a, span) / max(dot(span, span), 1e-9), 0.0, 1.0);
-        let to_axis = span * along - from_a;
-        let widest = max(a.w, b.w);
-        // So far off a limb takes less than a fortieth of the light.
-        if dot(to_axis, to_axis) > 40.0 * widest * widest {
-            continue;
-        }
-
         // Back to the round limb, and there to the ball of it that is nearest: its line to the point stands on the cone's side.
-        let flattening = figure.neighbours[3 * i + 2];
+        let flattening = figure.neighbours[3u * i + 2u];
         let round = from_a + flattening.xyz * dot(from_a, flattening.xyz) * (1.0 / flattening.w - 1.0);
         let len = max(length(span), 1e-5);
         let axis = span / len;
@@ -146,6 +157,9 @@ fn look_around(world: vec3f, normal: vec3f) -> Around {
         let closeness = max(1.0 - gap / clamp(radius * 0.36, 0.004, 0.03), 0.0);
         melted += other * closeness * closeness * smoothstep(-0.3, 0.3, dot(other, normal));
 
+        if figure.about.y < 0.5 {
+            continue;
+        }
         let ball = radius * (0.5 + 0.5 * flattening.w);
         let to_ball = span * t - from_a;
         let distance = max(length(to_ball), 1e-5);
@@ -206,7 +220,7 @@ fn sink(color: vec3f, world: vec3f) -> vec3f {
 
 @fragment
 fn fs_solid(in: Surface) -> @location(0) vec4f {
-    let lit = shade(in.color.rgb, in.world, look_around(in.world, normalize(in.normal)));
+    let lit = shade(in.color.rgb, in.world, look_around(in));
     let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.06, 0.85, lit.rim));
     return vec4f(to_srgb(sink(rimmed, in.world)) + dither(in.clip.xy), 1.0);
 }
@@ -220,7 +234,7 @@ fn fs_edge(in: Surface) -> @location(0) vec4f {
 
 @fragment
 fn fs_ghost(in: Surface) -> @location(0) vec4f {
-    let lit = shade(in.color.rgb, in.world, look_around(in.world, normalize(in.normal)));
+    let lit = shade(in.color.rgb, in.world, look_around(in));
     // Flat in the middle and denser at the rim, like a shell of tinted glass.
     let base = to_linear(in.color.rgb);
     let tinted = mix(base, lit.linear * 1.15, 0.45);
