@@ -8,7 +8,9 @@ use std::ops::Range;
 /// Limbs of one body that melt into the others and shade them.
 const NEIGHBOURS: usize = 48;
 /// How many of them a limb looks at.
-const NEAREST: usize = 12;
+const NEAREST: usize = 16;
+/// Limbs nearer than this melt into each other, metres.
+const TOUCHING: f32 = 0.03;
 /// Ends the list of the nearest.
 const NONE: u8 = 255;
 /// From this radius in pixels on a limb is drawn with the fine mesh.
@@ -184,7 +186,7 @@ impl Frame {
             // Nobody sees how limbs melt in a body that is small all over.
             if quality == Quality::Full && middle > start {
                 let bodys_own = &mut self.limbs[start as usize..];
-                find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own);
+                find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own, figure.ghost);
             }
             // Limbs come with the biggest first: the trunk says where the body is.
             let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
@@ -260,28 +262,40 @@ fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     uniform
 }
 
-/// Notes for every instance which limbs of its body, by their numbers in `limbs`, take the most light from it or touch it.
-fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance]) {
+/// Notes for every instance which limbs of its body, by their numbers in `limbs`, touch it or take the most light from it. A ghost's limbs
+/// shade nothing: there only touch counts.
+fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
     for instance in instances {
         let (a, b) = (Vec4::from(instance.a), Vec4::from(instance.b));
         let points = [a.truncate(), (a.truncate() + b.truncate()) * 0.5, b.truncate()];
+        let (half, own_radius) = (points[0].distance(points[2]) * 0.5, a.w.max(b.w));
         let mut scores = [0.0f32; NEAREST];
         for (index, limb) in limbs.iter().enumerate() {
-            if (limb.a, limb.b) == (points[0], points[2]) && limb.radius_a == a.w || limb_instance(limb).is_none() {
+            let radius = limb.radius_a.max(limb.radius_b);
+            // Touching limbs first, then those that fill the most of the view from here.
+            let score_at = |distance: f32| {
+                let gap = distance - own_radius - radius;
+                if gap < TOUCHING { 10.0 - gap } else { radius / distance.max(1e-4) }
+            };
+            let reach = (limb.b - limb.a).length() * 0.5 + half;
+            let at_least = points[1].distance((limb.a + limb.b) * 0.5) - reach;
+            let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
+            if too_far || (at_least > 0.0 && score_at(at_least) <= scores[NEAREST - 1]) {
                 continue;
             }
-            // The gap between the limbs, in radii of the other: measured from both ends and the middle.
+            let itself = limb.a == points[0] && limb.b == points[2] && limb.radius_a == a.w && limb.radius_b == b.w;
+            if itself || limb_instance(limb).is_none() {
+                continue;
+            }
             let span = limb.b - limb.a;
             let scale = span.length_squared().max(1e-9).recip();
-            let gap = |point: Vec3| {
+            let to_axis = |point: Vec3| {
                 let t = ((point - limb.a).dot(span) * scale).clamp(0.0, 1.0);
                 point.distance(limb.a + span * t)
             };
-            let radius = limb.radius_a.max(limb.radius_b);
-            let nearest = points.into_iter().map(gap).fold(f32::INFINITY, f32::min);
-            let score = radius / (nearest - a.w.max(b.w)).max(0.1 * radius).max(1e-6);
+            let score = score_at(points.into_iter().map(to_axis).fold(f32::INFINITY, f32::min));
             // Insert into the list, the strongest first.
-            if score > scores[NEAREST - 1] {
+            if score > scores[NEAREST - 1] && (score > 5.0 || !ghost) {
                 let at = scores.partition_point(|&s| s >= score);
                 scores[at..].rotate_right(1);
                 instance.near[at..].rotate_right(1);

@@ -22,6 +22,7 @@ struct Limb {
     @location(5) near_a: vec4u,
     @location(6) near_b: vec4u,
     @location(7) near_c: vec4u,
+    @location(8) near_d: vec4u,
 }
 
 struct Surface {
@@ -32,6 +33,7 @@ struct Surface {
     @location(3) @interpolate(flat) near_a: vec4u,
     @location(4) @interpolate(flat) near_b: vec4u,
     @location(5) @interpolate(flat) near_c: vec4u,
+    @location(6) @interpolate(flat) near_d: vec4u,
 }
 
 struct Bent {
@@ -91,6 +93,7 @@ fn vs_limb(limb: Limb) -> Surface {
     out.near_a = limb.near_a;
     out.near_b = limb.near_b;
     out.near_c = limb.near_c;
+    out.near_d = limb.near_d;
     return out;
 }
 
@@ -103,12 +106,13 @@ fn vs_edge(limb: Limb) -> Surface {
     out.world = bent.world + bent.normal * pixel_size(bent.world) * view.style.x;
     out.normal = bent.normal;
     out.clip = view.clip_from_world * vec4f(out.world, 1.0);
-    let deeper = view.clip_from_world * vec4f(out.world - towards_eye(out.world) * 0.016, 1.0);
+    let deeper = view.clip_from_world * vec4f(out.world - towards_eye(out.world) * 0.03, 1.0);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
     out.color = limb.color;
     out.near_a = limb.near_a;
     out.near_b = limb.near_b;
     out.near_c = limb.near_c;
+    out.near_d = limb.near_d;
     return out;
 }
 
@@ -131,8 +135,8 @@ fn look_around(in: Surface) -> Around {
     var melted = normal;
     var sky = 1.0;
     var key = 1.0;
-    var near = array<vec4u, 3>(in.near_a, in.near_b, in.near_c);
-    for (var k = 0u; k < 12u; k++) {
+    var near = array<vec4u, 4>(in.near_a, in.near_b, in.near_c, in.near_d);
+    for (var k = 0u; k < 16u; k++) {
         let i = near[k / 4u][k % 4u];
         if i > 47u {
             break;

@@ -130,7 +130,7 @@ impl Pipelines {
         let (line, ring) = (shader("line", LINE), shader("ring", RING));
 
         let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4];
+        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4];
         let line_attributes = wgpu::vertex_attr_array![
             0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
         ];

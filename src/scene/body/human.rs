@@ -158,8 +158,7 @@ impl Human<'_> {
         let (belly, lower_ribs, upper_ribs) = (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
         self.add(low, pelvis, belly, waist);
         self.flatten_last(forward, 0.70);
-        // A ball that two pieces share is a little smaller in the second, lest both surfaces flicker through each other.
-        self.add(belly, waist * 0.985, lower_ribs, ribs * 0.91);
+        self.add(belly, waist, lower_ribs, ribs * 0.90);
         self.flatten_last(forward, 0.70);
         self.add(lower_ribs, ribs * 0.90, upper_ribs, ribs);
         self.flatten_last(forward, 0.70);
@@ -168,7 +167,8 @@ impl Human<'_> {
         let seat = |this: &Self, hip: usize| {
             this.anchor(
                 hips,
-                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.026 * s))
+                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.026 * s),
+            )
         };
         let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
         self.add(seat_left, 0.083, seat_right, 0.083);
