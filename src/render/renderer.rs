@@ -6,6 +6,15 @@ use eframe::wgpu;
 use segue::scene::Stage;
 use wgpu::util::DeviceExt as _;
 
+/// How much light is worth its time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quality {
+    /// Limbs melt into each other and shade each other.
+    Full,
+    /// Every limb is lit on its own: for machines without a graphics card.
+    Plain,
+}
+
 /// Draws stages. One per device; every stage on the page has an id of its own.
 pub(crate) struct StageRenderer {
     pipelines: Pipelines,
@@ -14,6 +23,7 @@ pub(crate) struct StageRenderer {
     /// Distance between uniform blocks in their buffers.
     alignment: usize,
     largest_side: u32,
+    quality: Quality,
     views: Vec<(u64, View)>,
     /// The frame in the making; it takes turns with the one last drawn.
     scratch: Frame,
@@ -158,10 +168,20 @@ impl StageRenderer {
             coarse: mesh(16, 4),
             alignment: limits.min_uniform_buffer_offset_alignment.max(16) as usize,
             largest_side: limits.max_texture_dimension_2d,
+            quality: if adapter.get_info().device_type == wgpu::DeviceType::Cpu {
+                Quality::Plain
+            } else {
+                Quality::Full
+            },
             views: Vec::new(),
             scratch: Frame::default(),
             bytes: Vec::new(),
         }
+    }
+
+    /// Chooses the light; by default that of the machine.
+    pub(crate) fn set_quality(&mut self, quality: Quality) {
+        self.quality = quality;
     }
 
     /// The view of that id.
@@ -206,7 +226,7 @@ impl StageRenderer {
             view.targets = Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count);
             view.is_drawn = false;
         }
-        self.scratch.build(stage, size);
+        self.scratch.build(stage, size, self.quality);
         let draw = !view.is_drawn || view.drawn != self.scratch;
         if draw {
             std::mem::swap(&mut view.drawn, &mut self.scratch);
@@ -282,7 +302,10 @@ impl StageRenderer {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Discard,
                 }),
-                stencil_ops: None,
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Discard,
+                }),
             }),
             ..Default::default()
         });
@@ -305,7 +328,7 @@ impl StageRenderer {
             space_line,
             solid,
             edge,
-            ghost_depth,
+            front,
             ghost,
             ..
         } = &self.pipelines;
@@ -342,7 +365,12 @@ impl StageRenderer {
 
         let solids = || figures().filter(|(_, figure)| !figure.ghost);
         pass.set_vertex_buffer(1, limbs.slice(..));
-        for (pipeline, wanted) in [(solid, true), (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges))] {
+        // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
+        for (pipeline, wanted) in [
+            (front, true),
+            (solid, true),
+            (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
+        ] {
             if wanted && solids().next().is_some() {
                 pass.set_pipeline(pipeline);
                 for (index, figure) in solids() {
@@ -353,9 +381,10 @@ impl StageRenderer {
         }
         quads(pass, space_line, strokes, &pane.strokes[1]);
         // Each ghost first finds its front, then colours it: far ones first.
-        for (index, figure) in figures().filter(|(_, figure)| figure.ghost) {
+        for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
             set_figure(pass, index);
-            for pipeline in [ghost_depth, ghost] {
+            pass.set_stencil_reference(number as u32 % 255 + 1);
+            for pipeline in [front, ghost] {
                 pass.set_pipeline(pipeline);
                 self.draw_limbs(pass, figure);
             }
