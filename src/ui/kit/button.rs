@@ -241,7 +241,7 @@ pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
     let at = super::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     let under = if response.hovered() { ink } else { palette.line_strong };
     ui.painter()
-        .hline(at.x_range(), at.bottom(), Stroke::new(theme_of(ui).hairline(), under));
+        .hline(at.x_range(), at.bottom() - 1.0, Stroke::new(theme_of(ui).hairline(), under));
     focus_ring(at, radius::S, &response, ui);
     response.widget_info(|| WidgetInfo::labeled(Role::Link, enabled, text));
     response

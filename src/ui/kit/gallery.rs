@@ -93,7 +93,7 @@ fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
                 ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
             });
         Panel::bottom("time")
-            .exact_size(130.0)
+            .exact_size(152.0)
             .frame(plain(p).inner_margin(Margin::symmetric(16, 10)))
             .show(ui, |ui| time_ui(mock, phone, ui));
     } else {
@@ -113,7 +113,7 @@ fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
             .exact_size(232.0 * theme.scale())
             .resizable(false)
             .frame(library)
-            .show(ui, |ui| library_ui(mock, ui));
+            .show(ui, |ui| ScrollArea::vertical().show(ui, |ui| library_ui(mock, ui)));
         let parameters = plain(p).inner_margin(Margin::symmetric(16, 12));
         Panel::right("parameters")
             .exact_size(292.0 * theme.scale())
@@ -271,7 +271,7 @@ fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     ui.horizontal(|ui| {
         button_ui(Button::new("Swap").icon(Icon::Swap), ui);
         button_ui(Button::new("Reset").quiet().icon(Icon::Undo), ui);
-        button_ui(Button::new("Remove").tone(Tone::Danger).icon(Icon::Trash), ui);
+        button_ui(Button::icon_only(Icon::Trash, "Remove").tone(Tone::Danger), ui);
     });
 }
 

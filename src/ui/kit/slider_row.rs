@@ -4,7 +4,7 @@ use super::paint::{Run, faded, focus_ring, full_width, line_of, paragraph, put};
 use super::words::Words;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{
-    self, Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+    self, Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo,
     accesskit::{Action, ActionData},
     emath, pos2, vec2,
 };
@@ -228,7 +228,6 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
 
     let shown = out.changed.unwrap_or(value);
     paint_track(shown, row, track_area, &out.response, ui);
-    focus_ring(track_area.shrink2(vec2(0.0, 3.0)), 4, &out.response, ui);
     out.response.widget_info(|| WidgetInfo::slider(enabled, shown, row.label));
     out.response.ctx.accesskit_node_builder(id, |node| {
         node.set_min_numeric_value(*row.range.start());
@@ -248,8 +247,8 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
             ui.available_width(),
             ui,
         );
-        let rect = full_width(galley.size().y + 2.0, ui);
-        put(ui.painter(), pos2(rect.left(), rect.top() + 2.0), Align2::LEFT_TOP, galley);
+        let rect = full_width(galley.size().y + space::XS, ui);
+        put(ui.painter(), rect.left_top(), Align2::LEFT_TOP, galley);
     }
     ui.spacing_mut().item_spacing.y = previous_spacing;
     ui.add_space(space::XS);
@@ -529,6 +528,12 @@ fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response: &Response,
         painter.rect_filled(tick, 1.0, mark.color);
     }
     let radius = handle_radius(ui);
+    focus_ring(
+        Rect::from_center_size(handle, vec2(2.0, 2.0) * (radius + 1.0)),
+        radius as u8 + 2,
+        response,
+        ui,
+    );
     let hot = response.hovered() || response.is_pointer_button_down_on() || response.has_focus();
     let grown = ui.ctx().animate_bool(response.id.with("hot"), hot && enabled);
     if grown > 0.0 {
@@ -546,11 +551,11 @@ fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response: &Response,
         let tone = if enabled { palette.handle } else { palette.muted };
         painter.circle_filled(handle, radius, tone);
     }
-    // The default, as a nick below the track, once one is away from it.
+    // The default, as a nick below the track: where a double click would go. Only for whoever is at this track.
     let default_x = x_of(row.default);
-    if !auto && (default_x - handle.x).abs() > radius + 2.0 {
-        let nick = Rect::from_center_size(pos2(default_x, bar.bottom() + 3.5), vec2(2.0, 3.0));
-        painter.rect(nick, 1.0, palette.line_strong, Stroke::NONE, StrokeKind::Inside);
+    if !auto && grown > 0.0 && (default_x - handle.x).abs() > radius + 2.0 {
+        let nick = Rect::from_center_size(pos2(default_x, bar.bottom() + 4.0), vec2(2.0, 4.0));
+        painter.rect_filled(nick, 1.0, palette.muted.gamma_multiply(grown));
     }
 }
 

@@ -6,8 +6,8 @@ use super::paint::{Run, focus_ring, full_width, gradient_bar, line_of, put};
 use super::words::Words;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    self, Align2, Color32, CursorIcon, EventFilter, Id, Key, Painter, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui,
-    WidgetInfo, accesskit::Action, accesskit::ActionData, pos2, vec2,
+    self, Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo,
+    accesskit::Action, accesskit::ActionData, pos2, vec2,
 };
 use std::ops::Range;
 
@@ -124,9 +124,12 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     } else {
         (112.0 * scale).round()
     };
-    let bar_height = (16.0 * scale).round();
-    let pitch = bar_height + space::S;
-    let head = (10.0 * scale).round();
+    let Heights {
+        head,
+        bar: bar_height,
+        pitch,
+        ..
+    } = Heights::of(ui);
     let bars = full_width(head + timeline.tracks.len() as f32 * pitch, ui);
     let curve_height = timeline
         .curves
@@ -156,7 +159,13 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         );
         ui.painter().rect_filled(shade, 0.0, palette.accent_wash);
     }
-    paint_ruler(axis, plot_row.bottom(), plot, ruler, ui);
+    paint_ruler(
+        axis,
+        plot_row.bottom(),
+        if curve_height > 0.0 { plot } else { Rect::NOTHING },
+        ruler,
+        ui,
+    );
     for (index, track) in timeline.tracks.iter().enumerate() {
         let y = bars.top() + head + index as f32 * pitch;
         let row = Rangef::new(y, y + bar_height);
@@ -167,7 +176,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         paint_track(track, row, axis, timeline.duration, ui);
     }
     if let Some(curves) = &timeline.curves {
-        curves_ui(curves, axis, plot, ui);
+        curves_ui(curves, axis, plot, gutter > 0.0, ui);
         if gutter > 0.0 {
             key_ui(curves, plot_row.with_max_x(axis.x.min - space::S), ui);
         }
@@ -221,6 +230,33 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         hover_ui(curves, axis, plot, &scrub, ui);
     }
     events
+}
+
+/// How high [`timeline_ui`] is with so many tracks and curves of the given height (0: none). It gives its curves all height it is
+/// given; this is for panels that want to be as high as it needs.
+pub(crate) fn timeline_height(tracks: usize, curves: f32, ui: &Ui) -> f32 {
+    let heights = Heights::of(ui);
+    heights.head + tracks as f32 * heights.pitch + curves + heights.ruler
+}
+
+struct Heights {
+    head: f32,
+    bar: f32,
+    pitch: f32,
+    ruler: f32,
+}
+
+impl Heights {
+    fn of(ui: &Ui) -> Self {
+        let scale = theme_of(ui).scale();
+        let bar = (16.0 * scale).round();
+        Self {
+            head: (10.0 * scale).round(),
+            bar,
+            pitch: bar + space::S,
+            ruler: RULER * scale,
+        }
+    }
 }
 
 /// Height of the line with the seconds, at a desk.
@@ -355,6 +391,7 @@ fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, ui: &Ui) {
         if tick > 0 && plot.height() > 0.0 {
             ui.painter().vline(x, plot.y_range(), line);
         }
+        let decimals = if tick == 0 { 0 } else { decimals };
         let unit = if tick == 0 { " s" } else { "" };
         let label = line_of(
             &[Run::new(&format!("{time:.decimals$}{unit}"), Type::Small, palette.muted)],
@@ -547,11 +584,6 @@ impl Handles {
         focus_ring(hit, radius::S, &response, ui);
         response
     }
-}
-
-/// A painter that stays within the plot.
-pub(super) fn clipped(rect: Rect, ui: &Ui) -> Painter {
-    ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()))
 }
 
 /// A read-only look at the pointer's place in time, for panes that want to show it too.
