@@ -284,6 +284,7 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         ("10", "0.17 s", "roughest", Mood::Bad),
     ];
     let count = if phone { 1 } else { 3 };
+    let mut footer_top = stage.bottom();
     let width = (stage.width() / count as f32).floor();
     for (index, &(strong, secondary, chip, mood)) in panes.iter().take(count).enumerate() {
         let pane = Rect::from_min_size(pos2(stage.left() + index as f32 * width, stage.top()), vec2(width, stage.height()));
@@ -329,10 +330,10 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
                 hint: "",
             },
         ];
-        pane_footer_ui(&metrics, pane, ui);
+        footer_top = footer_top.min(pane_footer_ui(&metrics, pane, ui).top());
     }
     if mock.caption && !phone {
-        let above = stage.with_max_y(stage.bottom() - 78.0);
+        let above = stage.with_max_y(footer_top - space::S);
         caption_ui(
             "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
             above,

@@ -15,6 +15,7 @@ mod drop_zone;
 #[cfg(all(test, feature = "ui-tests"))]
 mod gallery;
 pub(crate) mod icon;
+mod keys;
 mod menu;
 mod metrics;
 mod notice;
@@ -25,6 +26,8 @@ mod segmented;
 mod slider_row;
 mod switch_row;
 mod tabs;
+#[cfg(all(test, feature = "ui-tests"))]
+mod tests;
 mod timeline;
 mod transport;
 mod words;

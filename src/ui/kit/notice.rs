@@ -66,7 +66,7 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         if !notice.action.is_empty() {
             ui.add_space(space::XS);
             ui.horizontal(|ui| {
-                ui.add_space(text_left - ui.spacing().item_spacing.x);
+                ui.add_space(text_left);
                 if button_ui(Button::new(notice.action), ui).clicked() {
                     event = Some(NoticeEvent::Acted);
                 }

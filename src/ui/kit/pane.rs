@@ -59,10 +59,10 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     strip
 }
 
-/// The numbers over the bottom of `pane`.
-pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) {
+/// The numbers over the bottom of `pane`. Returns the strip they stand in, so that a caption can keep clear of it.
+pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) -> Rect {
     if metrics.is_empty() {
-        return;
+        return pane.with_min_y(pane.bottom());
     }
     let height = metric_strip_height(metrics, pane.width() - 2.0 * space::M, ui) + 2.0 * space::M;
     let strip = Rect::from_min_max(pos2(pane.left(), pane.bottom() - height), pane.max);
@@ -70,6 +70,7 @@ pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) {
     let inner = strip.shrink(space::M);
     let builder = UiBuilder::new().id_salt(("footer", pane.min.x.to_bits())).max_rect(inner);
     metric_strip_ui(metrics, &mut ui.new_child(builder));
+    strip
 }
 
 /// The ground's colour, fading into the picture, so that text stays legible over bodies.

@@ -1,5 +1,6 @@
 //! One number of a lab: what it is called, what it is now and in which unit, and a track to drag.
 
+use super::keys::keys_pressed;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, paragraph, put};
 use super::words::Words;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
@@ -323,36 +324,31 @@ fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {
     };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(out.response.id, filter));
     let mut next = value;
-    ui.input(|input| {
-        let step = if input.modifiers.shift { row.fine } else { row.step };
-        // On a logarithmic track a step is a fiftieth of the way, or the small values could not be reached.
-        let stepped = |value: f64, steps: f64| {
-            if row.log {
-                let share = if input.modifiers.shift { 0.002 } else { 0.02 };
-                row.value_at(row.position(value) + steps * share, row.fine)
-            } else {
-                row.snapped(value + steps * step, step)
+    for (key, modifiers) in keys_pressed(ui) {
+        let steps = match key {
+            Key::ArrowRight | Key::ArrowUp => 1.0,
+            Key::ArrowLeft | Key::ArrowDown => -1.0,
+            Key::PageUp => 10.0,
+            Key::PageDown => -10.0,
+            Key::Home => {
+                next = *row.range.start();
+                continue;
             }
+            Key::End => {
+                next = *row.range.end();
+                continue;
+            }
+            _ => continue,
         };
-        for (key, steps) in [
-            (Key::ArrowRight, 1.0),
-            (Key::ArrowUp, 1.0),
-            (Key::ArrowLeft, -1.0),
-            (Key::ArrowDown, -1.0),
-            (Key::PageUp, 10.0),
-            (Key::PageDown, -10.0),
-        ] {
-            for _ in 0..input.num_presses(key) {
-                next = stepped(next, steps);
-            }
-        }
-        if input.key_pressed(Key::Home) {
-            next = *row.range.start();
-        }
-        if input.key_pressed(Key::End) {
-            next = *row.range.end();
-        }
-    });
+        let step = if modifiers.shift { row.fine } else { row.step };
+        next = if row.log {
+            // On a logarithmic track a step is a fiftieth of the way, or the small values could not be reached.
+            let share = if modifiers.shift { 0.002 } else { 0.02 };
+            row.value_at(row.position(next) + steps * share, row.fine)
+        } else {
+            row.snapped(next + steps * step, step)
+        };
+    }
     if next != value {
         out.changed = Some(next);
     }

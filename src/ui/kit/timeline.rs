@@ -2,6 +2,7 @@
 
 use super::chip::Part;
 use super::curves::{Curves, curves_ui, hover_ui, key_ui};
+use super::keys::keys_pressed;
 use super::paint::{Run, focus_ring, full_width, gradient_bar, line_of, put};
 use super::words::Words;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
@@ -294,20 +295,17 @@ fn scrub_ui(timeline: &Timeline<'_>, axis: TimeAxis, scrub: &Response, now: &mut
             ..EventFilter::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(scrub.id, filter));
-        ui.input(|input| {
-            let frames = if input.modifiers.shift { 10.0 } else { 1.0 };
-            let presses = input.num_presses(Key::ArrowRight) as f64 - input.num_presses(Key::ArrowLeft) as f64;
-            if presses != 0.0 {
-                // From one whole frame to the next, wherever between two one was.
-                asked = ((asked / frame).round() + presses * frames) * frame;
-            }
-            if input.key_pressed(Key::Home) {
-                asked = 0.0;
-            }
-            if input.key_pressed(Key::End) {
-                asked = timeline.duration;
-            }
-        });
+        for (key, modifiers) in keys_pressed(ui) {
+            let frames = if modifiers.shift { 10.0 } else { 1.0 };
+            // From one whole frame to the next, wherever between two one was.
+            asked = match key {
+                Key::ArrowRight => ((asked / frame).round() + frames) * frame,
+                Key::ArrowLeft => ((asked / frame).round() - frames) * frame,
+                Key::Home => 0.0,
+                Key::End => timeline.duration,
+                _ => asked,
+            };
+        }
     }
     ui.input(|input| {
         let up = input.num_accesskit_action_requests(scrub.id, Action::Increment) as f64;
