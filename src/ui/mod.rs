@@ -1,9 +1,6 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
-#![cfg_attr(
-    not(test),
-    expect(dead_code, unused_imports, reason = "the kit stands before the panels that use it")
-)]
+#![expect(dead_code, unused_imports, reason = "the kit stands before the panels that use it")]
 
 pub(crate) mod kit;
 pub(crate) mod theme;

@@ -135,9 +135,8 @@ impl<'a> Button<'a> {
             Tone::Secondary => (raised, if hovered { p.line_strong } else { p.line }, p.text),
             Tone::Quiet if self.selected => (p.pressed, Color32::TRANSPARENT, p.text),
             Tone::Quiet if hovered || down => (raised, Color32::TRANSPARENT, p.text),
-            Tone::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
             Tone::Danger if hovered || down => (p.bad_wash, Color32::TRANSPARENT, p.bad),
-            Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
+            Tone::Quiet | Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
         }
     }
 }

@@ -12,6 +12,7 @@ mod chip;
 mod clip_row;
 mod curves;
 mod drop_zone;
+mod field;
 #[cfg(all(test, feature = "ui-tests"))]
 mod gallery;
 pub(crate) mod icon;
@@ -37,6 +38,7 @@ pub(crate) use chip::{Mood, Part, chip_size, chip_ui, paint_badge, paint_chip};
 pub(crate) use clip_row::{ClipRow, ClipRowResponse, clip_row_ui};
 pub(crate) use curves::{Curves, Series};
 pub(crate) use drop_zone::drop_zone_ui;
+pub(crate) use field::{FieldResponse, text_field_ui, value_row_ui};
 pub(crate) use icon::{Icon, icon_ui, paint_icon, paint_logo};
 pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
 pub(crate) use metrics::{Metric, Rank, metric_strip_height, metric_strip_ui};

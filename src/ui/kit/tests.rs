@@ -167,6 +167,39 @@ fn dragging_takes_over_an_automatic_value() {
 }
 
 #[test]
+fn the_word_auto_gives_a_value_back_to_the_app() {
+    let mut harness = slider(30.0, Source::ManualOverAuto);
+    harness.get_by_label("Blend window: auto").click();
+    harness.run();
+    assert_eq!(harness.state().resets, 1);
+    harness.state_mut().source = Source::Auto;
+    harness.run();
+    assert!(
+        harness.query_by_label("Blend window: auto").is_none(),
+        "nothing to press while the app decides"
+    );
+}
+
+#[test]
+fn a_text_field_is_finished_by_enter_and_not_by_escape() {
+    let mut harness = bench((String::new(), 0), |(text, committed), ui| {
+        *committed += usize::from(text_field_ui("Name", "a name", text, ui).committed);
+        value_row_ui("Distance", "4.1", "cm", ui);
+    });
+    for (key, expected) in [(Key::Escape, 0), (Key::Enter, 1)] {
+        harness.get_by_label("Name").click();
+        harness.run();
+        harness.event(Event::Text("x".to_owned()));
+        harness.step();
+        harness.key_press(key);
+        harness.run();
+        assert_eq!(harness.state().1, expected, "{key:?}");
+    }
+    assert_eq!(harness.state().0, "xx");
+    assert!(harness.query_by_label("Distance: 4.1 cm").is_some());
+}
+
+#[test]
 fn screen_readers_can_read_and_set_a_slider() {
     let mut harness = slider(30.0, Source::Manual);
     let node = harness.get_by_label("Blend window");
