@@ -26,10 +26,11 @@ pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut 
     // egui may report the loss of the focus in two frames; the text is finished once.
     let typing_id = response.id.with("typing");
     let was_typing = ui.data(|data| data.get_temp(typing_id)).unwrap_or(false);
-    ui.data_mut(|data| data.insert_temp(typing_id, response.has_focus()));
+    let typing = response.has_focus();
+    ui.data_mut(|data| data.insert_temp(typing_id, typing));
     let escaped = ui.input(|input| input.key_pressed(Key::Escape));
     FieldResponse {
-        committed: was_typing && !response.has_focus() && !escaped,
+        committed: was_typing && !typing && !escaped,
         response,
     }
 }
