@@ -3,16 +3,15 @@
 //! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws the same [`Segue`] on.
 
 mod address_bar;
-mod api;
+pub(crate) mod api;
 mod downloads;
 mod frames;
 mod keeper;
 mod picture;
 
 pub(crate) use address_bar::link_query;
-pub(crate) use api::keys;
 
-use crate::platform::{self, Inbox, Incoming};
+use crate::platform::{self, Inbox, Incoming, Storage};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
@@ -22,7 +21,7 @@ use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
 use segue::scene::Look;
-use segue::session::{Command, CommandError, Key, Level, Request, Session};
+use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
@@ -124,15 +123,22 @@ struct Window {
 pub(crate) type Shared = Rc<RefCell<Segue>>;
 
 impl Segue {
-    /// Starts, and asks for what is stored.
-    pub(crate) fn new(inbox: Inbox) -> Shared {
+    /// Starts with the link in the address, and asks for what is stored.
+    ///
+    /// A page inside of another page stores nothing: it would show, and overwrite, what the reader works on elsewhere.
+    pub(crate) fn start(inbox: Inbox) -> Shared {
         let link = platform::location_query();
-        let embedded = segue::session::link::read(&link).values.contains(&(Key::Embed, segue::session::Value::Switch(true)));
-        let now_ms = platform::now_ms();
+        let embedded = link::read(&link).values.contains(&(Key::Embed, Value::Switch(true)));
         platform::watch_navigation(&inbox);
-        Rc::new(RefCell::new(Self {
+        let storage = (!embedded).then(|| Storage::open(&inbox));
+        Rc::new(RefCell::new(Self::new(inbox, storage, link)))
+    }
+
+    fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
+        let now_ms = platform::now_ms();
+        Self {
             session: Session::new(),
-            keeper: Keeper::new(link, embedded, &inbox, now_ms),
+            keeper: Keeper::new(storage, link, now_ms),
             inbox,
             address: AddressBar::default(),
             downloads: Downloads::default(),
@@ -145,7 +151,7 @@ impl Segue {
             panels: UiState::default(),
             curves: CurveCache::default(),
             picture: Picture::default(),
-        }))
+        }
     }
 
     /// Takes a new window, with all that belongs to its graphics device.

@@ -1,5 +1,6 @@
 //! The Segue app: a desktop window natively, the whole page on the web.
 
+#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "the page's API needs more of it than the window does"))]
 mod app;
 mod platform;
 mod render;
@@ -12,7 +13,7 @@ fn main() -> eframe::Result {
 
     env_logger::init();
     let inbox = platform::Inbox::default();
-    let segue = app::Segue::new(inbox.clone());
+    let segue = app::Segue::start(inbox.clone());
     platform::read_arguments(&inbox);
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default().with_title("Segue").with_inner_size([1280.0, 800.0]).with_min_inner_size([390.0, 600.0]),

@@ -3,6 +3,7 @@
 //! What takes time answers through an [`Inbox`]; the app takes the answers when it is drawn next.
 
 mod address;
+#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "some things happen to a page only"))]
 mod inbox;
 
 #[cfg(not(target_arch = "wasm32"))]

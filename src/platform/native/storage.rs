@@ -11,8 +11,8 @@ use std::thread::JoinHandle;
 const RECORD: &str = "work.json";
 const FILES: &str = "files";
 
-/// The folder, and the thread that writes into it. Clones are the same one.
-#[derive(Clone, Debug)]
+/// The folder, and the thread that writes into it; by default there is none. Clones are the same one.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Storage(Option<Arc<Mutex<Writer>>>);
 
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use super::page::{next_frame, sleep, wanted_backend, watch_hiding};
 use super::snapshot::snapshot;
-use crate::app::{Event, Segue, Shared, View, keys};
+use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
@@ -47,7 +47,7 @@ impl SegueHandle {
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
-            segue: Segue::new(inbox.clone()),
+            segue: Segue::start(inbox.clone()),
             inbox,
             canvas: Rc::new(RefCell::new(canvas.clone())),
             listener: Rc::default(),
@@ -135,7 +135,7 @@ impl SegueHandle {
 
     /// The table of parameters.
     pub fn keys(&self) -> Result<JsValue, JsValue> {
-        to_js(&keys())
+        to_js(&api::keys())
     }
 
     /// The link that restores this state.

@@ -69,7 +69,7 @@ pub(crate) fn watch_navigation(inbox: &Inbox) {
 /// Calls back when the page may be about to go: in the background a browser may end it without a word.
 pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     let hidden = on_hide.clone();
-    listen(document().as_deref(), "visibilitychange", move |_| {
+    listen(document().as_ref().map(AsRef::as_ref), "visibilitychange", move |_| {
         if is_hidden() {
             hidden();
         }
