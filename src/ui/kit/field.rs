@@ -23,17 +23,14 @@ pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut 
         .margin(Margin::symmetric(8, 5))
         .desired_width(size.x);
     let response = ui.add_sized(size, edit).accessible_name(name);
-    // The focus is lost a frame after the key that loses it.
-    let escaped_id = response.id.with("escaped");
-    if response.gained_focus() {
-        ui.data_mut(|data| data.remove::<bool>(escaped_id));
-    }
-    if ui.input(|input| input.key_pressed(Key::Escape)) {
-        ui.data_mut(|data| data.insert_temp(escaped_id, true));
-    }
-    let escaped = ui.data(|data| data.get_temp(escaped_id)).unwrap_or(false);
+    // egui may report the loss of the focus in two frames; the text is finished once.
+    let typing_id = response.id.with("typing");
+    let was_typing = ui.data(|data| data.get_temp(typing_id)).unwrap_or(false);
+    let typing = response.has_focus();
+    ui.data_mut(|data| data.insert_temp(typing_id, typing));
+    let escaped = ui.input(|input| input.key_pressed(Key::Escape));
     FieldResponse {
-        committed: response.lost_focus() && !escaped,
+        committed: was_typing && !typing && !escaped,
         response,
     }
 }

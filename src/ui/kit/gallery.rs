@@ -12,6 +12,7 @@ use egui_kittest::{
 
 /// What the mock remembers between frames: enough to be played with.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "switches that have nothing to do with each other")]
 struct Mock {
     lab: usize,
     mode: usize,
