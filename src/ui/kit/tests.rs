@@ -186,16 +186,16 @@ fn a_text_field_is_finished_by_enter_and_not_by_escape() {
         *committed += usize::from(text_field_ui("Name", "a name", text, ui).committed);
         value_row_ui("Distance", "4.1", "cm", ui);
     });
-    for (key, expected) in [(Key::Escape, 0), (Key::Enter, 1)] {
+    for (typed, key, expected) in [("draft", Key::Escape, 0), ("done", Key::Enter, 1)] {
         harness.get_by_label("Name").click();
         harness.run();
-        harness.event(Event::Text("x".to_owned()));
+        harness.event(Event::Text(typed.to_owned()));
         harness.step();
         harness.key_press(key);
         harness.run();
         assert_eq!(harness.state().1, expected, "{key:?}");
     }
-    assert_eq!(harness.state().0, "xx");
+    assert!(harness.state().0.contains("done"), "{}", harness.state().0);
     assert!(harness.query_by_label("Distance: 4.1 cm").is_some());
 }
 
