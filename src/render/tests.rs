@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::pipelines::{COMPOSITE, GROUND, LIMB, LINE, RING, SHADOW};
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
+use eframe::wgpu::naga;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
@@ -15,7 +16,6 @@ use std::time::Instant;
 
 #[test]
 fn every_shader_is_valid() {
-    use wgpu::naga;
     for (name, source) in [
         ("limb", LIMB),
         ("shadow", SHADOW),
@@ -216,7 +216,7 @@ fn the_mannequin_from_all_sides() {
                 let mut bounds = Bounds::EMPTY;
                 bounds.include_pose(&pose);
                 let mut camera = Camera {
-                    yaw: i as f32 * 0.7854,
+                    yaw: i as f32 * std::f32::consts::FRAC_PI_4,
                     pitch: 0.1,
                     ..Camera::default()
                 };
