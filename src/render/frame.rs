@@ -8,9 +8,9 @@ use std::ops::Range;
 /// Limbs of one body that melt into the others and shade them.
 const NEIGHBOURS: usize = 48;
 /// How many of them a limb looks at.
-const NEAREST: usize = 16;
+const NEAREST: usize = 20;
 /// Limbs nearer than this melt into each other, metres.
-const TOUCHING: f32 = 0.03;
+const TOUCHING: f32 = 0.02;
 /// Ends the list of the nearest.
 const NONE: u8 = 255;
 /// From this radius in pixels on a limb is drawn with the fine mesh.
@@ -273,14 +273,13 @@ fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
         for (index, limb) in limbs.iter().enumerate() {
             let radius = limb.radius_a.max(limb.radius_b);
             // Touching limbs first, then those that fill the most of the view from here.
-            let score_at = |distance: f32| {
-                let gap = distance - own_radius - radius;
+            let score_at = |distance: f32, gap: f32| {
                 if gap < TOUCHING { 10.0 - gap } else { radius / distance.max(1e-4) }
             };
             let reach = (limb.b - limb.a).length() * 0.5 + half;
             let at_least = points[1].distance((limb.a + limb.b) * 0.5) - reach;
             let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
-            if too_far || (at_least > 0.0 && score_at(at_least) <= scores[NEAREST - 1]) {
+            if too_far || (at_least > 0.0 && score_at(at_least, at_least - own_radius - radius) <= scores[NEAREST - 1]) {
                 continue;
             }
             let itself = limb.a == points[0] && limb.b == points[2] && limb.radius_a == a.w && limb.radius_b == b.w;
@@ -289,11 +288,15 @@ fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
             }
             let span = limb.b - limb.a;
             let scale = span.length_squared().max(1e-9).recip();
-            let to_axis = |point: Vec3| {
-                let t = ((point - limb.a).dot(span) * scale).clamp(0.0, 1.0);
-                point.distance(limb.a + span * t)
-            };
-            let score = score_at(points.into_iter().map(to_axis).fold(f32::INFINITY, f32::min));
+            let own_radii = [a.w, 0.5 * (a.w + b.w), b.w];
+            // From both ends and the middle, each with the girths there.
+            let score = (0..3).map(|i| {
+                let t = ((points[i] - limb.a).dot(span) * scale).clamp(0.0, 1.0);
+                let distance = points[i].distance(limb.a + span * t);
+                let here = limb.radius_a + (limb.radius_b - limb.radius_a) * t;
+                score_at(distance, distance - own_radii[i] - here)
+            });
+            let score = score.fold(0.0, f32::max);
             // Insert into the list, the strongest first.
             if score > scores[NEAREST - 1] && (score > 5.0 || !ghost) {
                 let at = scores.partition_point(|&s| s >= score);

@@ -100,7 +100,7 @@ pub(super) fn read_texture(
     device
         .poll(wgpu::PollType::Wait {
             submission_index: Some(submitted),
-            timeout: Some(Duration::from_secs(180)),
+            timeout: Some(Duration::from_mins(3)),
         })
         .map_err(|e| device_error(&e))?;
     receiver.try_recv().map_err(|e| device_error(&e))?.map_err(|e| device_error(&e))?;

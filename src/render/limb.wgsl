@@ -23,6 +23,7 @@ struct Limb {
     @location(6) near_b: vec4u,
     @location(7) near_c: vec4u,
     @location(8) near_d: vec4u,
+    @location(9) near_e: vec4u,
 }
 
 struct Surface {
@@ -34,6 +35,7 @@ struct Surface {
     @location(4) @interpolate(flat) near_b: vec4u,
     @location(5) @interpolate(flat) near_c: vec4u,
     @location(6) @interpolate(flat) near_d: vec4u,
+    @location(7) @interpolate(flat) near_e: vec4u,
 }
 
 struct Bent {
@@ -94,6 +96,7 @@ fn vs_limb(limb: Limb) -> Surface {
     out.near_b = limb.near_b;
     out.near_c = limb.near_c;
     out.near_d = limb.near_d;
+    out.near_e = limb.near_e;
     return out;
 }
 
@@ -113,6 +116,7 @@ fn vs_edge(limb: Limb) -> Surface {
     out.near_b = limb.near_b;
     out.near_c = limb.near_c;
     out.near_d = limb.near_d;
+    out.near_e = limb.near_e;
     return out;
 }
 
@@ -135,8 +139,8 @@ fn look_around(in: Surface) -> Around {
     var melted = normal;
     var sky = 1.0;
     var key = 1.0;
-    var near = array<vec4u, 4>(in.near_a, in.near_b, in.near_c, in.near_d);
-    for (var k = 0u; k < 16u; k++) {
+    var near = array<vec4u, 5>(in.near_a, in.near_b, in.near_c, in.near_d, in.near_e);
+    for (var k = 0u; k < 20u; k++) {
         let i = near[k / 4u][k % 4u];
         if i > 47u {
             break;
@@ -158,7 +162,7 @@ fn look_around(in: Surface) -> Around {
         let outward = round - span * t;
         let gap = max((length(outward) - radius) * flattening.w, 0.0);
         let other = normalize(outward + flattening.xyz * dot(outward, flattening.xyz) * (1.0 / flattening.w - 1.0) + normal * 1e-6);
-        let closeness = max(1.0 - gap / clamp(radius * 0.36, 0.004, 0.03), 0.0);
+        let closeness = max(1.0 - gap / clamp(radius * 0.42, 0.004, 0.034), 0.0);
         melted += other * closeness * closeness * smoothstep(-0.3, 0.3, dot(other, normal));
 
         if figure.about.y < 0.5 {
@@ -168,7 +172,8 @@ fn look_around(in: Surface) -> Around {
         let to_ball = span * t - from_a;
         let distance = max(length(to_ball), 1e-5);
         let ratio = min(ball / distance, 1.0);
-        sky *= 1.0 - max(dot(normal, to_ball) / distance, 0.0) * ratio * ratio;
+        // Where limbs merge they are one surface, which does not shade itself: the seam would show.
+        sky *= 1.0 - max(dot(normal, to_ball) / distance, 0.0) * ratio * ratio * smoothstep(0.0, 0.04, gap);
 
         // Along the light: the point of the axis that the ray from here passes nearest.
         let span_on_light = dot(span, view.key.xyz);
@@ -180,7 +185,7 @@ fn look_around(in: Surface) -> Around {
         let toward = dot(to_light_ball, view.key.xyz) / reach;
         // A light 35 degrees wide; a limb that the point lies on does not count.
         let hidden = smoothstep(-0.3, 0.3, toward - sqrt(1.0 - size * size)) * smoothstep(0.0, 0.3, dot(normal, to_light_ball) / reach);
-        key *= 1.0 - hidden * 0.8;
+        key *= 1.0 - hidden * 0.6 * smoothstep(0.0, 0.09, gap);
     }
     return Around(normalize(melted), sky, key);
 }

@@ -4,6 +4,8 @@ use super::frame::{FigureUniform, LimbInstance, RingInstance, StrokeInstance, Vi
 use super::mesh::ConeVertex;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use eframe::wgpu;
+use wgpu::CompareFunction::{Less, LessEqual};
+use wgpu::Face::{Back, Front};
 
 /// The shaders as they are compiled: what all share comes first.
 pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("limb.wgsl"));
@@ -130,7 +132,7 @@ impl Pipelines {
         let (line, ring) = (shader("line", LINE), shader("ring", RING));
 
         let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4];
+        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4];
         let line_attributes = wgpu::vertex_attr_array![
             0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
         ];
@@ -191,8 +193,6 @@ impl Pipelines {
             cull: Some(cull),
             stencil: wgpu::StencilState::default(),
         };
-        use wgpu::CompareFunction::{Less, LessEqual};
-        use wgpu::Face::{Back, Front};
         let (composite_layout, composite) = composite_pipeline(device, output_format);
         Self {
             ground: make(&ground_recipe("ground", "fs_ground", None)),

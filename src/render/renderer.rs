@@ -44,10 +44,10 @@ pub(super) struct View {
     limbs: GrowingBuffer,
     strokes: GrowingBuffer,
     rings: GrowingBuffer,
-    view_uniforms: GrowingBuffer,
+    pane_uniforms: GrowingBuffer,
     figure_uniforms: GrowingBuffer,
-    view_group: Option<wgpu::BindGroup>,
-    figure_group: Option<wgpu::BindGroup>,
+    views_bound: Option<wgpu::BindGroup>,
+    figures_bound: Option<wgpu::BindGroup>,
     /// Frames since it was last asked for.
     idle: u32,
 }
@@ -102,10 +102,10 @@ impl View {
             limbs: GrowingBuffer::new("limbs", vertex),
             strokes: GrowingBuffer::new("strokes", vertex),
             rings: GrowingBuffer::new("rings", vertex),
-            view_uniforms: GrowingBuffer::new("views", uniform),
+            pane_uniforms: GrowingBuffer::new("views", uniform),
             figure_uniforms: GrowingBuffer::new("figures", uniform),
-            view_group: None,
-            figure_group: None,
+            views_bound: None,
+            figures_bound: None,
             idle: 0,
         }
     }
@@ -253,22 +253,22 @@ impl StageRenderer {
             limbs,
             strokes,
             rings,
-            view_uniforms,
+            pane_uniforms,
             figure_uniforms,
-            view_group,
-            figure_group,
+            views_bound,
+            figures_bound,
             ..
         } = view;
         limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
         strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));
         rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
         spaced(&drawn.views, view_stride, &mut self.bytes);
-        if view_uniforms.write(device, queue, &self.bytes) {
-            *view_group = uniform_group(device, &self.pipelines.view_layout, view_uniforms, size_of::<ViewUniform>());
+        if pane_uniforms.write(device, queue, &self.bytes) {
+            *views_bound = uniform_group(device, &self.pipelines.view_layout, pane_uniforms, size_of::<ViewUniform>());
         }
         spaced(&drawn.figure_uniforms, figure_stride, &mut self.bytes);
         if figure_uniforms.write(device, queue, &self.bytes) {
-            *figure_group = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
+            *figures_bound = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
         }
     }
 
@@ -313,7 +313,7 @@ impl StageRenderer {
             let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, view.view_group.as_ref(), &[(index * self.view_stride()) as u32]);
+            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
             self.encode_pane(&mut pass, view, pane);
         }
     }
@@ -337,7 +337,7 @@ impl StageRenderer {
         };
         let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
-            pass.set_bind_group(1, view.figure_group.as_ref(), &[(index * self.figure_stride()) as u32]);
+            pass.set_bind_group(1, view.figures_bound.as_ref(), &[(index * self.figure_stride()) as u32]);
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.

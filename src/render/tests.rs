@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::pipelines::{COMPOSITE, GROUND, LIMB, LINE, RING, SHADOW};
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
+use eframe::wgpu::naga;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
@@ -13,9 +14,37 @@ use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
 use std::time::Instant;
 
+/// Every entry point can be said in the shading language of WebGL 2.
+fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::ModuleInfo) {
+    use naga::back::glsl;
+    for entry in &module.entry_points {
+        let options = glsl::Options {
+            version: glsl::Version::Embedded {
+                version: 300,
+                is_webgl: true,
+            },
+            ..glsl::Options::default()
+        };
+        let pipeline = glsl::PipelineOptions {
+            shader_stage: entry.stage,
+            entry_point: entry.name.clone(),
+            multiview: None,
+        };
+        let mut text = String::new();
+        let policies = naga::proc::BoundsCheckPolicies::default();
+        let written = glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies).and_then(|mut writer| writer.write());
+        assert!(
+            written.is_ok(),
+            "{name}.wgsl, {}: {}",
+            entry.name,
+            written.err().map_or(String::new(), |e| e.to_string())
+        );
+        assert!(text.starts_with("#version 300 es"));
+    }
+}
+
 #[test]
 fn every_shader_is_valid() {
-    use wgpu::naga;
     for (name, source) in [
         ("limb", LIMB),
         ("shadow", SHADOW),
@@ -25,11 +54,12 @@ fn every_shader_is_valid() {
         ("composite", COMPOSITE),
     ] {
         let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
-        // No capabilities beyond those of WebGL 2.
+        // No capabilities beyond the plain ones.
         let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-        validator
+        let info = validator
             .validate(&module)
             .unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
+        translates_to_webgl(name, &module, &info);
         let blocks = module
             .global_variables
             .iter()
@@ -216,7 +246,7 @@ fn the_mannequin_from_all_sides() {
                 let mut bounds = Bounds::EMPTY;
                 bounds.include_pose(&pose);
                 let mut camera = Camera {
-                    yaw: i as f32 * 0.7854,
+                    yaw: i as f32 * std::f32::consts::FRAC_PI_4,
                     pitch: 0.1,
                     ..Camera::default()
                 };

@@ -139,9 +139,9 @@ fn legs_that_rest_upside_down_get_the_same_shapes() {
     let upright = adult();
     let mut joints = upright.joints().to_vec();
     for joint in [1, 5] {
-        for below in joint + 1..joint + 4 {
+        for below in &mut joints[joint + 1..joint + 4] {
             // Half a turn about x of everything below the hip joints.
-            joints[below].offset = joints[below].offset * Vec3::new(1.0, -1.0, -1.0);
+            below.offset *= Vec3::new(1.0, -1.0, -1.0);
         }
     }
     let odd = Skeleton::new(joints).unwrap();
