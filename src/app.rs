@@ -3,16 +3,15 @@
 //! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws the same [`Segue`] on.
 
 mod address_bar;
-mod api;
+pub(crate) mod api;
 mod downloads;
 mod frames;
 mod keeper;
 mod picture;
 
 pub(crate) use address_bar::link_query;
-pub(crate) use api::keys;
 
-use crate::platform::{self, Inbox, Incoming};
+use crate::platform::{self, Inbox, Incoming, Storage};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
@@ -22,7 +21,7 @@ use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
 use segue::scene::Look;
-use segue::session::{Command, CommandError, Key, Level, Request, Session};
+use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
@@ -124,15 +123,22 @@ struct Window {
 pub(crate) type Shared = Rc<RefCell<Segue>>;
 
 impl Segue {
-    /// Starts, and asks for what is stored.
-    pub(crate) fn new(inbox: Inbox) -> Shared {
+    /// Starts with the link in the address, and asks for what is stored.
+    ///
+    /// A page inside of another page stores nothing: it would show, and overwrite, what the reader works on elsewhere.
+    pub(crate) fn start(inbox: Inbox) -> Shared {
         let link = platform::location_query();
-        let embedded = segue::session::link::read(&link).values.contains(&(Key::Embed, segue::session::Value::Switch(true)));
-        let now_ms = platform::now_ms();
+        let embedded = link::read(&link).values.contains(&(Key::Embed, Value::Switch(true)));
         platform::watch_navigation(&inbox);
-        Rc::new(RefCell::new(Self {
+        let storage = (!embedded).then(|| Storage::open(&inbox));
+        Rc::new(RefCell::new(Self::new(inbox, storage, link)))
+    }
+
+    fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
+        let now_ms = platform::now_ms();
+        Self {
             session: Session::new(),
-            keeper: Keeper::new(link, embedded, &inbox, now_ms),
+            keeper: Keeper::new(storage, link, now_ms),
             inbox,
             address: AddressBar::default(),
             downloads: Downloads::default(),
@@ -140,27 +146,38 @@ impl Segue {
             frames: Frames::default(),
             events: Vec::new(),
             told: Told::default(),
-            clock: Clock { ticked_at_ms: now_ms, own_ms: 0.0, frame_began_ms: now_ms },
+            clock: Clock {
+                ticked_at_ms: now_ms,
+                own_ms: 0.0,
+                frame_began_ms: now_ms,
+            },
             window: Window::default(),
             panels: UiState::default(),
             curves: CurveCache::default(),
             picture: Picture::default(),
-        }))
+        }
     }
 
     /// Takes a new window, with all that belongs to its graphics device.
     fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.wakes(&cc.egui_ctx);
-        self.window = Window { generation: self.window.generation + 1, ..Window::default() };
+        self.window = Window {
+            generation: self.window.generation + 1,
+            ..Window::default()
+        };
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
         self.window.backend = api::backend_name(state.adapter.get_info().backend).to_owned();
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
-        state.device.set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
+        state
+            .device
+            .set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
         // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of everything.
-        state.device.on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
+        state
+            .device
+            .on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
     }
 
     /// Lets go of the window: what becomes of its device is no news.
@@ -224,7 +241,8 @@ impl Segue {
                 self.samples.retain(|id| *id != sample.id);
                 let loaded = result.and_then(|packed| self.session.load_sample(sample, &packed).map_err(|error| error.to_string()));
                 if let Err(reason) = loaded {
-                    self.session.say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
+                    self.session
+                        .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
                 }
             }
             Incoming::Progress { address, done, total } => {
@@ -290,7 +308,8 @@ impl Segue {
             }
         }
         let wanted = self.session.params().text(Key::Src);
-        self.downloads.keep_only(|address| wanted.split_whitespace().any(|source| source == address));
+        self.downloads
+            .keep_only(|address| wanted.split_whitespace().any(|source| source == address));
     }
 
     /// What happens in every frame, and now and then while the page is hidden. No drawing.
@@ -370,7 +389,10 @@ impl Segue {
         }
         self.window.within_event = ctx.input(|input| {
             let computed_at_once = |event: &egui::Event| {
-                matches!(event, egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_))
+                matches!(
+                    event,
+                    egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_)
+                )
             };
             input.events.iter().any(computed_at_once)
         });
@@ -405,16 +427,23 @@ impl Segue {
             if notice.id >= self.told.next_notice {
                 self.told.next_notice = notice.id + 1;
                 if notice.level == Level::Error {
-                    events.push(Event::Error { message: notice.text.clone() });
+                    events.push(Event::Error {
+                        message: notice.text.clone(),
+                    });
                 }
             }
         }
         for (name, progress) in self.session.jobs() {
-            events.push(Event::Progress { name: name.to_owned(), progress: Some(f64::from(progress)) });
+            events.push(Event::Progress {
+                name: name.to_owned(),
+                progress: Some(f64::from(progress)),
+            });
         }
         if self.session.revision() != self.told.revision && !self.keeper.is_waiting() {
             self.told.revision = self.session.revision();
-            events.push(Event::Change { query: link_query(&self.session) });
+            events.push(Event::Change {
+                query: link_query(&self.session),
+            });
         }
         events
     }
@@ -431,7 +460,10 @@ impl View {
     /// A window that begins to draw `segue`.
     pub(crate) fn new(segue: Shared, cc: &eframe::CreationContext<'_>, tell: impl Fn(Vec<Event>) + 'static) -> Self {
         segue.borrow_mut().attach(cc);
-        Self { segue, tell: Box::new(tell) }
+        Self {
+            segue,
+            tell: Box::new(tell),
+        }
     }
 }
 

@@ -5,9 +5,11 @@ use super::frames::FrameTimes;
 use super::link_query;
 use crate::platform;
 use eframe::wgpu::Backend;
-use segue::scene::pose_at;
-use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Motion, PARAMS, Value, frame_at};
+use segue::formats::bvh;
 use segue::math::Planar;
+use segue::metrics::{Better, Metric};
+use segue::scene::pose_at;
+use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Motion, PARAMS, Pane, Param, Value, frame_at};
 use segue::skeleton::Side;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -59,11 +61,13 @@ pub(crate) struct PoseInfo {
 /// One number of `metrics()`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct MetricInfo {
+    label: &'static str,
     /// The number of the first pane; `null` where it cannot be told.
     value: Option<f64>,
     unit: &'static str,
     /// The numbers of all panes, left to right.
     panes: Vec<Option<f64>>,
+    better: Better,
     help: &'static str,
 }
 
@@ -107,8 +111,12 @@ pub(crate) fn backend_name(backend: Backend) -> &'static str {
 
 /// Every row of the table of parameters.
 pub(crate) fn keys() -> Vec<KeyInfo> {
-    let row = |param: &'static segue::session::Param| {
-        let number = if let Kind::Number { min, max, step, auto, .. } = param.kind { Some((min, max, step, auto)) } else { None };
+    let row = |param: &'static Param| {
+        let number = if let Kind::Number { min, max, step, auto, .. } = param.kind {
+            Some((min, max, step, auto))
+        } else {
+            None
+        };
         KeyInfo {
             key: param.name,
             label: param.label,
@@ -117,7 +125,11 @@ pub(crate) fn keys() -> Vec<KeyInfo> {
             max: number.map(|(_, max, ..)| max),
             step: number.map(|(_, _, step, _)| step),
             auto: number.is_some_and(|(.., auto)| auto),
-            choices: if let Kind::Choice(choices) = param.kind { choices.iter().map(|choice| choice.key).collect() } else { Vec::new() },
+            choices: if let Kind::Choice(choices) = param.kind {
+                choices.iter().map(|choice| choice.key).collect()
+            } else {
+                Vec::new()
+            },
             default: param.to_json(&param.default_value()),
             unit: param.unit,
             lab: param.group.name(),
@@ -136,12 +148,18 @@ impl Segue {
     /// Every parameter's value by its key.
     pub(crate) fn params(&self) -> Map<String, Json> {
         let params = self.session.params();
-        PARAMS.iter().map(|param| (param.name.to_owned(), param.to_json(params.get(param.key)))).collect()
+        PARAMS
+            .iter()
+            .map(|param| (param.name.to_owned(), param.to_json(params.get(param.key))))
+            .collect()
     }
 
     /// Sets parameters, all or none.
     pub(crate) fn set(&mut self, values: &Map<String, Json>) -> Result<(), String> {
-        let checked = values.iter().map(|(name, json)| self.checked(name, json)).collect::<Result<Vec<_>, String>>()?;
+        let checked = values
+            .iter()
+            .map(|(name, json)| self.checked(name, json))
+            .collect::<Result<Vec<_>, String>>()?;
         self.apply(Command::Set(checked)).map_err(|error| error.to_string())?;
         self.apply(Command::Settle).map_err(|error| error.to_string())
     }
@@ -150,7 +168,11 @@ impl Segue {
         let key = Key::from_name(name).ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
         let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
         if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
-            let entry = self.session.library().find(id).ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
+            let entry = self
+                .session
+                .library()
+                .find(id)
+                .ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
             value = Value::Text(entry.id.clone());
         }
         Ok((key, value))
@@ -161,7 +183,10 @@ impl Segue {
         self.pump();
         let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
-        Ok(LoadedClips { clips, warnings: loaded.warnings })
+        Ok(LoadedClips {
+            clips,
+            warnings: loaded.warnings,
+        })
     }
 
     /// The link that restores this state.
@@ -200,10 +225,16 @@ impl Segue {
         let panes = self.session.panes();
         let Some(index) = pane else {
             let entry = self.session.library().find(which);
-            let entry = entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
-            return entry.motion.clone().ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
+            let entry =
+                entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
+            return entry
+                .motion
+                .clone()
+                .ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
         };
-        let pane = panes.get(index).ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
+        let pane = panes
+            .get(index)
+            .ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
         match (&pane.outcome, &pane.problem) {
             (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
             (None, Some(problem)) => Err(format!("there is no result: {problem}")),
@@ -215,7 +246,7 @@ impl Segue {
     pub(crate) fn pose(&self, which: &str, secs: f64) -> Result<PoseInfo, String> {
         let motion = self.motion(which)?;
         let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or("the clip has no frames")?;
-        let frame = frame_at(&motion.clip, secs);
+        let frame = frame_at(&motion, secs);
         let joints = motion.clip.skeleton().joints();
         Ok(PoseInfo {
             joints: joints.iter().map(|joint| joint.name.clone()).collect(),
@@ -227,19 +258,28 @@ impl Segue {
     }
 
     /// The artefacts of what is shown, by name.
-    pub(crate) fn metrics(&self) -> BTreeMap<String, MetricInfo> {
+    pub(crate) fn metrics(&self) -> BTreeMap<&'static str, MetricInfo> {
         let panes = self.session.panes();
-        let of_pane = |pane: &segue::session::Pane, id| {
-            pane.outcome.as_ref()?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
+        let of_pane = |pane: &Pane, id| {
+            pane.outcome
+                .as_ref()?
+                .metrics
+                .iter()
+                .find(|metric| metric.id == id)
+                .and_then(|metric| metric.value)
         };
-        let Some(main) = self.session.main_outcome() else { return BTreeMap::new() };
-        let info = |metric: &segue::metrics::Metric| MetricInfo {
+        let Some(main) = self.session.main_outcome() else {
+            return BTreeMap::new();
+        };
+        let info = |metric: &Metric| MetricInfo {
+            label: metric.label,
             value: metric.value,
             unit: metric.unit,
             panes: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
+            better: metric.better,
             help: metric.help,
         };
-        main.metrics.iter().map(|metric| (metric.label.to_owned(), info(metric))).collect()
+        main.metrics.iter().map(|metric| (metric.id, info(metric))).collect()
     }
 
     /// A motion as a file. `which` as in [`Self::pose`].
@@ -248,9 +288,17 @@ impl Segue {
             return Err(format!("found `{format}`, expected bvh"));
         }
         let motion = self.motion(which)?;
-        let text = segue::formats::bvh::write(&motion.clip, &segue::formats::bvh::WriteOptions::default());
-        let stem = if which.starts_with("result") { self.result_name() } else { motion.clip.name().to_owned() };
-        Ok(ExportedFile { name: file_name(&stem, "bvh"), mime: "text/plain", bytes: text.into_bytes() })
+        let text = bvh::write(&motion.clip, &bvh::WriteOptions::default());
+        let stem = if which.starts_with("result") {
+            self.result_name()
+        } else {
+            motion.clip.name().to_owned()
+        };
+        Ok(ExportedFile {
+            name: file_name(&stem, "bvh"),
+            mime: "text/plain",
+            bytes: text.into_bytes(),
+        })
     }
 
     /// What a result is called as a file: what it was made from.
@@ -265,9 +313,17 @@ impl Segue {
 
     /// What is under way.
     fn jobs(&self) -> Vec<JobInfo> {
-        let computed = self.session.jobs().into_iter().map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
+        let computed = self
+            .session
+            .jobs()
+            .into_iter()
+            .map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
         let samples = self.samples.iter().map(|id| ((*id).to_owned(), None));
-        computed.chain(self.downloads.under_way()).chain(samples).map(|(name, progress)| JobInfo { name, progress }).collect()
+        computed
+            .chain(self.downloads.under_way())
+            .chain(samples)
+            .map(|(name, progress)| JobInfo { name, progress })
+            .collect()
     }
 
     /// How the app is doing.
@@ -294,8 +350,145 @@ impl Segue {
 
 /// A file's name that every system takes.
 fn file_name(stem: &str, ending: &str) -> String {
-    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' };
+    let plain = |c: char| {
+        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') {
+            c
+        } else {
+            '_'
+        }
+    };
     let stem: String = stem.chars().map(plain).take(100).collect();
     let stem = stem.trim().trim_start_matches('.');
     format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::Inbox;
+    use serde_json::json;
+
+    fn open(link: &str) -> Segue {
+        let mut segue = Segue::new(Inbox::default(), None, link.to_owned());
+        while segue.pump() || segue.is_busy() {}
+        segue
+    }
+
+    fn object(json: Json) -> Map<String, Json> {
+        if let Json::Object(map) = json {
+            map
+        } else {
+            panic!("{json} is no object")
+        }
+    }
+
+    #[test]
+    fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
+        let mut segue = open("lab=blend");
+        segue
+            .set(&object(
+                json!({ "blend_window": 24, "align": false, "weight_law": "linear", "leave_a": "auto" }),
+            ))
+            .unwrap();
+        assert_eq!(segue.params()["blend_window"], json!(24.0));
+        assert_eq!(segue.params()["align"], json!(false));
+        let before = segue.url();
+        for (values, part) in [
+            (json!({ "blend_window": 12, "colour": "red" }), "`colour` is not a parameter"),
+            (
+                json!({ "align": true, "blend_window": 0 }),
+                "blend_window: found 0, expected 1 to 240 frames",
+            ),
+            (json!({ "blend_window": null }), "blend_window: found `null`, expected a number"),
+            (json!({ "a": "nobody" }), "a: there is no clip `nobody`"),
+            (json!({ "blend_window": [1, 2] }), "blend_window: found `[1,2]`"),
+        ] {
+            let message = segue.set(&object(values)).unwrap_err();
+            assert!(message.contains(part), "{message}");
+            assert_eq!(segue.url(), before, "{message}");
+        }
+    }
+
+    #[test]
+    fn every_link_leads_back_even_that_of_the_defaults() {
+        let mut segue = open("blend_window=24");
+        assert_eq!(segue.url(), "?blend_window=24");
+        segue.set(&object(json!({ "blend_window": 30 }))).unwrap();
+        assert_eq!(segue.url(), "?lab=blend");
+        assert_eq!(open("lab=blend").params(), segue.params());
+    }
+
+    #[test]
+    fn keys_and_values_have_the_same_names() {
+        let names: Vec<&str> = keys().iter().map(|key| key.key).collect();
+        let segue = open("lab=blend");
+        assert!(names.iter().all(|name| segue.params().contains_key(*name)));
+        assert_eq!(names.len(), segue.params().len());
+        let rows = serde_json::to_value(keys()).unwrap();
+        let window = rows.as_array().unwrap().iter().find(|row| row["key"] == "blend_window").unwrap();
+        assert_eq!(
+            (&window["type"], &window["min"], &window["max"], &window["unit"], &window["lab"]),
+            (&json!("integer"), &json!(1.0), &json!(240.0), &json!("frames"), &json!("blend"))
+        );
+    }
+
+    #[test]
+    fn a_pose_is_in_the_world_and_complete() {
+        let segue = open("compare=blend_window:30,10");
+        let pose = segue.pose("result:1", 0.5).unwrap();
+        let joints = pose.joints.len();
+        assert!(joints > 10);
+        assert_eq!(
+            (pose.parents.len(), pose.positions.len(), pose.rotations.len()),
+            (joints, 3 * joints, 4 * joints)
+        );
+        assert_eq!(pose.parents[0], -1);
+        // Bones keep their lengths: a child is as far from its parent as at the start.
+        let start = segue.pose("result:1", 0.0).unwrap();
+        let bone = |pose: &PoseInfo, joint: usize| {
+            let place = |joint: usize| glam::Vec3::from_slice(&pose.positions[3 * joint..]);
+            place(joint).distance(place(pose.parents[joint] as usize))
+        };
+        for joint in 1..joints {
+            assert!((bone(&pose, joint) - bone(&start, joint)).abs() < 1e-4, "{}", pose.joints[joint]);
+        }
+        for which in ["result:2", "result:x", "resultant", "nobody"] {
+            assert!(segue.pose(which, 0.0).unwrap_err().contains(&format!("found `{which}`")), "{which}");
+        }
+    }
+
+    #[test]
+    fn metrics_have_a_number_for_every_pane() {
+        let segue = open("compare=blend_window:30,15,10");
+        let metrics = segue.metrics();
+        assert!(!metrics.is_empty());
+        for (name, metric) in metrics {
+            assert_eq!(metric.panes.len(), 3, "{name}");
+            assert_eq!(metric.panes[0], metric.value, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_exported_can_be_loaded_again() {
+        let mut segue = open("a=walk&lab=view");
+        let file = segue.export("result", "bvh").unwrap();
+        assert_eq!(file.name, "walk.bvh");
+        let loaded = segue.load_file(&file.name, Arc::from(file.bytes)).unwrap();
+        assert_eq!(loaded.clips.len(), 1);
+        assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
+        assert_eq!(segue.export("result", "csv").unwrap_err(), "found `csv`, expected bvh");
+        assert!(
+            segue
+                .load_file("x.bvh", Arc::from(&b"HIERARCHY oops"[..]))
+                .unwrap_err()
+                .starts_with("x.bvh:1:")
+        );
+        assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
+    }
+
+    #[test]
+    fn files_have_plain_names() {
+        assert_eq!(file_name("01_01~3fa9 to ../run", "bvh"), "01_01~3fa9 to .._run.bvh");
+        assert_eq!(file_name("  ", "bvh"), "motion.bvh");
+    }
 }

@@ -1,6 +1,6 @@
 //! Keeps the work: brings it back at the start, and stores it soon after it has changed.
 
-use crate::platform::{Inbox, Storage, Stored, StoredFiles, Work};
+use crate::platform::{Storage, Stored, StoredFiles, Work};
 use segue::session::{Origin, Saved, Session};
 use std::sync::Arc;
 
@@ -18,7 +18,10 @@ struct Mark {
 
 impl Mark {
     fn of(session: &Session) -> Self {
-        Self { library: session.library_revision(), query: session.query() }
+        Self {
+            library: session.library_revision(),
+            query: session.query(),
+        }
     }
 }
 
@@ -45,10 +48,10 @@ pub(crate) struct Keeper {
 }
 
 impl Keeper {
-    /// Asks for what is stored. A page inside of another page keeps nothing: it would show, and overwrite, what the reader works on elsewhere.
-    pub(crate) fn new(link: String, embedded: bool, inbox: &Inbox, now_ms: f64) -> Self {
+    /// Waits for what `storage` holds; without one nothing is kept. `link` is what the page was opened with; empty for nothing.
+    pub(crate) fn new(storage: Option<Storage>, link: String, now_ms: f64) -> Self {
         Self {
-            storage: (!embedded).then(|| Storage::open(inbox)),
+            storage,
             phase: Phase::Waiting { since_ms: now_ms },
             link,
             stored: Mark::default(),
@@ -69,7 +72,11 @@ impl Keeper {
             return false;
         }
         self.open(session, None);
-        self.phase = if self.storage.is_some() { Phase::Late { begun: Mark::of(session) } } else { Phase::Ready };
+        self.phase = if self.storage.is_some() {
+            Phase::Late { begun: Mark::of(session) }
+        } else {
+            Phase::Ready
+        };
         true
     }
 
@@ -135,14 +142,19 @@ impl Keeper {
 
     /// Stores the work at once, if there is anything new in it.
     pub(crate) fn save_now(&mut self, session: &Session) {
-        let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else { return };
+        let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else {
+            return;
+        };
         self.changed_at_ms = None;
         let now = Mark::of(session);
         if now == self.stored {
             return;
         }
         match serde_json::to_string(&session.saved()) {
-            Ok(record) => storage.save(Work { record, files: files_of(session) }),
+            Ok(record) => storage.save(Work {
+                record,
+                files: files_of(session),
+            }),
             Err(error) => log::error!("the work cannot be written down: {error}"),
         }
         self.stored.clone_from(&now);
@@ -158,4 +170,88 @@ fn files_of(session: &Session) -> StoredFiles {
             Origin::Preset | Origin::Sample(_) | Origin::Made => None,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segue::session::{Command, Key, Value};
+
+    fn stored(query: &str) -> Option<Stored> {
+        let saved = Saved {
+            query: query.into(),
+            ..Session::new().saved()
+        };
+        Some(Stored {
+            saved,
+            files: StoredFiles::new(),
+        })
+    }
+
+    fn keeper(link: &str) -> (Keeper, Session) {
+        (Keeper::new(Some(Storage::default()), link.into(), 1000.0), Session::new())
+    }
+
+    fn set_window(session: &mut Session, frames: f64) {
+        session
+            .apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]))
+            .unwrap();
+    }
+
+    #[test]
+    fn what_is_stored_comes_before_the_first_frame() {
+        let (mut keeper, mut session) = keeper("");
+        assert!(!keeper.wait(&mut session, 1100.0) && keeper.is_waiting());
+        assert!(
+            !keeper.arrived(&mut session, stored("blend_window=24")),
+            "the address does not say what is shown"
+        );
+        assert!(!keeper.is_waiting());
+        assert_eq!(session.query(), "blend_window=24");
+    }
+
+    #[test]
+    fn a_link_goes_before_stored_parameters() {
+        let (mut keeper, mut session) = keeper("blend_window=12");
+        assert!(keeper.arrived(&mut session, stored("blend_window=24")));
+        assert_eq!(session.query(), "blend_window=12");
+    }
+
+    #[test]
+    fn a_slow_storage_does_not_hold_the_page_up() {
+        let (mut keeper, mut session) = keeper("");
+        let welcome = session.query();
+        assert!(keeper.wait(&mut session, 1151.0) && !keeper.is_waiting());
+        assert_eq!(session.query(), welcome);
+        assert_eq!(
+            keeper.tend(&session, 9000.0),
+            None,
+            "nothing is stored over what has not been read yet"
+        );
+        keeper.arrived(&mut session, stored("blend_window=24"));
+        assert_eq!(session.query(), "blend_window=24");
+    }
+
+    #[test]
+    fn what_was_touched_meanwhile_stays() {
+        let (mut keeper, mut session) = keeper("blend_window=12");
+        keeper.wait(&mut session, 1151.0);
+        set_window(&mut session, 60.0);
+        keeper.arrived(&mut session, stored("blend_window=24"));
+        assert_eq!(session.query(), "blend_window=60");
+    }
+
+    #[test]
+    fn work_is_stored_once_it_is_quiet() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.arrived(&mut session, None);
+        assert_eq!(keeper.tend(&session, 2000.0), None);
+        set_window(&mut session, 60.0);
+        assert_eq!(keeper.tend(&session, 2100.0), Some(QUIET_MS));
+        set_window(&mut session, 61.0);
+        assert_eq!(keeper.tend(&session, 2500.0), Some(QUIET_MS));
+        assert_eq!(keeper.tend(&session, 2600.0), Some(QUIET_MS - 100.0));
+        assert_eq!(keeper.tend(&session, 2500.0 + QUIET_MS), None);
+        assert_eq!(keeper.stored, Mark::of(&session));
+    }
 }

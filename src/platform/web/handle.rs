@@ -2,7 +2,7 @@
 
 use super::page::{next_frame, sleep, wanted_backend, watch_hiding};
 use super::snapshot::snapshot;
-use crate::app::{Event, Segue, Shared, View, keys};
+use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
@@ -47,7 +47,7 @@ impl SegueHandle {
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
-            segue: Segue::new(inbox.clone()),
+            segue: Segue::start(inbox.clone()),
             inbox,
             canvas: Rc::new(RefCell::new(canvas.clone())),
             listener: Rc::default(),
@@ -99,7 +99,9 @@ impl SegueHandle {
     /// What it panicked over, and where.
     #[wasm_bindgen(js_name = panicSummary)]
     pub fn panic_summary(&self) -> Option<String> {
-        self.runner.panic_summary().map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
+        self.runner
+            .panic_summary()
+            .map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
     }
 
     /// Reads a file, as if it were dropped on the page.
@@ -135,7 +137,7 @@ impl SegueHandle {
 
     /// The table of parameters.
     pub fn keys(&self) -> Result<JsValue, JsValue> {
-        to_js(&keys())
+        to_js(&api::keys())
     }
 
     /// The link that restores this state.
@@ -176,7 +178,11 @@ impl SegueHandle {
     /// A motion as the bytes of a file.
     #[wasm_bindgen(js_name = exportClip)]
     pub fn export_clip(&self, which: &str, format: &str) -> Result<Vec<u8>, JsValue> {
-        Ok(self.borrow()?.export(which, format).map_err(|reason| error(format!("export: {reason}")))?.bytes)
+        Ok(self
+            .borrow()?
+            .export(which, format)
+            .map_err(|reason| error(format!("export: {reason}")))?
+            .bytes)
     }
 
     /// The stage as a PNG.
@@ -211,11 +217,15 @@ impl SegueHandle {
 
 impl SegueHandle {
     fn borrow(&self) -> Result<std::cell::Ref<'_, Segue>, JsValue> {
-        self.segue.try_borrow().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+        self.segue
+            .try_borrow()
+            .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
     fn borrow_mut(&self) -> Result<std::cell::RefMut<'_, Segue>, JsValue> {
-        self.segue.try_borrow_mut().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+        self.segue
+            .try_borrow_mut()
+            .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
     async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
@@ -230,7 +240,10 @@ impl SegueHandle {
             }
         };
         let options = WebOptions {
-            wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() },
+            wgpu_options: WgpuConfiguration {
+                wgpu_setup: WgpuSetup::CreateNew(setup),
+                ..WgpuConfiguration::default()
+            },
             ..WebOptions::default()
         };
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
