@@ -415,7 +415,7 @@ mod tests {
         assert_eq!(segue.url(), "?blend_window=24");
         segue.set(&object(json!({ "blend_window": 30 }))).unwrap();
         assert_eq!(segue.url(), "?lab=blend");
-        assert_eq!(open("lab=blend").params(), segue.params());
+        assert_eq!(open("lab=blend").url(), segue.url());
     }
 
     #[test]
