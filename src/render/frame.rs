@@ -1,11 +1,18 @@
 //! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
 
+use super::renderer::Quality;
 use glam::{Vec3, Vec4};
-use segue::scene::{Color, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
+use segue::scene::{Color, Figure, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
 use std::ops::Range;
 
-/// Limbs of one body that shade the others.
-const OCCLUDERS: usize = 32;
+/// Limbs of one body that melt into the others and shade them.
+const NEIGHBOURS: usize = 48;
+/// How many of them a limb looks at.
+const NEAREST: usize = 20;
+/// Limbs nearer than this melt into each other, metres.
+const TOUCHING: f32 = 0.02;
+/// Ends the list of the nearest.
+const NONE: u8 = 255;
 /// From this radius in pixels on a limb is drawn with the fine mesh.
 const FINE_FROM_PIXELS: f32 = 9.0;
 
@@ -16,6 +23,7 @@ pub(super) struct LimbInstance {
     b: [f32; 4],
     flat: [f32; 4],
     color: [u8; 4],
+    near: [u8; NEAREST],
 }
 
 #[repr(C)]
@@ -66,7 +74,7 @@ impl ViewUniform {
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct FigureUniform {
     about: [f32; 4],
-    occluders: [[f32; 4]; 2 * OCCLUDERS],
+    neighbours: [[f32; 4]; 3 * NEIGHBOURS],
 }
 
 /// One body in the instance buffers.
@@ -127,7 +135,7 @@ fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
 
 impl Frame {
     /// Fills the frame from a stage that is drawn into `size` pixels.
-    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2]) {
+    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2], quality: Quality) {
         self.clear = stage.look.background_top;
         self.views.clear();
         self.figures.clear();
@@ -141,7 +149,7 @@ impl Frame {
             if viewport.width == 0 || viewport.height == 0 {
                 continue;
             }
-            let figures = self.add_figures(pane, viewport);
+            let figures = self.add_figures(pane, viewport, quality);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
                 self.strokes
@@ -160,7 +168,7 @@ impl Frame {
         }
     }
 
-    fn add_figures(&mut self, pane: &Pane, viewport: Viewport) -> Range<usize> {
+    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, quality: Quality) -> Range<usize> {
         let first = self.figures.len();
         let height = viewport.height as f32;
         let [_, _, back] = pane.camera.axes();
@@ -175,6 +183,11 @@ impl Frame {
             self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
             let middle = self.limbs.len() as u32;
             self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(limb_instance));
+            // Nobody sees how limbs melt in a body that is small all over.
+            if quality == Quality::Full && middle > start {
+                let bodys_own = &mut self.limbs[start as usize..];
+                find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own, figure.ghost);
+            }
             // Limbs come with the biggest first: the trunk says where the body is.
             let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
             self.figures.push(FigureDraw {
@@ -184,8 +197,7 @@ impl Frame {
                 ghost: figure.ghost,
                 depth: if depth.is_finite() { depth } else { 0.0 },
             });
-            self.figure_uniforms
-                .push(figure_uniform(if figure.ghost { &[] } else { limbs }, figure.shadow));
+            self.figure_uniforms.push(figure_uniform(limbs, figure));
         }
         self.sort_figures(first);
         first..self.figures.len()
@@ -212,6 +224,7 @@ fn limb_instance(limb: &Limb) -> Option<LimbInstance> {
         b: limb.b.extend(limb.radius_b).to_array(),
         flat: limb.flat.extend(limb.flatness).to_array(),
         color: bytes(limb.color),
+        near: [NONE; NEAREST],
     })
 }
 
@@ -232,21 +245,68 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
     })
 }
 
-fn figure_uniform(limbs: &[Limb], shadow: f32) -> FigureUniform {
+fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
+    let solid = if figure.ghost { 0.0 } else { 1.0 };
     let mut uniform = FigureUniform {
-        about: [0.0, 0.0, shadow, 0.0],
-        occluders: [[0.0; 4]; 2 * OCCLUDERS],
+        about: [0.0, solid, figure.shadow, 0.0],
+        neighbours: [[0.0; 4]; 3 * NEIGHBOURS],
     };
-    let mut count = 0;
-    for (limb, pair) in limbs.iter().zip(uniform.occluders.chunks_exact_mut(2)) {
-        // Between the half width and the half depth of a flattened limb.
-        let mean = 0.5 + 0.5 * limb.flatness;
-        pair[0] = limb.a.extend(limb.radius_a * mean).to_array();
-        pair[1] = limb.b.extend(limb.radius_b * mean).to_array();
-        count += 1;
+    for (limb, triple) in limbs.iter().zip(uniform.neighbours.chunks_exact_mut(3)) {
+        // As the mesh is bent: the flattening is across the axis.
+        let flat = limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
+        let flatness = if flat.length() > 1e-3 { limb.flatness.max(0.05) } else { 1.0 };
+        triple[0] = limb.a.extend(limb.radius_a).to_array();
+        triple[1] = limb.b.extend(limb.radius_b).to_array();
+        triple[2] = flat.normalize_or_zero().extend(flatness).to_array();
     }
-    uniform.about[0] = count as f32;
     uniform
+}
+
+/// Notes for every instance which limbs of its body, by their numbers in `limbs`, touch it or take the most light from it. A ghost's limbs
+/// shade nothing: there only touch counts.
+fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
+    for instance in instances {
+        let (a, b) = (Vec4::from(instance.a), Vec4::from(instance.b));
+        let points = [a.truncate(), (a.truncate() + b.truncate()) * 0.5, b.truncate()];
+        let (half, own_radius) = (points[0].distance(points[2]) * 0.5, a.w.max(b.w));
+        let mut scores = [0.0f32; NEAREST];
+        for (index, limb) in limbs.iter().enumerate() {
+            let radius = limb.radius_a.max(limb.radius_b);
+            // Touching limbs first, then those that fill the most of the view from here.
+            let score_at = |distance: f32, gap: f32| {
+                if gap < TOUCHING { 10.0 - gap } else { radius / distance.max(1e-4) }
+            };
+            let reach = (limb.b - limb.a).length() * 0.5 + half;
+            let at_least = points[1].distance((limb.a + limb.b) * 0.5) - reach;
+            let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
+            if too_far || (at_least > 0.0 && score_at(at_least, at_least - own_radius - radius) <= scores[NEAREST - 1]) {
+                continue;
+            }
+            let itself = limb.a == points[0] && limb.b == points[2] && limb.radius_a == a.w && limb.radius_b == b.w;
+            if itself || limb_instance(limb).is_none() {
+                continue;
+            }
+            let span = limb.b - limb.a;
+            let scale = span.length_squared().max(1e-9).recip();
+            let own_radii = [a.w, 0.5 * (a.w + b.w), b.w];
+            // From both ends and the middle, each with the girths there.
+            let score = (0..3).map(|i| {
+                let t = ((points[i] - limb.a).dot(span) * scale).clamp(0.0, 1.0);
+                let distance = points[i].distance(limb.a + span * t);
+                let here = limb.radius_a + (limb.radius_b - limb.radius_a) * t;
+                score_at(distance, distance - own_radii[i] - here)
+            });
+            let score = score.fold(0.0, f32::max);
+            // Insert into the list, the strongest first.
+            if score > scores[NEAREST - 1] && (score > 5.0 || !ghost) {
+                let at = scores.partition_point(|&s| s >= score);
+                scores[at..].rotate_right(1);
+                instance.near[at..].rotate_right(1);
+                scores[at] = score;
+                instance.near[at] = index as u8;
+            }
+        }
+    }
 }
 
 fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {

@@ -50,6 +50,22 @@ pub(crate) fn render_to_image(
         label: Some("stage image"),
     });
     renderer.prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height]);
+    let Some(view) = renderer.view(SNAPSHOT) else {
+        return Err(ImageError::Size(width, height));
+    };
+    let image = read_texture(device, queue, encoder, &view.targets.color);
+    renderer.forget(SNAPSHOT);
+    image
+}
+
+/// Submits what `encoder` holds, and waits for the pixels of a texture with four bytes each.
+pub(super) fn read_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    mut encoder: wgpu::CommandEncoder,
+    texture: &wgpu::Texture,
+) -> Result<Image, ImageError> {
+    let (width, height) = (texture.width(), texture.height());
     let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("stage image"),
@@ -57,26 +73,23 @@ pub(crate) fn render_to_image(
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    if let Some(view) = renderer.view(SNAPSHOT) {
-        encoder.copy_texture_to_buffer(
-            view.targets.color.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: None,
-                },
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row),
+                rows_per_image: None,
             },
-            wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-        );
-    }
+        },
+        wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+    );
     let submitted = queue.submit([encoder.finish()]);
-    renderer.forget(SNAPSHOT);
 
     let (sender, receiver) = mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
@@ -87,7 +100,7 @@ pub(crate) fn render_to_image(
     device
         .poll(wgpu::PollType::Wait {
             submission_index: Some(submitted),
-            timeout: Some(Duration::from_secs(20)),
+            timeout: Some(Duration::from_mins(3)),
         })
         .map_err(|e| device_error(&e))?;
     receiver.try_recv().map_err(|e| device_error(&e))?.map_err(|e| device_error(&e))?;

@@ -1,10 +1,10 @@
 // Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
 
 struct Figure {
-    // Number of occluders, unused, strength of the shadow, unused.
+    // Unused, 1 for a solid body, strength of the shadow, unused.
     about: vec4f,
-    // Two for each limb that shades the others: centre and radius of its first ball, then of its second.
-    occluders: array<vec4f, 64>,
+    // Three for each limb of the body: centre and radius of its first ball, of its second, direction and scale of its flattening.
+    neighbours: array<vec4f, 144>,
 }
 
 @group(1) @binding(0) var<uniform> figure: Figure;
@@ -18,6 +18,12 @@ struct Limb {
     // Direction and scale of the flattening.
     @location(3) flat_axis: vec4f,
     @location(4) color: vec4f,
+    // The limbs of the body that lie nearest, by number; 255 ends the list.
+    @location(5) near_a: vec4u,
+    @location(6) near_b: vec4u,
+    @location(7) near_c: vec4u,
+    @location(8) near_d: vec4u,
+    @location(9) near_e: vec4u,
 }
 
 struct Surface {
@@ -25,6 +31,11 @@ struct Surface {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
+    @location(3) @interpolate(flat) near_a: vec4u,
+    @location(4) @interpolate(flat) near_b: vec4u,
+    @location(5) @interpolate(flat) near_c: vec4u,
+    @location(6) @interpolate(flat) near_d: vec4u,
+    @location(7) @interpolate(flat) near_e: vec4u,
 }
 
 struct Bent {
@@ -81,10 +92,16 @@ fn vs_limb(limb: Limb) -> Surface {
     out.normal = bent.normal;
     out.clip = view.clip_from_world * vec4f(bent.world, 1.0);
     out.color = limb.color;
+    out.near_a = limb.near_a;
+    out.near_b = limb.near_b;
+    out.near_c = limb.near_c;
+    out.near_d = limb.near_d;
+    out.near_e = limb.near_e;
     return out;
 }
 
-// The hull, grown by the width of an edge; its back shows around the limb.
+// The hull, grown by the width of an edge; its back shows around the limb. It lies a little deeper than the limb, so that edges are drawn
+// where one limb passes before another and not where they merge.
 @vertex
 fn vs_edge(limb: Limb) -> Surface {
     let bent = bend(limb);
@@ -92,44 +109,85 @@ fn vs_edge(limb: Limb) -> Surface {
     out.world = bent.world + bent.normal * pixel_size(bent.world) * view.style.x;
     out.normal = bent.normal;
     out.clip = view.clip_from_world * vec4f(out.world, 1.0);
+    let deeper = view.clip_from_world * vec4f(out.world - towards_eye(out.world) * 0.03, 1.0);
+    out.clip.z = deeper.z / deeper.w * out.clip.w;
     out.color = limb.color;
+    out.near_a = limb.near_a;
+    out.near_b = limb.near_b;
+    out.near_c = limb.near_c;
+    out.near_d = limb.near_d;
+    out.near_e = limb.near_e;
     return out;
 }
 
-// How much of the sky and of the main light reaches a point past the body's other limbs.
+struct Around {
+    // Normal of the body where its limbs are melted together.
+    normal: vec3f,
+    // How much of the sky and of the main light gets past the body's other limbs, 0 to 1.
+    sky: f32,
+    key: f32,
+}
+
+// What a point of the surface sees of the other limbs of its body.
 //
-// Sky: the closed form of a ball over a horizon, for the nearest ball of each rounded cone. Main light: the angle between the light and the
-// edge of that ball, softened by the width of the light.
-fn light_reaching(world: vec3f, normal: vec3f) -> vec2f {
+// Normal: of every limb that lies within a third of its radius, weighted by how near its surface is; seams between limbs vanish like in clay.
+// Sky: the closed form of a ball before the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb. Main light: the angle
+// between the light and the edge of that ball, softened by the width of the light.
+fn look_around(in: Surface) -> Around {
+    let world = in.world;
+    let normal = normalize(in.normal);
+    var melted = normal;
     var sky = 1.0;
     var key = 1.0;
-    let count = i32(figure.about.x);
-    for (var i = 0; i < count; i++) {
-        let a = figure.occluders[2 * i];
-        let b = figure.occluders[2 * i + 1];
+    var near = array<vec4u, 5>(in.near_a, in.near_b, in.near_c, in.near_d, in.near_e);
+    for (var k = 0u; k < 20u; k++) {
+        let i = near[k / 4u][k % 4u];
+        if i > 47u {
+            break;
+        }
+        let a = figure.neighbours[3u * i];
+        let b = figure.neighbours[3u * i + 1u];
+        let from_a = world - a.xyz;
         let span = b.xyz - a.xyz;
-        let t = clamp(dot(world - a.xyz, span) / max(dot(span, span), 1e-9), 0.0, 1.0);
-        let to_ball = a.xyz + span * t - world;
+        // Back to the round limb, and there to the ball of it that is nearest: its line to the point stands on the cone's side.
+        let flattening = figure.neighbours[3u * i + 2u];
+        let round = from_a + flattening.xyz * dot(from_a, flattening.xyz) * (1.0 / flattening.w - 1.0);
+        let len = max(length(span), 1e-5);
+        let axis = span / len;
+        let height = dot(round, axis);
+        let slope = clamp((a.w - b.w) / len, -0.98, 0.98);
+        let away = sqrt(max(dot(round, round) - height * height, 0.0));
+        let t = clamp((height - away * slope * inverseSqrt(1.0 - slope * slope)) / len, 0.0, 1.0);
         let radius = mix(a.w, b.w, t);
+        let outward = round - span * t;
+        let gap = max((length(outward) - radius) * flattening.w, 0.0);
+        let other = normalize(outward + flattening.xyz * dot(outward, flattening.xyz) * (1.0 / flattening.w - 1.0) + normal * 1e-6);
+        let closeness = max(1.0 - gap / clamp(radius * 0.42, 0.004, 0.034), 0.0);
+        melted += other * closeness * closeness * smoothstep(-0.3, 0.3, dot(other, normal));
+
+        if figure.about.y < 0.5 {
+            continue;
+        }
+        let ball = radius * (0.5 + 0.5 * flattening.w);
+        let to_ball = span * t - from_a;
         let distance = max(length(to_ball), 1e-5);
-        let ratio = min(radius / distance, 1.0);
-        let facing = max(dot(normal, to_ball) / distance, 0.0);
-        sky *= 1.0 - facing * ratio * ratio;
+        let ratio = min(ball / distance, 1.0);
+        // Where limbs merge they are one surface, which does not shade itself: the seam would show.
+        sky *= 1.0 - max(dot(normal, to_ball) / distance, 0.0) * ratio * ratio * smoothstep(0.0, 0.04, gap);
 
         // Along the light: the point of the axis that the ray from here passes nearest.
-        let along_light = dot(span, view.key.xyz);
-        let across = max(dot(span, span) - along_light * along_light, 1e-9);
-        let from_a = world - a.xyz;
-        let u = clamp((dot(from_a, span) - dot(from_a, view.key.xyz) * along_light) / across, 0.0, 1.0);
-        let to_light_ball = a.xyz + span * u - world;
+        let span_on_light = dot(span, view.key.xyz);
+        let across = max(dot(span, span) - span_on_light * span_on_light, 1e-9);
+        let u = clamp((dot(from_a, span) - dot(from_a, view.key.xyz) * span_on_light) / across, 0.0, 1.0);
+        let to_light_ball = span * u - from_a;
         let reach = max(length(to_light_ball), 1e-5);
-        let size = min(mix(a.w, b.w, u) / reach, 1.0);
+        let size = min(mix(a.w, b.w, u) * (0.5 + 0.5 * flattening.w) / reach, 1.0);
         let toward = dot(to_light_ball, view.key.xyz) / reach;
-        // A light 35 degrees wide; a limb that the point lies on or beneath does not count.
-        let hidden = smoothstep(-0.3, 0.3, toward - sqrt(1.0 - size * size)) * smoothstep(0.0, 0.25, dot(normal, to_light_ball) / reach);
-        key *= 1.0 - hidden * 0.8;
+        // A light 35 degrees wide; a limb that the point lies on does not count.
+        let hidden = smoothstep(-0.3, 0.3, toward - sqrt(1.0 - size * size)) * smoothstep(0.0, 0.3, dot(normal, to_light_ball) / reach);
+        key *= 1.0 - hidden * 0.6 * smoothstep(0.0, 0.09, gap);
     }
-    return vec2f(sky, key);
+    return Around(normalize(melted), sky, key);
 }
 
 struct Shade {
@@ -138,42 +196,41 @@ struct Shade {
     rim: f32,
 }
 
-fn shade(albedo: vec3f, world: vec3f, normal: vec3f, reaching: vec2f) -> Shade {
+fn shade(albedo: vec3f, world: vec3f, around: Around) -> Shade {
+    let normal = around.normal;
     let to_eye = towards_eye(world);
     let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
     let base = to_linear(albedo);
 
     // A broad main light from over the camera's shoulder, wrapped softly around; sky from above, the floor's light from below.
-    let key = pow(clamp((dot(normal, view.key.xyz) + 0.4) / 1.4, 0.0, 1.0), 1.5) * reaching.y;
+    let key = pow(clamp((dot(normal, view.key.xyz) + 0.35) / 1.35, 0.0, 1.0), 1.7) * around.key;
     let upward = normal.y * 0.5 + 0.5;
-    let near_floor = exp(-max(world.y, 0.0) * 5.0);
-    let under = mix(0.26, 0.16, near_floor) * vec3f(1.0, 0.985, 0.97);
-    let sky = mix(under, vec3f(0.50, 0.52, 0.56), upward) * reaching.x;
-    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.10 * reaching.x;
-    var light = sky + fill * vec3f(0.9, 0.96, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.96);
+    let near_floor = exp(-max(world.y, 0.0) * 4.0);
+    let under = mix(0.20, 0.12, near_floor) * vec3f(1.0, 0.985, 0.97);
+    let sky = mix(under, vec3f(0.36, 0.38, 0.425), upward) * around.sky;
+    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.08 * around.sky;
+    let light = sky + fill * vec3f(0.85, 0.94, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.955);
 
     let half_way = normalize(view.key.xyz + to_eye);
-    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 26.0) * 0.075 * reaching.y;
+    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 30.0) * 0.06 * around.key;
 
     var out: Shade;
     let rim = 1.0 - facing;
-    out.rim = rim * rim * rim;
+    out.rim = rim * rim;
     out.linear = base * light + gloss;
     return out;
 }
 
 // What has sunk into the ground is seen through it, faintly.
 fn sink(color: vec3f, world: vec3f) -> vec3f {
-    let depth = smoothstep(0.0, -0.012, world.y + 0.004);
+    let depth = smoothstep(-0.008, -0.03, world.y);
     return mix(color, to_linear(view.floor.rgb), depth * 0.72);
 }
 
 @fragment
 fn fs_solid(in: Surface) -> @location(0) vec4f {
-    let normal = normalize(in.normal);
-    let reaching = light_reaching(in.world, normal);
-    let lit = shade(in.color.rgb, in.world, normal, reaching);
-    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.05, 0.9, lit.rim));
+    let lit = shade(in.color.rgb, in.world, look_around(in));
+    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.06, 0.85, lit.rim));
     return vec4f(to_srgb(sink(rimmed, in.world)) + dither(in.clip.xy), 1.0);
 }
 
@@ -186,12 +243,11 @@ fn fs_edge(in: Surface) -> @location(0) vec4f {
 
 @fragment
 fn fs_ghost(in: Surface) -> @location(0) vec4f {
-    let normal = normalize(in.normal);
-    let lit = shade(in.color.rgb, in.world, normal, vec2f(1.0));
+    let lit = shade(in.color.rgb, in.world, look_around(in));
     // Flat in the middle and denser at the rim, like a shell of tinted glass.
     let base = to_linear(in.color.rgb);
     let tinted = mix(base, lit.linear * 1.15, 0.45);
-    let density = clamp(in.color.a * (0.82 + 0.9 * lit.rim), 0.0, 1.0);
+    let density = clamp(in.color.a * (0.80 + 0.75 * lit.rim * lit.rim), 0.0, 1.0);
     let over_ground = mix(0.45, 1.0, smoothstep(-0.02, 0.0, in.world.y));
     return vec4f(to_srgb(tinted), density * over_ground);
 }

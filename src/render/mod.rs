@@ -16,4 +16,4 @@ mod tests;
 
 pub(crate) use callback::{install, paint_callback, stage_pixels};
 pub(crate) use image::{Image, ImageError, render_to_image};
-pub(crate) use renderer::StageRenderer;
+pub(crate) use renderer::{Quality, StageRenderer};

@@ -4,6 +4,8 @@ use super::frame::{FigureUniform, LimbInstance, RingInstance, StrokeInstance, Vi
 use super::mesh::ConeVertex;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use eframe::wgpu;
+use wgpu::CompareFunction::{Less, LessEqual};
+use wgpu::Face::{Back, Front};
 
 /// The shaders as they are compiled: what all share comes first.
 pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("limb.wgsl"));
@@ -26,7 +28,8 @@ pub(super) struct Pipelines {
     pub(super) space_line: wgpu::RenderPipeline,
     pub(super) solid: wgpu::RenderPipeline,
     pub(super) edge: wgpu::RenderPipeline,
-    pub(super) ghost_depth: wgpu::RenderPipeline,
+    /// Only the depth of the limbs' fronts.
+    pub(super) front: wgpu::RenderPipeline,
     pub(super) ghost: wgpu::RenderPipeline,
     pub(super) composite: wgpu::RenderPipeline,
     pub(super) sample_count: u32,
@@ -45,6 +48,7 @@ struct Recipe<'a> {
     depth: Option<(wgpu::CompareFunction, bool)>,
     topology: wgpu::PrimitiveTopology,
     cull: Option<wgpu::Face>,
+    stencil: wgpu::StencilState,
 }
 
 const OVER: wgpu::BlendState = wgpu::BlendState::ALPHA_BLENDING;
@@ -72,6 +76,22 @@ const SHADE: wgpu::BlendState = wgpu::BlendState {
     },
     alpha: wgpu::BlendComponent::REPLACE,
 };
+
+/// Where two limbs of a ghost share a surface, it is coloured once: the stencil keeps the number of the ghost that was there last.
+fn once_per_ghost() -> wgpu::StencilState {
+    let face = wgpu::StencilFaceState {
+        compare: wgpu::CompareFunction::NotEqual,
+        fail_op: wgpu::StencilOperation::Keep,
+        depth_fail_op: wgpu::StencilOperation::Keep,
+        pass_op: wgpu::StencilOperation::Replace,
+    };
+    wgpu::StencilState {
+        front: face,
+        back: face,
+        read_mask: 0xff,
+        write_mask: 0xff,
+    }
+}
 
 fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -112,7 +132,7 @@ impl Pipelines {
         let (line, ring) = (shader("line", LINE), shader("ring", RING));
 
         let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4];
+        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4];
         let line_attributes = wgpu::vertex_attr_array![
             0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
         ];
@@ -149,6 +169,7 @@ impl Pipelines {
             depth: None,
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: None,
+            stencil: wgpu::StencilState::default(),
         };
         let quad = wgpu::PrimitiveTopology::TriangleStrip;
         let line_recipe = |label, depth| Recipe {
@@ -170,9 +191,8 @@ impl Pipelines {
             depth: Some(depth),
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(cull),
+            stencil: wgpu::StencilState::default(),
         };
-        use wgpu::CompareFunction::{Less, LessEqual};
-        use wgpu::Face::{Back, Front};
         let (composite_layout, composite) = composite_pipeline(device, output_format);
         Self {
             ground: make(&ground_recipe("ground", "fs_ground", None)),
@@ -195,13 +215,16 @@ impl Pipelines {
             }),
             flat_line: make(&line_recipe("line", None)),
             space_line: make(&line_recipe("line in space", Some((LessEqual, true)))),
-            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (Less, true), None, Back)),
+            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back)),
             edge: make(&limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)),
-            ghost_depth: make(&Recipe {
+            front: make(&Recipe {
                 writes: wgpu::ColorWrites::empty(),
-                ..limb_recipe("ghost depth", ["vs_limb", "fs_depth"], (Less, true), None, Back)
+                ..limb_recipe("limb front", ["vs_limb", "fs_depth"], (Less, true), None, Back)
             }),
-            ghost: make(&limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)),
+            ghost: make(&Recipe {
+                stencil: once_per_ghost(),
+                ..limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)
+            }),
             view_layout,
             figure_layout,
             composite_layout,
@@ -231,7 +254,7 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(write),
             depth_compare: Some(compare),
-            stencil: wgpu::StencilState::default(),
+            stencil: recipe.stencil.clone(),
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {

@@ -6,6 +6,15 @@ use eframe::wgpu;
 use segue::scene::Stage;
 use wgpu::util::DeviceExt as _;
 
+/// How much light is worth its time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quality {
+    /// Limbs melt into each other and shade each other.
+    Full,
+    /// Every limb is lit on its own: for machines without a graphics card.
+    Plain,
+}
+
 /// Draws stages. One per device; every stage on the page has an id of its own.
 pub(crate) struct StageRenderer {
     pipelines: Pipelines,
@@ -14,6 +23,7 @@ pub(crate) struct StageRenderer {
     /// Distance between uniform blocks in their buffers.
     alignment: usize,
     largest_side: u32,
+    quality: Quality,
     views: Vec<(u64, View)>,
     /// The frame in the making; it takes turns with the one last drawn.
     scratch: Frame,
@@ -34,10 +44,10 @@ pub(super) struct View {
     limbs: GrowingBuffer,
     strokes: GrowingBuffer,
     rings: GrowingBuffer,
-    view_uniforms: GrowingBuffer,
+    pane_uniforms: GrowingBuffer,
     figure_uniforms: GrowingBuffer,
-    view_group: Option<wgpu::BindGroup>,
-    figure_group: Option<wgpu::BindGroup>,
+    views_bound: Option<wgpu::BindGroup>,
+    figures_bound: Option<wgpu::BindGroup>,
     /// Frames since it was last asked for.
     idle: u32,
 }
@@ -92,10 +102,10 @@ impl View {
             limbs: GrowingBuffer::new("limbs", vertex),
             strokes: GrowingBuffer::new("strokes", vertex),
             rings: GrowingBuffer::new("rings", vertex),
-            view_uniforms: GrowingBuffer::new("views", uniform),
+            pane_uniforms: GrowingBuffer::new("views", uniform),
             figure_uniforms: GrowingBuffer::new("figures", uniform),
-            view_group: None,
-            figure_group: None,
+            views_bound: None,
+            figures_bound: None,
             idle: 0,
         }
     }
@@ -158,10 +168,20 @@ impl StageRenderer {
             coarse: mesh(16, 4),
             alignment: limits.min_uniform_buffer_offset_alignment.max(16) as usize,
             largest_side: limits.max_texture_dimension_2d,
+            quality: if adapter.get_info().device_type == wgpu::DeviceType::Cpu {
+                Quality::Plain
+            } else {
+                Quality::Full
+            },
             views: Vec::new(),
             scratch: Frame::default(),
             bytes: Vec::new(),
         }
+    }
+
+    /// Chooses the light; by default that of the machine.
+    pub(crate) fn set_quality(&mut self, quality: Quality) {
+        self.quality = quality;
     }
 
     /// The view of that id.
@@ -206,7 +226,7 @@ impl StageRenderer {
             view.targets = Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count);
             view.is_drawn = false;
         }
-        self.scratch.build(stage, size);
+        self.scratch.build(stage, size, self.quality);
         let draw = !view.is_drawn || view.drawn != self.scratch;
         if draw {
             std::mem::swap(&mut view.drawn, &mut self.scratch);
@@ -233,22 +253,22 @@ impl StageRenderer {
             limbs,
             strokes,
             rings,
-            view_uniforms,
+            pane_uniforms,
             figure_uniforms,
-            view_group,
-            figure_group,
+            views_bound,
+            figures_bound,
             ..
         } = view;
         limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
         strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));
         rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
         spaced(&drawn.views, view_stride, &mut self.bytes);
-        if view_uniforms.write(device, queue, &self.bytes) {
-            *view_group = uniform_group(device, &self.pipelines.view_layout, view_uniforms, size_of::<ViewUniform>());
+        if pane_uniforms.write(device, queue, &self.bytes) {
+            *views_bound = uniform_group(device, &self.pipelines.view_layout, pane_uniforms, size_of::<ViewUniform>());
         }
         spaced(&drawn.figure_uniforms, figure_stride, &mut self.bytes);
         if figure_uniforms.write(device, queue, &self.bytes) {
-            *figure_group = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
+            *figures_bound = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
         }
     }
 
@@ -282,7 +302,10 @@ impl StageRenderer {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Discard,
                 }),
-                stencil_ops: None,
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Discard,
+                }),
             }),
             ..Default::default()
         });
@@ -290,7 +313,7 @@ impl StageRenderer {
             let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, view.view_group.as_ref(), &[(index * self.view_stride()) as u32]);
+            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
             self.encode_pane(&mut pass, view, pane);
         }
     }
@@ -305,7 +328,7 @@ impl StageRenderer {
             space_line,
             solid,
             edge,
-            ghost_depth,
+            front,
             ghost,
             ..
         } = &self.pipelines;
@@ -314,7 +337,7 @@ impl StageRenderer {
         };
         let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
-            pass.set_bind_group(1, view.figure_group.as_ref(), &[(index * self.figure_stride()) as u32]);
+            pass.set_bind_group(1, view.figures_bound.as_ref(), &[(index * self.figure_stride()) as u32]);
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
@@ -342,7 +365,12 @@ impl StageRenderer {
 
         let solids = || figures().filter(|(_, figure)| !figure.ghost);
         pass.set_vertex_buffer(1, limbs.slice(..));
-        for (pipeline, wanted) in [(solid, true), (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges))] {
+        // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
+        for (pipeline, wanted) in [
+            (front, true),
+            (solid, true),
+            (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
+        ] {
             if wanted && solids().next().is_some() {
                 pass.set_pipeline(pipeline);
                 for (index, figure) in solids() {
@@ -353,9 +381,10 @@ impl StageRenderer {
         }
         quads(pass, space_line, strokes, &pane.strokes[1]);
         // Each ghost first finds its front, then colours it: far ones first.
-        for (index, figure) in figures().filter(|(_, figure)| figure.ghost) {
+        for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
             set_figure(pass, index);
-            for pipeline in [ghost_depth, ghost] {
+            pass.set_stencil_reference(number as u32 % 255 + 1);
+            for pipeline in [front, ghost] {
                 pass.set_pipeline(pipeline);
                 self.draw_limbs(pass, figure);
             }

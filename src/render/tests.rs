@@ -2,8 +2,9 @@
 
 use super::frame::Frame;
 use super::pipelines::{COMPOSITE, GROUND, LIMB, LINE, RING, SHADOW};
-use super::{Image, StageRenderer, render_to_image};
+use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
+use eframe::wgpu::naga;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
@@ -13,9 +14,37 @@ use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
 use std::time::Instant;
 
+/// Every entry point can be said in the shading language of WebGL 2.
+fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::ModuleInfo) {
+    use naga::back::glsl;
+    for entry in &module.entry_points {
+        let options = glsl::Options {
+            version: glsl::Version::Embedded {
+                version: 300,
+                is_webgl: true,
+            },
+            ..glsl::Options::default()
+        };
+        let pipeline = glsl::PipelineOptions {
+            shader_stage: entry.stage,
+            entry_point: entry.name.clone(),
+            multiview: None,
+        };
+        let mut text = String::new();
+        let policies = naga::proc::BoundsCheckPolicies::default();
+        let written = glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies).and_then(|mut writer| writer.write());
+        assert!(
+            written.is_ok(),
+            "{name}.wgsl, {}: {}",
+            entry.name,
+            written.err().map_or(String::new(), |e| e.to_string())
+        );
+        assert!(text.starts_with("#version 300 es"));
+    }
+}
+
 #[test]
 fn every_shader_is_valid() {
-    use wgpu::naga;
     for (name, source) in [
         ("limb", LIMB),
         ("shadow", SHADOW),
@@ -25,11 +54,12 @@ fn every_shader_is_valid() {
         ("composite", COMPOSITE),
     ] {
         let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
-        // No capabilities beyond those of WebGL 2.
+        // No capabilities beyond the plain ones.
         let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-        validator
+        let info = validator
             .validate(&module)
             .unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
+        translates_to_webgl(name, &module, &info);
         let blocks = module
             .global_variables
             .iter()
@@ -55,6 +85,10 @@ struct Gpu {
 
 /// `None` where the machine has nothing to draw with.
 fn gpu() -> Option<Gpu> {
+    gpu_for(wgpu::TextureFormat::Bgra8Unorm)
+}
+
+fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
     let instance = wgpu::Instance::default();
     let options = wgpu::RequestAdapterOptions::default();
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
@@ -67,13 +101,17 @@ fn gpu() -> Option<Gpu> {
         ..Default::default()
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
-    let renderer = StageRenderer::new(&device, &adapter, wgpu::TextureFormat::Bgra8Unorm);
+    let renderer = StageRenderer::new(&device, &adapter, output);
     Some(Gpu { device, queue, renderer })
 }
 
 impl Gpu {
+    /// Draws as on a machine with a graphics card, and keeps the picture.
     fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
+        self.renderer.set_quality(Quality::Full);
+        let start = Instant::now();
         let image = render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
+        eprintln!("{name}: {:.2} s", start.elapsed().as_secs_f64());
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/stage");
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join(format!("{name}.png")), image.to_png().unwrap()).unwrap();
@@ -146,7 +184,7 @@ fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) ->
     pane.focus = here;
     pane.camera = Camera {
         target: here + Vec3::Y * 0.93,
-        yaw: 1.15,
+        yaw: 0.95,
         pitch: 0.13,
         distance: 4.6,
         ..Camera::default()
@@ -208,7 +246,7 @@ fn the_mannequin_from_all_sides() {
                 let mut bounds = Bounds::EMPTY;
                 bounds.include_pose(&pose);
                 let mut camera = Camera {
-                    yaw: i as f32 * 0.7854,
+                    yaw: i as f32 * std::f32::consts::FRAC_PI_4,
                     pitch: 0.1,
                     ..Camera::default()
                 };
@@ -539,12 +577,63 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
 }
 
 #[test]
+fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
+    for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
+        let Some(mut gpu) = gpu_for(format) else { return };
+        let actors = actors();
+        let stage = stage(&actors, [128, 96], 1, false, 1.0);
+        let expected = render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [128, 96]).unwrap();
+        let page = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: 256,
+                height: 128,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = page.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 3, &stage, [128, 96]));
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::RED),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            });
+            pass.set_viewport(16.0, 8.0, 128.0, 96.0, 0.0, 1.0);
+            gpu.renderer.paint(&mut pass, 3);
+        }
+        let got = super::image::read_texture(&gpu.device, &gpu.queue, encoder, &page).unwrap();
+        assert_eq!(got.pixel(15, 20), Some([255, 0, 0, 255]));
+        for y in 0..96 {
+            for x in 0..128 {
+                assert_eq!(got.pixel(x + 16, y + 8), expected.pixel(x, y), "{format:?} at {x}, {y}");
+            }
+        }
+    }
+}
+
+#[test]
 fn time_to_build_and_encode() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let mut stage = stage(&actors, [1440, 900], 3, false, 1.0);
     let mut frame = Frame::default();
-    frame.build(&stage, [1440, 900]);
+    frame.build(&stage, [1440, 900], Quality::Full);
+    gpu.renderer.set_quality(Quality::Full);
     let rounds = 200u32;
     let (mut bodies, mut build, mut prepare) = (0.0, 0.0, 0.0);
     let pose = actors.walk.world_pose(50);
@@ -562,7 +651,7 @@ fn time_to_build_and_encode() {
         }
         bodies += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        frame.build(&stage, [1440, 900]);
+        frame.build(&stage, [1440, 900], Quality::Full);
         build += start.elapsed().as_secs_f64();
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let start = Instant::now();

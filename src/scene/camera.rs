@@ -304,8 +304,10 @@ mod tests {
 
     #[test]
     fn the_top_view_hits_the_ground_below_the_pixel() {
-        let mut camera = Camera::default();
-        camera.yaw = 0.0;
+        let mut camera = Camera {
+            yaw: 0.0,
+            ..Camera::default()
+        };
         camera.look_from_top();
         let hit = camera.ray(Vec2::new(480.0, 240.0), VIEWPORT).ground_hit().unwrap();
         let metres_per_pixel = 2.0 * camera.half_height() / VIEWPORT.y;

@@ -324,10 +324,10 @@ impl Look {
         floor_radius: 3.6,
         grid: [0.55, 0.6, 0.7, 0.26],
         shadow: 0.82,
-        clay: rgb(0xc9_cd_d8),
+        clay: rgb(0xd2_d6_e2),
         edge: [0.04, 0.045, 0.06, 0.85],
         edge_width: 1.1,
-        rim: 0.55,
+        rim: 0.62,
     };
 
     /// For the light theme.
@@ -337,8 +337,8 @@ impl Look {
         floor: rgb(0xfb_fc_fe),
         floor_radius: 4.2,
         grid: [0.42, 0.48, 0.6, 0.3],
-        shadow: 0.62,
-        clay: rgb(0xa3_a9_b9),
+        shadow: 0.5,
+        clay: rgb(0xae_b4_c4),
         edge: [0.16, 0.19, 0.26, 0.8],
         edge_width: 1.1,
         rim: 0.45,

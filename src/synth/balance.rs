@@ -1,16 +1,13 @@
-//! Where the hips go: over the ground as an inverted pendulum on the feet, up and down as the legs let them.
+//! Where the hips go over the ground: they balance on the feet as an inverted pendulum does.
 
 use super::body::Body;
 use super::foot::{Foot, foot_at};
-use super::gait::{gravity, pendulum_rate};
-use super::params::{Action, Params};
-use super::plan::{JumpTimes, Plan};
+use super::gait::{gravity, pendulum_height};
+use super::height::heights;
+use super::params::Params;
+use super::plan::Plan;
 use super::posture::Posture;
-use super::track::{State, quintic};
 use glam::{DVec2, Vec3};
-
-/// The longest a leg gets, as a share of its length: a knee is never quite straight (about 4° are left).
-pub(super) const LONGEST: f32 = 0.9994;
 
 /// The hips over the grid of a plan.
 pub(super) struct Hips {
@@ -28,17 +25,8 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
         .collect();
     let feet = feet?;
     let ground = over_the_ground(plan, &feet, posture, params);
-    let legs = Legs::new(plan, &feet, &ground, posture, body);
-    let heights = match (plan.jump, plan.gait.running && plan.action == Action::Run) {
-        (Some(times), _) => jumping(plan, &legs, &times),
-        (None, true) => running(plan, &legs),
-        (None, false) => walking(plan, &legs, params),
-    };
-    let positions = ground
-        .iter()
-        .zip(&heights)
-        .map(|(xz, &y)| Vec3::new(xz.x as f32, y as f32, xz.y as f32))
-        .collect();
+    let heights = heights(plan, &feet, &ground, posture, params, body);
+    let positions = ground.iter().zip(&heights).map(|(xz, &y)| Vec3::new(xz.x as f32, y as f32, xz.y as f32)).collect();
     Some(Hips { feet, positions })
 }
 
@@ -49,13 +37,14 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
 /// shift of weight before a first step and the lean before a stop are all in it. What is filtered is how far p is from the foothold that the planned
 /// way itself calls for, so that a steady gait keeps its speed and its circle exactly.
 fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &Params) -> Vec<DVec2> {
-    let rate = pendulum_rate(params.height_m);
+    let height = pendulum_height(params.height_m);
+    let rate = (gravity() / height).sqrt();
     let places: Vec<_> = (0..plan.len()).map(|step| plan.path.at(plan.secs(step))).collect();
     let mut away: Vec<Option<DVec2>> = (feet.iter().zip(&places))
         .map(|(pair, place)| {
             let load: f64 = pair.iter().map(|foot| foot.load).sum();
             let pressure = pair.iter().map(|foot| foot.pressure * foot.load).sum::<DVec2>() / load;
-            (load > 1e-6).then(|| place.to_local(pressure - place.position + place.acceleration() / (rate * rate)))
+            (load > 1e-6).then(|| place.to_local(pressure - place.position + place.lean(gravity()) * height))
         })
         .collect();
     bridge(&mut away);
@@ -63,7 +52,9 @@ fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &
     let mut swayed = two_sided(&away, (-rate * plan.dt_secs).exp());
     if let Some(period) = plan.period {
         let mean = swayed[plan.margin..plan.margin + period].iter().sum::<DVec2>() / period as f64;
-        swayed.iter_mut().for_each(|sway| *sway -= mean);
+        for sway in &mut swayed {
+            *sway -= mean;
+        }
     }
     // The hips sway farther than the centre of mass, for the trunk leans the other way (Orendurff et al. 2004 find the hips' 20 to 40 % larger).
     let gain = DVec2::new(if plan.gait.running { 0.8 } else { 1.3 }, 1.0);
@@ -78,9 +69,8 @@ fn bridge(values: &mut [Option<DVec2>]) {
     for i in 0..values.len() {
         let Some(here) = values[i] else { continue };
         let (start, before) = known.map_or((0, here), |(at, value)| (at, value));
-        for gap in start..i {
-            let share = (gap - start) as f64 / (i - start) as f64;
-            values[gap].get_or_insert(before.lerp(here, share));
+        for (gone, gap) in values[start..i].iter_mut().enumerate() {
+            gap.get_or_insert(before.lerp(here, gone as f64 / (i - start) as f64));
         }
         known = Some((i, here));
     }
@@ -103,296 +93,4 @@ fn two_sided(values: &[DVec2], keep: f64) -> Vec<DVec2> {
         *sum = (*sum + state) * 0.5;
     }
     out
-}
-
-/// One leg at one moment, as far as the height of the hips needs it.
-#[derive(Clone, Copy)]
-struct Leg {
-    planted: bool,
-    /// Planted, or so soon to be that the hips must be low enough already.
-    bearing: bool,
-    load: f64,
-    progress: f64,
-    /// From the hips' height to this hip joint's.
-    hip_rise: f64,
-    ankle_height: f64,
-    /// Hip joint to ankle over the ground, metres.
-    across: f64,
-}
-
-struct Legs<'a> {
-    body: &'a Body,
-    /// The least flexion of the knee of a planted leg, radians.
-    least_flexion: f32,
-    steps: Vec<[Leg; 2]>,
-}
-
-impl<'a> Legs<'a> {
-    fn new(plan: &Plan, feet: &[[Foot; 2]], ground: &[DVec2], posture: &Posture, body: &'a Body) -> Self {
-        let steps = (feet.iter().zip(ground).enumerate())
-            .map(|(step, (pair, ground))| {
-                let pelvis = posture.pelvis(plan, plan.secs(step));
-                [0, 1].map(|side| {
-                    let foot = &pair[side];
-                    let hip = pelvis * body.hip_in_hips[side];
-                    let ankle = DVec2::new(f64::from(foot.ankle.x), f64::from(foot.ankle.z));
-                    Leg {
-                        planted: foot.planted(),
-                        bearing: foot.planted() || foot.progress > if plan.gait.running { 0.92 } else { 0.86 },
-                        load: foot.load,
-                        progress: foot.progress,
-                        hip_rise: f64::from(hip.y),
-                        ankle_height: f64::from(foot.ankle.y),
-                        across: (ground + DVec2::new(f64::from(hip.x), f64::from(hip.z)) - ankle).length(),
-                    }
-                })
-            })
-            .collect();
-        Self { body, least_flexion: (if plan.gait.running { 15.0_f32 } else { 6.0 }).to_radians(), steps }
-    }
-
-    /// The height of the hips at which this leg is `reach` long; `None` where the leg is too short to reach at all.
-    fn height_at(leg: &Leg, reach: f64) -> Option<f64> {
-        let up = reach * reach - leg.across * leg.across;
-        (up > 0.0).then(|| leg.ankle_height + up.sqrt() - leg.hip_rise)
-    }
-
-    /// The greatest height that the planted legs allow at a step.
-    fn ceiling(&self, step: usize) -> f64 {
-        let longest = f64::from(self.body.reach_at_flexion(self.least_flexion));
-        (self.steps[step].iter())
-            .filter(|leg| leg.bearing)
-            .map(|leg| Self::height_at(leg, longest).unwrap_or(0.3 * longest))
-            .fold(f64::INFINITY, f64::min)
-    }
-
-    /// The height at which the loaded legs have the wanted knee flexion (radians, by progress of stance), weighted by load; `None` in flight.
-    fn wanted(&self, step: usize, weight: impl Fn(&Leg) -> f64, flexion: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
-        let mut sum = 0.0;
-        let mut total = 0.0;
-        for leg in self.steps[step].iter().filter(|leg| leg.planted) {
-            let reach = self.body.reach_at_flexion(flexion(leg.progress) as f32);
-            if let Some(height) = Self::height_at(leg, f64::from(reach)) {
-                let w = weight(leg).max(1e-6);
-                sum += w * height;
-                total += w;
-            }
-        }
-        (total > 0.0).then(|| (sum / total, total))
-    }
-}
-
-/// A mean over a compact window whose weights fall smoothly to 0 (raised cosine), `half` steps to either side; the ends are held.
-fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
-    let span = (half + 1) as f64;
-    let weights: Vec<f64> = (0..=half).map(|k| 1.0 + (std::f64::consts::PI * k as f64 / span).cos()).collect();
-    let total: f64 = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-    let last = values.len().saturating_sub(1);
-    (0..values.len())
-        .map(|i| {
-            let sides: f64 = (1..=half)
-                .map(|k| weights[k] * (values[i.saturating_sub(k)] + values[(i + k).min(last)]))
-                .sum();
-            (weights[0] * values[i] + sides) / total
-        })
-        .collect()
-}
-
-/// Lowers `heights` to below `ceiling` everywhere, smoothly: the excess, widened and then smoothed over the same window, is never less than itself.
-fn kept_below(heights: &mut [f64], ceiling: impl Fn(usize) -> f64, half: usize) {
-    let excess: Vec<f64> = heights.iter().enumerate().map(|(i, h)| (h - ceiling(i)).max(0.0)).collect();
-    if excess.iter().all(|&e| e == 0.0) {
-        return;
-    }
-    let last = excess.len() - 1;
-    let widened: Vec<f64> = (0..excess.len())
-        .map(|i| {
-            excess[i.saturating_sub(half)..=(i + half).min(last)]
-                .iter()
-                .copied()
-                .fold(0.0, f64::max)
-        })
-        .collect();
-    for (height, lower) in heights.iter_mut().zip(smoothed(&widened, half)) {
-        *height -= lower;
-    }
-}
-
-/// Rise and fall of the hips in walking from lowest to highest, metres: 2.7 cm at 0.7 m/s and 4.8 cm at 1.6 m/s (Orendurff et al. 2004).
-fn walking_rise(alike_mps: f64) -> f64 {
-    (0.006 + 0.0265 * alike_mps).max(0.0)
-}
-
-/// The hips ride as high as the legs let them, on a wave that is lowest just after a heel strike and highest over the stance foot: what knees and
-/// heels have to make up for (Saunders, Inman and Eberhart 1953) then follows from the feet.
-fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
-    const LOWEST: f64 = 0.03;
-    const STANDING_FLEXION: f64 = 6.0;
-    let cycle = plan.gait.cycle_secs;
-    let mut level = f64::from(legs.body.hip_height());
-    let raw: Vec<f64> = (0..plan.len())
-        .map(|step| {
-            level = legs.wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians()).map_or(level, |(height, _)| height);
-            level
-        })
-        .collect();
-    let steps_of = |share: f64| ((share * cycle / plan.dt_secs).round() as usize).max(2);
-    let rise = walking_rise(plan.gait.alike_mps) * f64::from(legs.body.scale) * f64::from(params.style.bounce);
-    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 })).into_iter().enumerate())
-        .map(|(step, level)| {
-            let secs = plan.secs(step);
-            level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
-        })
-        .collect();
-    // Over a whole step, so that the level gives way and the wave stays.
-    kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.25));
-    heights
-}
-
-/// Height over a step of running, from the strike, over the height at the strike; `m` metres.
-///
-/// In flight gravity alone acts. On the ground the force is half a sine (Alexander, Maloiy, Hunter, Jayes and Nturibi 1979; Blickhan 1989), which must carry
-/// the weight of the whole step: a = g·(π/2 · T/c · sin(πt/c) - 1) for a step of T and a contact of c seconds.
-fn spring_mass(secs: f64, step_secs: f64, contact_secs: f64) -> f64 {
-    let g = gravity();
-    let flight = step_secs - contact_secs;
-    let down = -0.5 * g * flight;
-    if secs < contact_secs {
-        let (c, w) = (contact_secs, std::f64::consts::PI / contact_secs);
-        let peak = 0.5 * std::f64::consts::PI * step_secs / c;
-        // Twice integrated with the rate `down` at the strike; symmetric about the middle, so the release is the strike reversed.
-        let from_force = g * peak * (secs / w - (w * secs).sin() / (w * w));
-        down * secs + from_force - 0.5 * g * secs * secs
-    } else {
-        let t = secs - contact_secs;
-        -down * t - 0.5 * g * t * t
-    }
-}
-
-fn running(plan: &Plan, legs: &Legs) -> Vec<f64> {
-    let gait = &plan.gait;
-    let (step_secs, contact) = (0.5 * gait.cycle_secs, gait.duty * gait.cycle_secs);
-    let shape: Vec<f64> = (0..plan.len())
-        .map(|step| spring_mass((plan.secs(step) - plan.phase_zero).rem_euclid(step_secs), step_secs, contact))
-        .collect();
-    // 12° at the strike, about 40° in the middle, 16° at the release (Novacheck 1998, figure 8).
-    let flexion = |progress: f64| (14.0 + 27.0 * (std::f64::consts::PI * progress).sin()).to_radians();
-    let mut sum = 0.0;
-    let mut total = 0.0;
-    let mut limit = f64::INFINITY;
-    for step in plan.margin..plan.margin + plan.period.unwrap_or(1) {
-        if let Some((height, weight)) = legs.wanted(step, |leg| leg.load, flexion) {
-            sum += weight * (height - shape[step]);
-            total += weight;
-        }
-        limit = limit.min(legs.ceiling(step) - shape[step]);
-    }
-    let level = if total > 0.0 {
-        sum / total
-    } else {
-        f64::from(legs.body.hip_height())
-    };
-    let level = level.min(limit);
-    shape.into_iter().map(|height| level + height).collect()
-}
-
-/// Stand, dip, push, fly under gravity, land, absorb, stand.
-fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
-    let g = gravity();
-    let leg = f64::from(legs.body.leg());
-    let step_at = |secs: f64| ((secs / plan.dt_secs).round() as i64 + plan.margin as i64).clamp(0, plan.len() as i64 - 1) as usize;
-    let at_flexion = |secs: f64, degrees: f64| {
-        legs.wanted(step_at(secs), |_| 1.0, |_| degrees.to_radians())
-            .map_or(leg, |(height, _)| height)
-            .min(legs.ceiling(step_at(secs)))
-    };
-    let stand = |secs: f64| at_flexion(secs, 5.0);
-    let (before, after) = (stand(0.0), stand(plan.secs(plan.len() - 1)));
-    let air = times.land - times.off;
-    let off = at_flexion(times.off - plan.dt_secs, 30.0);
-    let up = 0.5 * g * air;
-    // It lands as high as it leaves, plus what is asked of the knees there: the rate at take-off follows from both heights.
-    let land = at_flexion(times.land + plan.dt_secs, 34.0);
-    let up = up + (land - off) / air;
-    let down = up - g * air;
-    let rest = State::rest;
-    let fly = |value: f64, rate: f64| State {
-        value,
-        rate,
-        acceleration: -g,
-    };
-    let pieces = [
-        (
-            times.dip,
-            times.bottom,
-            rest(before),
-            State {
-                value: before - 0.30 * leg,
-                rate: 0.0,
-                acceleration: 9.0,
-            },
-        ),
-        (
-            times.bottom,
-            times.off,
-            State {
-                value: before - 0.30 * leg,
-                rate: 0.0,
-                acceleration: 9.0,
-            },
-            fly(off, up),
-        ),
-        (
-            times.land,
-            times.absorbed,
-            fly(land, down),
-            State {
-                value: after - 0.24 * leg,
-                rate: 0.0,
-                acceleration: 7.0,
-            },
-        ),
-        (
-            times.absorbed,
-            times.stood,
-            State {
-                value: after - 0.24 * leg,
-                rate: 0.0,
-                acceleration: 7.0,
-            },
-            rest(after),
-        ),
-    ];
-    let mut heights: Vec<f64> = (0..plan.len())
-        .map(|step| {
-            let secs = plan.secs(step);
-            if (times.off..=times.land).contains(&secs) {
-                let t = secs - times.off;
-                return off + up * t - 0.5 * g * t * t;
-            }
-            let piece = pieces.iter().find(|piece| secs >= piece.0 && secs < piece.1);
-            piece.map_or(if secs < times.dip { before } else { after }, |&(from, to, a, b)| {
-                quintic(a, b, to - from, secs - from)
-            })
-        })
-        .collect();
-    let flight = step_at(times.off).saturating_sub(2)..step_at(times.land) + 2;
-    let half = ((0.05 / plan.dt_secs) as usize).max(2);
-    let free = heights.clone();
-    kept_below(
-        &mut heights,
-        |step| {
-            if flight.contains(&step) {
-                f64::INFINITY
-            } else {
-                legs.ceiling(step)
-            }
-        },
-        half,
-    );
-    // Nothing bends the flight.
-    for step in flight.start..flight.end.min(free.len()) {
-        heights[step] = free[step];
-    }
-    heights
 }

@@ -76,15 +76,20 @@ impl Gait {
         }
     }
 
+    /// 0 at the slowest run to 1 at the fastest.
+    pub(super) fn quick_run(&self) -> f64 {
+        ((self.alike_mps - 1.8) / 4.7).clamp(0.0, 1.0)
+    }
+
     /// Steps per minute.
     pub(super) fn cadence(&self) -> f64 {
         120.0 / self.cycle_secs
     }
 }
 
-/// The eigenfrequency of an inverted pendulum as high as the centre of mass, rad/s: √(g/h), h = 0.56 of body height (Winter, table 4.1).
-pub(super) fn pendulum_rate(height_m: f32) -> f64 {
-    (GRAVITY / (0.56 * f64::from(height_m))).sqrt()
+/// Height of the centre of mass, metres: 0.56 of body height (Winter, table 4.1). The length of the inverted pendulum.
+pub(super) fn pendulum_height(height_m: f32) -> f64 {
+    0.56 * f64::from(height_m)
 }
 
 /// Gravity, m/s².

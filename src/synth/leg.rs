@@ -2,15 +2,15 @@
 
 use glam::{Mat3, Quat, Vec3};
 
-/// World rotations of thigh and shank that bring the ankle to its place, the knee bent towards `knee_towards`.
+/// World rotations of thigh and shank that bring the ankle to its place, the knee bent about `hinge` as nearly as the ankle allows.
 ///
-/// Both bones point down -Y at rest and the knee bends about +X. A target out of reach is pointed at with the leg straight. The knee's
-/// plane holds the line from hip to ankle and `knee_towards`; the two must not be parallel, which no gait comes near.
-pub(super) fn two_bones(hip: Vec3, ankle: Vec3, thigh: f32, shank: f32, knee_towards: Vec3) -> (Quat, Quat) {
+/// Both bones point down -Y at rest and the knee bends about +X, the left side of the body. A target out of reach is pointed at with the leg straight.
+/// Only a leg stretched out sideways would have no plane to bend in; a thigh may be lifted to any height.
+pub(super) fn two_bones(hip: Vec3, ankle: Vec3, thigh: f32, shank: f32, hinge: Vec3) -> (Quat, Quat) {
     let line = ankle - hip;
     let distance = line.length().clamp((thigh - shank).abs() + 1e-4, thigh + shank);
     let up = (-line).normalize_or(Vec3::Y);
-    let side = up.cross(knee_towards).normalize_or(Vec3::X);
+    let side = hinge.reject_from_normalized(up).normalize_or(Vec3::X);
     let frame = Quat::from_mat3(&Mat3::from_cols(side, up, side.cross(up)));
     // Law of cosines: between thigh and line at the hip, and between the bones at the knee.
     let at_hip = (thigh * thigh + distance * distance - shank * shank) / (2.0 * thigh * distance);
@@ -41,7 +41,7 @@ mod tests {
             let (thigh, shank) = (0.43, 0.42);
             let (hip, ankle) = (Vec3::new(0.1, 0.9, 0.0), Vec3::new(0.1 + x, 0.9 + y, z));
             prop_assume!((ankle - hip).length() < 0.849);
-            let (a, b) = two_bones(hip, ankle, thigh, shank, Vec3::Z);
+            let (a, b) = two_bones(hip, ankle, thigh, shank, Vec3::X);
             let knee = hip + a * Vec3::new(0.0, -thigh, 0.0);
             prop_assert!((knee + b * Vec3::new(0.0, -shank, 0.0) - ankle).length() < 2e-5);
             let straight = hip + (ankle - hip) * (knee - hip).dot(ankle - hip) / (ankle - hip).length_squared();

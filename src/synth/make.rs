@@ -1,9 +1,10 @@
 //! From a plan to frames.
 
 use super::arms::arm;
-use super::balance::{LONGEST, hips};
+use super::balance::hips;
 use super::body::{Body, humanoid, joint};
 use super::foot::Foot;
+use super::height::{LONGEST, least_flexion};
 use super::leg::{soft_limit, two_bones};
 use super::params::{Action, Params, SynthError};
 use super::plan::{Plan, plan};
@@ -27,11 +28,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
     let body = Body::new(params.height_m);
     let plan = plan(params, &body);
     let posture = Posture::new(&plan, params);
-    let missing = ClipError::Length {
-        what: "footholds",
-        found: 0,
-        expected: 2,
-    };
+    let missing = ClipError::Length { what: "footholds", found: 0, expected: 2 };
     let moved = hips(&plan, &posture, params, &body).ok_or(missing)?;
     let mut rotations = Vec::with_capacity(plan.frames * joint::COUNT);
     let mut roots = Vec::with_capacity(plan.frames);
@@ -48,12 +45,11 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
             let ankle = given_way(&body, foot, hip, plan.gait.running);
             // The knee points between where the hips and where the toes point.
-            let heading = plan.path.at(secs).yaw;
-            let knee_yaw = (heading + 0.55 * (foot.yaw - heading)) as f32;
-            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, Vec3::new(knee_yaw.sin(), 0.0, knee_yaw.cos()));
+            let hinge = trunk.pelvis * Vec3::X * 0.45 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
+            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, hinge);
             local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
             local[joint::LEG[side]] = thigh.conjugate() * shank;
-            local[joint::FOOT[side]] = shank.conjugate() * foot.rotation;
+            local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot, body.ankle_height());
             local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
             let arm = arm(&plan, &posture, params, side, secs);
             local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
@@ -64,27 +60,17 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         }
         rotations.extend(local.map(renormalize));
         roots.push(moved.positions[step]);
-        contacts.push([0, 1].map(|side| FootContact {
-            heel: moved.feet[step][side].heel_down,
-            toe: moved.feet[step][side].toe_down,
-        }));
+        contacts.push([0, 1].map(|side| FootContact { heel: moved.feet[step][side].heel_down, toe: moved.feet[step][side].toe_down }));
         phase.push(plan.cycles(secs).rem_euclid(1.0) as f32);
     }
     let clip = Clip::new(name(params), skeleton, f64::from(params.fps), rotations, roots)?;
-    Ok(Synthesized {
-        clip,
-        truth: truth(&plan, params, phase, contacts),
-    })
+    Ok(Synthesized { clip, truth: truth(&plan, params, phase, contacts) })
 }
 
 fn truth(plan: &Plan, params: &Params, phase: Vec<f32>, contacts: Vec<[FootContact; 2]>) -> Truth {
     let strides = matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
     let cycle_secs = plan.gait.cycle_secs;
-    let speed = if Params::speed_range(params.action).is_some() {
-        f64::from(params.speed_mps)
-    } else {
-        0.0
-    };
+    let speed = if Params::speed_range(params.action).is_some() { f64::from(params.speed_mps) } else { 0.0 };
     Truth {
         speed_mps: speed as f32,
         turn_rate_dps: if strides { params.turn_rate_dps } else { 0.0 },
@@ -132,6 +118,18 @@ fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
     Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32) * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
 }
 
+/// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well off the ground.
+fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
+    if foot.planted() {
+        return rotation;
+    }
+    let turn = log(rotation);
+    let angle = turn.length();
+    let high = ramp(f64::from(foot.ankle.y / ankle_height), 2.5, 4.5);
+    let free = (high * ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
+    exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
+}
+
 /// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to the ground it does as planned.
 fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     if foot.planted() {
@@ -142,5 +140,8 @@ fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     let (from, to) = if running { (0.955, 0.993) } else { (0.985, LONGEST) };
     let limited = soft_limit(length, from * body.leg(), to * body.leg());
     let share = ramp(foot.progress, 0.0, 0.14) * (1.0 - ramp(foot.progress, 0.84, 0.98));
-    foot.ankle + line * ((limited / length.max(1e-6) - 1.0) * share as f32)
+    let given = length + (limited - length) * share as f32;
+    // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as the foot meets the ground.
+    let longest = soft_limit(given, body.reach_at_flexion(least_flexion(running)), body.reach_at_flexion(0.02));
+    foot.ankle + line * (longest / length.max(1e-6) - 1.0)
 }

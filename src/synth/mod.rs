@@ -22,6 +22,7 @@ mod balance;
 mod body;
 mod foot;
 mod gait;
+mod height;
 mod leg;
 mod make;
 mod params;

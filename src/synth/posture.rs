@@ -1,6 +1,6 @@
 //! How the trunk is held: tilt, list and turn of the pelvis, the counter-turn of the chest, the steady head.
 
-use super::gait::{gravity, pendulum_rate};
+use super::gait::gravity;
 use super::params::{Action, Params};
 use super::plan::Plan;
 use super::track::Spline;
@@ -20,11 +20,11 @@ pub(super) struct Trunk {
 pub(super) struct Posture {
     running: bool,
     idle: bool,
+    loops: bool,
     energy: f64,
     lean: f64,
     quick: f64,
     size: f64,
-    rate: f64,
     /// Small differences between persons: posture, list, head, asymmetry; each around 0.
     person: [f64; 4],
     period_secs: f64,
@@ -85,15 +85,11 @@ impl Posture {
         Self {
             running: plan.gait.running,
             idle: params.action == Action::Idle,
+            loops: matches!(params.action, Action::Idle | Action::Walk | Action::Run),
             energy: f64::from(params.style.energy),
             lean: f64::from(params.style.lean),
-            quick: if plan.gait.running {
-                plan.gait.alike_mps / 3.5
-            } else {
-                (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6)
-            },
+            quick: if plan.gait.running { plan.gait.alike_mps / 3.5 } else { (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6) },
             size: f64::from(params.height_m) / 1.75,
-            rate: pendulum_rate(params.height_m),
             person: person(params.seed, 1),
             period_secs: (plan.frames.max(2) - 1) as f64 * plan.dt_secs * plan.substeps as f64,
         }
@@ -102,7 +98,7 @@ impl Posture {
     /// How many times something that takes about `secs` fits into a clip that loops.
     fn looped(&self, secs: f64, at: f64) -> f64 {
         let whole = (self.period_secs / secs).round().max(1.0);
-        TAU * if self.idle { at * whole / self.period_secs } else { at / secs }
+        TAU * if self.loops { at * whole / self.period_secs } else { at / secs }
     }
 
     /// Slow sway of a standing body, (left, forward), metres: a few millimetres in quiet stance, centimetres when the weight is shifted.
@@ -130,9 +126,9 @@ impl Posture {
         let phase = plan.cycles(secs) * TAU;
         let wave = |shift: f64| (phase - shift * TAU).cos();
         let twice = |shift: f64| (2.0 * (phase - shift * TAU)).cos();
-        let lateral = place.speed * place.yaw_rate;
-        let into_curve = (lateral / gravity()).atan() * (0.3 + 0.7 * self.lean) * 0.85;
-        let thrust_lean = (place.thrust / gravity()).atan() * 0.45;
+        let lean = place.to_local(place.lean(gravity()));
+        let into_curve = lean.x.atan() * (0.3 + 0.7 * self.lean) * 0.85;
+        let thrust_lean = lean.y.atan() * 0.45;
         let energy = (0.4 + 0.6 * self.energy) * going;
         let quick = self.quick;
         let mut a = Angles {
@@ -149,10 +145,11 @@ impl Posture {
             a.chest_turn = degrees(11.0) * energy * wave(-0.08);
             a.chest_list = degrees(1.5) * energy * wave(0.64);
             a.chest_bow = (degrees(4.5) + degrees(4.5) * quick) * self.lean + degrees(1.5) * twice(0.06);
-            a.head_bow = degrees(3.0) + 0.25 * a.chest_bow;
+            a.head_bow = degrees(2.0) + 0.15 * a.chest_bow;
         } else {
             a.pelvis_turn = -degrees(3.0 + 2.5 * quick) * energy * wave(-0.01);
-            a.pelvis_list = degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 3.1415).cos());
+            a.pelvis_list =
+                degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 0.5 * TAU).cos());
             a.pelvis_tilt = degrees(3.0) + degrees(1.5) * going * quick * self.lean + degrees(1.2) * energy * twice(0.04);
             a.chest_turn = degrees(2.0 + 2.6 * quick) * energy * wave(0.02);
             a.chest_list = degrees(1.4) * energy * wave(0.68);

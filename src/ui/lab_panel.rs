@@ -39,7 +39,7 @@ fn view_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             ("Mean speed", format!("{speed:.2}"), "m/s"),
         ];
         for (label, value, unit) in facts {
-            kit::fact_row_ui(label, &value, unit, ui);
+            kit::value_row_ui(label, &value, unit, ui);
         }
         ui.add_space(space::S);
         if kit::button_ui(Button::new(text::EXPORT_BVH).icon(Icon::Download), ui).clicked() {

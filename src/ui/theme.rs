@@ -223,6 +223,8 @@ impl Theme {
         visuals.popup_shadow = shadow;
         visuals.text_cursor.stroke = Stroke::new(1.5, p.accent_ink);
         visuals.slider_trailing_fill = true;
+        // Hinting moves the dots of semi-bold letters onto their stems at these sizes.
+        visuals.text_options.font_hinting = false;
         visuals.disabled_alpha = 0.45;
         visuals
     }

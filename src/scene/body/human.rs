@@ -133,7 +133,7 @@ impl Human<'_> {
         // Half of the width is an adult's, half is the skeleton's own.
         let pelvis = (0.076 + (half_hips + 0.06) * 0.5).clamp(0.11, 0.19);
         let ribs = (0.074 + (half_shoulders - 0.03) * 0.5).clamp(0.11, 0.2);
-        let waist = 0.5 * (pelvis + ribs) * 0.8;
+        let waist = 0.5 * (pelvis + ribs) * 0.87;
 
         let mut spine: Vec<usize> = self.ancestors(chest).take_while(|&j| j != hips).collect();
         spine.push(hips);
@@ -159,18 +159,29 @@ impl Human<'_> {
         self.add(low, pelvis, belly, waist);
         self.flatten_last(forward, 0.70);
         self.add(belly, waist, lower_ribs, ribs * 0.90);
-        self.flatten_last(forward, 0.74);
+        self.flatten_last(forward, 0.70);
         self.add(lower_ribs, ribs * 0.90, upper_ribs, ribs);
         self.flatten_last(forward, 0.70);
 
-        for (side, arm, hip) in [(1.0, arm_left, hip_left), (-1.0, arm_right, hip_right)] {
-            // Seat, shoulder girdle and chest muscle of one side.
-            let seat = self.anchor(
+        // Seat, and the plate of the chest, from side to side.
+        let seat = |this: &Self, hip: usize| {
+            this.anchor(
                 hips,
-                self.rest[hip].lerp(hip_middle, 0.22) + up * (0.012 * s) - forward * (0.036 * s),
-            );
-            self.add(seat, 0.089, seat, 0.089);
-            let girdle = self.anchor(chest, shoulder_middle + left * (side * 0.045 * s) - up * (0.015 * s));
+                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.026 * s),
+            )
+        };
+        let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
+        self.add(seat_left, 0.083, seat_right, 0.083);
+        let breast = |this: &Self, arm: usize| {
+            this.anchor(
+                chest,
+                this.rest[arm].lerp(shoulder_middle, 0.56) - up * (0.078 * s) + forward * (0.018 * s),
+            )
+        };
+        let (breast_left, breast_right) = (breast(self, arm_left), breast(self, arm_right));
+        self.add(breast_left, 0.077, breast_right, 0.077);
+        for (side, arm) in [(1.0, arm_left), (-1.0, arm_right)] {
+            let girdle = self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
             self.add(
                 girdle,
                 0.066,
@@ -178,17 +189,15 @@ impl Human<'_> {
                     joint: arm,
                     point: Vec3::ZERO,
                 },
-                0.057,
+                0.056,
             );
-            let breast = self.anchor(
+            // The hollow of the armpit, filled.
+            let flank = self.anchor(
                 chest,
-                shoulder_middle + left * (side * 0.07 * s) - up * (0.085 * s) + forward * (0.052 * s),
+                shoulder_middle + left * (side * 0.075 * s) - up * (0.13 * s) - forward * (0.012 * s),
             );
-            let armpit = self.anchor(
-                chest,
-                self.rest[arm].lerp(shoulder_middle, 0.22) - up * (0.05 * s) + forward * (0.018 * s),
-            );
-            self.add(breast, 0.066, armpit, 0.05);
+            let armpit = self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
+            self.add(flank, 0.060, armpit, 0.046);
         }
         self.cover(chest);
         Some(())
@@ -200,32 +209,32 @@ impl Human<'_> {
         let chest = self.chest()?;
         let neck = self.ancestors(head).skip(1).take_while(|&j| j != chest).last().unwrap_or(chest);
         let shoulders = (self.rest[self.joint(Role::LeftUpperArm)?] + self.rest[self.joint(Role::RightUpperArm)?]) * 0.5;
-        let base = self.anchor(if neck == head { chest } else { neck }, shoulders.lerp(self.rest[head], 0.15));
-        let skull_base = self.on(head, up * 0.035);
-        self.add(base, 0.056, skull_base, 0.05);
+        let throat = if neck == head { chest } else { neck };
+        let base = self.anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
+        // Where the crown is: the file's own, or that of a joint at the base of the skull.
+        let told = self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
+        let crown = if (0.12..0.26).contains(&told) { told } else { 0.19 };
+        self.add(base, 0.055, self.on(head, up * (crown - 0.13) - forward * 0.004), 0.049);
         for side in Side::BOTH {
             // From the side of the neck down to the shoulder.
-            let nape = self.anchor(base.joint, shoulders.lerp(self.rest[head], 0.42) - forward * (0.008 * self.scale));
+            let nape = self.anchor(throat, shoulders.lerp(self.rest[head], 0.40) - forward * (0.012 * self.scale));
             let shoulder = Anchor {
                 joint: self.joint(Role::upper_arm(side))?,
-                point: up * (0.008 * self.scale),
+                point: -up * (0.004 * self.scale),
             };
-            self.add(nape, 0.042, shoulder, 0.042);
+            self.add(nape, 0.044, shoulder, 0.047);
         }
-        // The head's own size where the file tells it: from the joint to its crown.
-        let crown = self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up));
-        let size = (crown / (0.2 * self.scale)).clamp(0.88, 1.15);
         let (cranium, chin) = (
-            self.on(head, (up * 0.122 - forward * 0.002) * size),
-            self.on(head, (up * 0.040 + forward * 0.040) * size),
+            self.on(head, up * (crown - 0.094)),
+            self.on(head, up * (crown - 0.168) + forward * 0.038),
         );
         let (brow, tip) = (
-            self.on(head, (up * 0.112 + forward * 0.084) * size),
-            self.on(head, (up * 0.076 + forward * 0.103) * size),
+            self.on(head, up * (crown - 0.100) + forward * 0.083),
+            self.on(head, up * (crown - 0.138) + forward * 0.098),
         );
-        self.add(cranium, 0.094 * size, chin, 0.058 * size);
-        self.flatten_last(left, 0.84);
-        self.add(brow, 0.011 * size, tip, 0.0135 * size);
+        self.add(cranium, 0.092, chin, 0.056);
+        self.flatten_last(left, 0.83);
+        self.add(brow, 0.010, tip, 0.0125);
         self.cover(head);
         Some(())
     }
@@ -329,28 +338,34 @@ impl Human<'_> {
         };
         let forward = along * cos + rise * sin;
         let up = rise * cos - along * sin;
-        // The middle of the ball of the foot lies 2.6 cm over the sole.
+        // The middle of the ball of the foot lies 2.2 cm over the sole.
         let ball_over_ankle = bone.dot(up) / s;
         let ball = forward * (bone.dot(forward) / s) + up * ball_over_ankle;
-        let heel = -forward * 0.042 + up * (ball_over_ankle + 0.006);
+        let heel = -forward * 0.030 + up * (ball_over_ankle + 0.012);
         let (heel, ball_on_foot) = (self.on(ankle, heel), self.on(ankle, ball));
-        self.add(zero(ankle), 0.036, heel, 0.034);
-        self.add(heel, 0.033, ball_on_foot, 0.042);
-        self.flatten_last(up, 0.70);
+        self.add(zero(ankle), 0.037, heel, 0.033);
         self.add(
-            self.on(ankle, up * 0.004 + forward * 0.012),
-            0.036,
-            self.on(ankle, ball - forward * 0.012 + up * 0.006),
-            0.03,
+            self.on(ankle, -forward * 0.024 + up * (ball_over_ankle + 0.002)),
+            0.034,
+            ball_on_foot,
+            0.043,
         );
+        self.flatten_last(up, 0.52);
+        // The instep falls from the ankle to the ball.
+        let (instep, ball_top) = (
+            self.on(ankle, forward * 0.010 - up * 0.002),
+            self.on(ankle, ball - forward * 0.008 + up * 0.007),
+        );
+        self.add(instep, 0.038, ball_top, 0.030);
+        self.flatten_last(self.axes.left, 1.12);
         let (toe_joint, toe_root) = toe.map_or((ankle, ball), |toe| (toe, Vec3::ZERO));
         self.add(
             self.on(toe_joint, toe_root),
-            0.042,
-            self.on(toe_joint, toe_root + forward * 0.058 - up * 0.004),
-            0.032,
+            0.043,
+            self.on(toe_joint, toe_root + forward * 0.052 - up * 0.005),
+            0.033,
         );
-        self.flatten_last(up, 0.62);
+        self.flatten_last(up, 0.50);
         self.cover(toe_joint);
         for joint in ankle + 1..self.rest.len() {
             if self.ancestors(joint).any(|a| a == ankle) {

@@ -53,6 +53,17 @@ impl Shape {
     }
 }
 
+/// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.
+fn set_balls_apart(shapes: &mut [Shape]) {
+    for index in 1..shapes.len() {
+        let (before, rest) = shapes.split_at_mut(index);
+        let Some(shape) = rest.first_mut() else { continue };
+        if before.iter().any(|other| other.b == shape.a && other.radius_b == shape.radius_a) {
+            shape.radius_a *= 0.985;
+        }
+    }
+}
+
 /// The shapes of one skeleton's body, made once and posed every frame.
 ///
 /// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the skeleton's own; girths follow the body
@@ -71,6 +82,7 @@ impl Body {
             .and_then(|roles| human::shapes(skeleton, &rest, roles))
             .unwrap_or_else(|| bones::shapes(skeleton, &rest));
         shapes.retain(|s| s.radius_a.is_finite() && s.radius_b.is_finite() && s.a.point.is_finite() && s.b.point.is_finite());
+        set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         Self { shapes }

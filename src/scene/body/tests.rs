@@ -81,7 +81,10 @@ fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
         let mirrored = |p: Vec3| p * Vec3::new(-1.0, 1.0, 1.0);
         let twin = limbs.iter().any(|other| {
             let straight = other.a.distance(mirrored(limb.a)) < 1e-4 && other.b.distance(mirrored(limb.b)) < 1e-4;
-            straight && (other.radius_a - limb.radius_a).abs() < 1e-5 && (other.radius_b - limb.radius_b).abs() < 1e-5
+            let turned = other.b.distance(mirrored(limb.a)) < 1e-4 && other.a.distance(mirrored(limb.b)) < 1e-4;
+            let same = |x: f32, y: f32| (x - y).abs() < 1e-5;
+            (straight && same(other.radius_a, limb.radius_a) && same(other.radius_b, limb.radius_b))
+                || (turned && same(other.radius_a, limb.radius_b) && same(other.radius_b, limb.radius_a))
         });
         assert!(twin, "no mirror image of {limb:?}");
     }
@@ -136,9 +139,9 @@ fn legs_that_rest_upside_down_get_the_same_shapes() {
     let upright = adult();
     let mut joints = upright.joints().to_vec();
     for joint in [1, 5] {
-        for below in joint + 1..joint + 4 {
+        for below in &mut joints[joint + 1..joint + 4] {
             // Half a turn about x of everything below the hip joints.
-            joints[below].offset = joints[below].offset * Vec3::new(1.0, -1.0, -1.0);
+            below.offset *= Vec3::new(1.0, -1.0, -1.0);
         }
     }
     let odd = Skeleton::new(joints).unwrap();

@@ -135,9 +135,8 @@ impl<'a> Button<'a> {
             Tone::Secondary => (raised, if hovered { p.line_strong } else { p.line }, p.text),
             Tone::Quiet if self.selected => (p.pressed, Color32::TRANSPARENT, p.text),
             Tone::Quiet if hovered || down => (raised, Color32::TRANSPARENT, p.text),
-            Tone::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
             Tone::Danger if hovered || down => (p.bad_wash, Color32::TRANSPARENT, p.bad),
-            Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
+            Tone::Quiet | Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
         }
     }
 }
@@ -241,7 +240,7 @@ pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
     let at = super::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     let under = if response.hovered() { ink } else { palette.line_strong };
     ui.painter()
-        .hline(at.x_range(), at.bottom(), Stroke::new(theme_of(ui).hairline(), under));
+        .hline(at.x_range(), at.bottom() - 1.0, Stroke::new(theme_of(ui).hairline(), under));
     focus_ring(at, radius::S, &response, ui);
     response.widget_info(|| WidgetInfo::labeled(Role::Link, enabled, text));
     response

@@ -3,7 +3,7 @@
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 /// What a coloured word means. The colour never says it alone: the word does too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,10 +114,12 @@ pub(crate) fn paint_chip(text: &str, mood: Mood, right_center: Pos2, ui: &Ui) ->
 pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
     let palette = palette_of(ui);
     let (fill, ink) = part.fill(palette);
-    ui.painter().rect_filled(rect, radius::S + 1, fill);
     if part == Part::None {
+        let line = Stroke::new(theme_of(ui).hairline(), palette.line_strong);
+        ui.painter().rect_stroke(rect, radius::S + 1, line, StrokeKind::Inside);
         dot(rect.center(), ink, 1.6 * theme_of(ui).scale(), ui.painter());
     } else {
+        ui.painter().rect_filled(rect, radius::S + 1, fill);
         let galley = line_of(&[Run::new(part.letter(), Type::SmallStrong, ink)], f32::INFINITY, ui);
         put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }

@@ -4,7 +4,7 @@ use super::chip::{Part, paint_badge};
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, focus_ring, full_width, line_of, paragraph, put};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, Rect, Response, Role, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
+use eframe::egui::{Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 /// What the library knows of a clip at a glance.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,11 +57,12 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 
     // The pointer may be on a button inside the row: the row is hovered then as well.
     let hovered = response.contains_pointer();
-    if row.selected {
-        ui.painter().rect_filled(rect, radius::M, palette.pressed);
-    } else if hovered {
-        ui.painter().rect_filled(rect, radius::M, palette.hover);
-    }
+    let ground = match (row.selected, hovered) {
+        (true, _) => palette.pressed,
+        (false, true) => palette.hover,
+        (false, false) => Color32::TRANSPARENT,
+    };
+    ui.painter().rect_filled(rect, radius::M, ground);
     let badge = Rect::from_min_size(pos2(rect.left() + pad, rect.top() + pad + 3.0), Vec2::splat(badge_side));
     paint_badge(row.part, badge, ui);
 
@@ -111,7 +112,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     if show_actions {
         for (index, &(icon, hint)) in row.actions.iter().enumerate().rev() {
             let at = Rect::from_center_size(pos2(right - HIT / 2.0, middle), Vec2::splat(HIT));
-            if small_icon_ui(icon, hint, at, palette.hover, ui).clicked() {
+            if small_icon_ui(icon, hint, id.with(("action", index)), at, ground, ui).clicked() {
                 action = Some(index);
             }
             right -= HIT;
@@ -127,10 +128,9 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 }
 
 /// An icon inside another widget, pressed by itself.
-pub(super) fn small_icon_ui(icon: Icon, name: &str, rect: Rect, ground: Color32, ui: &mut Ui) -> Response {
+pub(super) fn small_icon_ui(icon: Icon, name: &str, id: Id, rect: Rect, ground: Color32, ui: &Ui) -> Response {
     let palette = palette_of(ui);
-    let builder = UiBuilder::new().id_salt(("small icon", name)).max_rect(rect);
-    let response = ui.scope_builder(builder, |ui| ui.allocate_rect(rect, Sense::click())).inner;
+    let response = ui.interact(rect, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
     let hot = response.hovered() || response.has_focus();
     if hot {
         ui.painter().rect_filled(rect.shrink(1.0), radius::S, palette.pressed);

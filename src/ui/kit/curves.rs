@@ -1,7 +1,7 @@
 //! Curves under the timeline, on the same axis of time.
 
 use super::paint::{Run, line_of, put};
-use super::timeline::{TimeAxis, clipped, hovered_time, nice_step};
+use super::timeline::{TimeAxis, hovered_time, nice_step};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2b, pos2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints};
@@ -67,14 +67,14 @@ impl Curves<'_> {
     }
 }
 
-/// Draws the curves into `plot`, whose width is the axis of time.
-pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, ui: &mut Ui) {
+/// Draws the curves into `plot`, whose width is the axis of time; with `scale_labels`, what its lines stand for is written before it.
+pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, scale_labels: bool, ui: &mut Ui) {
     if plot.width() < 2.0 || plot.height() < 2.0 || axis.duration <= 0.0 {
         return;
     }
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let (low, high) = curves.bounds();
-    let step = nice_step(high - low, f64::from(plot.height()) / 26.0);
+    let step = nice_step(high - low, f64::from(plot.height() / (24.0 * theme.scale())));
     let first = (low / step).ceil();
     let marks = move || {
         (0..)
@@ -124,17 +124,15 @@ pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, ui: &mu
             }
         });
     });
-    // The scale of values: the lowest and the highest line say what they are, the others follow.
-    let shown: Vec<f64> = marks().collect();
+    if !scale_labels {
+        return;
+    }
     let decimals = usize::from(step < 1.0) + usize::from(step < 0.1) + usize::from(step < 0.01);
-    for value in [shown.first(), shown.last().filter(|_| shown.len() > 1)].into_iter().flatten() {
+    for value in marks() {
         let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
         let text = format!("{value:.decimals$}").replace('-', "−");
         let label = line_of(&[Run::new(&text, Type::Small, palette.muted)], f32::INFINITY, ui);
-        let place = pos2(plot.right() - 2.0, y.max(plot.top() + label.size().y));
-        let at = Align2::RIGHT_BOTTOM.anchor_size(place, label.size());
-        clipped(plot, ui).rect_filled(at.expand2(vec2(2.0, -2.0)), 2.0, palette.panel.gamma_multiply(0.7));
-        put(&clipped(plot, ui), place, Align2::RIGHT_BOTTOM, label);
+        put(ui.painter(), pos2(plot.left() - space::S, y), Align2::RIGHT_CENTER, label);
     }
 }
 

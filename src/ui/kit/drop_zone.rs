@@ -36,19 +36,22 @@ pub(crate) fn drop_zone_ui(sentence: &str, links: &[&str], hot: bool, ui: &mut U
         vec2(total.min(width), link_height),
     );
     let mut pressed = None;
-    let builder = UiBuilder::new().max_rect(row).layout(Layout::left_to_right(Align::Center));
-    ui.scope_builder(builder, |ui| {
-        ui.spacing_mut().item_spacing.x = space::S;
-        for (index, link) in links.iter().enumerate() {
-            if index > 0 {
-                let (_, at) = ui.allocate_space(dot.size());
-                put(ui.painter(), at.center(), Align2::CENTER_CENTER, dot.clone());
-            }
-            if link_ui(link, ui).clicked() {
-                pressed = Some(index);
-            }
+    let builder = UiBuilder::new()
+        .id_salt(sentence)
+        .max_rect(row)
+        .layout(Layout::left_to_right(Align::Center));
+    // A child of its own: the zone's space is taken already.
+    let mut inner = ui.new_child(builder);
+    inner.spacing_mut().item_spacing.x = space::S;
+    for (index, link) in links.iter().enumerate() {
+        if index > 0 {
+            let (_, at) = inner.allocate_space(dot.size());
+            put(inner.painter(), at.center(), Align2::CENTER_CENTER, dot.clone());
         }
-    });
+        if link_ui(link, &mut inner).clicked() {
+            pressed = Some(index);
+        }
+    }
     pressed
 }
 

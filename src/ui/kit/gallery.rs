@@ -12,6 +12,7 @@ use egui_kittest::{
 
 /// What the mock remembers between frames: enough to be played with.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "switches that have nothing to do with each other")]
 struct Mock {
     lab: usize,
     mode: usize,
@@ -93,7 +94,7 @@ fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
                 ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
             });
         Panel::bottom("time")
-            .exact_size(130.0)
+            .exact_size(152.0)
             .frame(plain(p).inner_margin(Margin::symmetric(16, 10)))
             .show(ui, |ui| time_ui(mock, phone, ui));
     } else {
@@ -113,7 +114,7 @@ fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
             .exact_size(232.0 * theme.scale())
             .resizable(false)
             .frame(library)
-            .show(ui, |ui| library_ui(mock, ui));
+            .show(ui, |ui| ScrollArea::vertical().show(ui, |ui| library_ui(mock, ui)));
         let parameters = plain(p).inner_margin(Margin::symmetric(16, 12));
         Panel::right("parameters")
             .exact_size(292.0 * theme.scale())
@@ -271,7 +272,7 @@ fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     ui.horizontal(|ui| {
         button_ui(Button::new("Swap").icon(Icon::Swap), ui);
         button_ui(Button::new("Reset").quiet().icon(Icon::Undo), ui);
-        button_ui(Button::new("Remove").tone(Tone::Danger).icon(Icon::Trash), ui);
+        button_ui(Button::icon_only(Icon::Trash, "Remove").tone(Tone::Danger), ui);
     });
 }
 
@@ -284,6 +285,7 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         ("10", "0.17 s", "roughest", Mood::Bad),
     ];
     let count = if phone { 1 } else { 3 };
+    let mut footer_top = stage.bottom();
     let width = (stage.width() / count as f32).floor();
     for (index, &(strong, secondary, chip, mood)) in panes.iter().take(count).enumerate() {
         let pane = Rect::from_min_size(pos2(stage.left() + index as f32 * width, stage.top()), vec2(width, stage.height()));
@@ -329,10 +331,10 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
                 hint: "",
             },
         ];
-        pane_footer_ui(&metrics, pane, ui);
+        footer_top = footer_top.min(pane_footer_ui(&metrics, pane, ui).top());
     }
     if mock.caption && !phone {
-        let above = stage.with_max_y(stage.bottom() - 78.0);
+        let above = stage.with_max_y(footer_top - space::S);
         caption_ui(
             "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
             above,

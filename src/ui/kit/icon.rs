@@ -1,6 +1,6 @@
 //! Signs, drawn as strokes: no icon font has to be downloaded, and they take the colour of what they stand in.
 
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use eframe::egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 use std::f32::consts::{PI, TAU};
 
 /// A sign of the interface.
@@ -335,9 +335,4 @@ fn curve(before: &[(f32, f32)], center: (f32, f32), radius: f32, from: f32, to: 
         .chain(arc(center, radius, from, to))
         .chain(after.iter().copied())
         .collect()
-}
-
-/// Where a sign of `size` points stands so that it is centred on `pos` vertically and begins there.
-pub(crate) fn icon_rect(pos: Pos2, size: f32) -> Rect {
-    Align2::LEFT_CENTER.anchor_size(pos, Vec2::splat(size))
 }

@@ -48,7 +48,13 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let indent = space::S + icon_size + space::S;
     let gap = if item.shortcut.is_empty() { 0.0 } else { 28.0 };
     let needed = indent + text.size().x + gap + shortcut.size().x + space::M;
-    let (rect, response) = ui.allocate_exact_size(vec2(needed.max(ui.available_width()), theme.row_height()), Sense::click());
+    // While the menu is being measured it is as wide as its widest line; then every line is as wide as the menu.
+    let width = if ui.is_sizing_pass() {
+        needed
+    } else {
+        needed.max(ui.available_width())
+    };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, theme.row_height()), Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     if enabled && (response.hovered() || response.has_focus()) {
         ui.painter().rect_filled(rect, radius::M, palette.pressed);
@@ -73,7 +79,8 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
 
 /// A hairline between groups of a menu.
 pub(crate) fn menu_line_ui(ui: &mut Ui) {
-    let rect = full_width(9.0, ui);
+    let width = if ui.is_sizing_pass() { 0.0 } else { ui.available_width() };
+    let (_, rect) = ui.allocate_space(vec2(width, 9.0));
     let stroke = Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
     ui.painter().hline(rect.x_range(), rect.center().y, stroke);
 }

@@ -1,10 +1,10 @@
 //! Measured numbers in a row: large, with what they measure below.
 
-use super::chip::Mood;
 use super::paint::{Run, line_of, put};
 use super::words::Words;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{Align2, Galley, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
 
 /// How a number compares to the same one in the other panes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,39 +33,15 @@ pub(crate) struct Metric<'a> {
 
 /// Numbers side by side, in further rows where there is no room. The best and the worst are marked in colour and in words.
 pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
-    let scale = theme.scale();
-    let gap = space::L;
-    let height = (36.0 * scale).round();
-    let width = ui.available_width();
-    let origin = ui.cursor().min;
-    let mut at = vec2(0.0, 0.0);
-    let mut bottom = 0.0_f32;
-    for (index, metric) in metrics.iter().enumerate() {
-        let (mood, word) = match metric.rank {
-            Rank::Middle => (Mood::Plain, ""),
-            Rank::Best => (Mood::Good, words.best),
-            Rank::Worst => (Mood::Bad, words.worst),
-        };
-        let ink = if mood == Mood::Plain {
-            palette.text
-        } else {
-            mood.colors(palette).0
-        };
-        let mut number = vec![Run::new(metric.value, Type::Metric, ink)];
-        if !word.is_empty() {
-            number.push(Run::new(word, Type::Small, ink).after(space::XS + 1.0));
-        }
-        let number = line_of(&number, f32::INFINITY, ui);
-        let label = line_of(&[Run::new(metric.label, Type::Small, palette.muted)], f32::INFINITY, ui);
-        let size = vec2(number.size().x.max(label.size().x).ceil(), height);
-        if at.x > 0.0 && at.x + size.x > width {
-            at = vec2(0.0, at.y + height + space::S);
-        }
-        let rect = Rect::from_min_size(origin + at, size);
+    let (rects, total) = places(metrics, ui.available_width(), ui);
+    let (_, space) = ui.allocate_space(vec2(ui.available_width(), total));
+    let height = row_height(ui);
+    for (index, (metric, rect)) in metrics.iter().zip(rects).enumerate() {
+        let rect = rect.translate(space.min.to_vec2());
+        let (number, label, word) = galleys(metric, ui);
         put(
             ui.painter(),
-            pos2(rect.left(), rect.top() + 0.52 * height),
+            pos2(rect.left(), rect.top() + 0.54 * height),
             Align2::LEFT_BOTTOM,
             number,
         );
@@ -75,8 +51,49 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
         if !metric.hint.is_empty() {
             response.on_hover_text(metric.hint);
         }
-        at.x += size.x + gap;
-        bottom = bottom.max(rect.bottom() - origin.y);
     }
-    ui.allocate_space(vec2(width, bottom));
+}
+
+/// How high [`metric_strip_ui`] is where it is `width` wide.
+pub(crate) fn metric_strip_height(metrics: &[Metric<'_>], width: f32, ui: &Ui) -> f32 {
+    places(metrics, width, ui).1
+}
+
+fn row_height(ui: &Ui) -> f32 {
+    (36.0 * theme_of(ui).scale()).round()
+}
+
+/// The number with its verdict, what it measures, and the verdict's word.
+fn galleys(metric: &Metric<'_>, ui: &Ui) -> (Arc<Galley>, Arc<Galley>, &'static str) {
+    let (palette, words) = (palette_of(ui), Words::of(ui));
+    let (ink, word) = match metric.rank {
+        Rank::Middle => (palette.text, ""),
+        Rank::Best => (palette.good, words.best),
+        Rank::Worst => (palette.bad, words.worst),
+    };
+    let mut number = vec![Run::new(metric.value, Type::Metric, ink)];
+    if !word.is_empty() {
+        number.push(Run::new(word, Type::Small, ink).after(space::XS + 1.0));
+    }
+    let number = line_of(&number, f32::INFINITY, ui);
+    let label = line_of(&[Run::new(metric.label, Type::Small, palette.muted)], f32::INFINITY, ui);
+    (number, label, word)
+}
+
+/// Where each stands, from the origin, and how high all are together.
+fn places(metrics: &[Metric<'_>], width: f32, ui: &Ui) -> (Vec<Rect>, f32) {
+    let height = row_height(ui);
+    let mut at = pos2(0.0, 0.0);
+    let mut rects = Vec::with_capacity(metrics.len());
+    for metric in metrics {
+        let (number, label, _) = galleys(metric, ui);
+        let size = vec2(number.size().x.max(label.size().x).ceil(), height);
+        if at.x > 0.0 && at.x + size.x > width {
+            at = pos2(0.0, at.y + height + space::XS);
+        }
+        rects.push(Rect::from_min_size(at, size));
+        at.x += size.x + space::L;
+    }
+    let bottom = rects.last().map_or(0.0, Rect::bottom);
+    (rects, bottom)
 }

@@ -58,14 +58,15 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         let label = ui.interact(at, ui.make_persistent_id(("notice", notice.text)), Sense::hover());
         label.widget_info(|| WidgetInfo::labeled(Role::Alert, true, notice.text));
         let close = Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
-        let hit = super::clip_row::small_icon_ui(Icon::Close, words.dismiss, close, Color32::TRANSPARENT, ui);
+        let close_id = ui.make_persistent_id(("dismiss", notice.text));
+        let hit = super::clip_row::small_icon_ui(Icon::Close, words.dismiss, close_id, close, Color32::TRANSPARENT, ui);
         if hit.clicked() {
             event = Some(NoticeEvent::Dismissed);
         }
         if !notice.action.is_empty() {
             ui.add_space(space::XS);
             ui.horizontal(|ui| {
-                ui.add_space(text_left - ui.spacing().item_spacing.x);
+                ui.add_space(text_left);
                 if button_ui(Button::new(notice.action), ui).clicked() {
                     event = Some(NoticeEvent::Acted);
                 }
@@ -143,27 +144,23 @@ pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: 
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let scale = theme.scale();
     let width = ui.available_width();
-    let head_height = HIT.max(20.0 * scale);
+    let head_height = theme.row_height();
     let (_, rect) = ui.allocate_space(vec2(width, head_height + 6.0 * scale));
     let head = Rect::from_min_size(rect.min, vec2(width, head_height));
-    let mut stopped = false;
     let builder = UiBuilder::new()
         .id_salt(label)
         .max_rect(head)
         .layout(Layout::right_to_left(Align::Center));
-    let used = ui.scope_builder(builder, |ui| {
-        stopped = icon_button_ui(Icon::Close, words.cancel, ui).clicked();
-        ui.min_rect()
-    });
-    let detail_right = used.inner.left() - space::XS;
-    let detail = line_of(&[Run::new(detail, Type::Small, palette.muted)], width * 0.5, ui);
-    let detail = put(ui.painter(), pos2(detail_right, head.center().y), Align2::RIGHT_CENTER, detail);
-    let galley = line_of(
-        &[Run::new(label, Type::Label, palette.text)],
-        detail.left() - head.left() - space::S,
-        ui,
-    );
-    put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);
+    let mut inner = ui.new_child(builder);
+    let stopped = icon_button_ui(Icon::Close, words.cancel, &mut inner).clicked();
+    let right = inner.min_rect().left() - space::XS;
+    // What it does comes first; how far it is takes what is left, and the bar says it too.
+    let galley = line_of(&[Run::new(label, Type::Label, palette.text)], right - head.left(), ui);
+    let said = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);
+    let detail = line_of(&[Run::new(detail, Type::Small, palette.muted)], f32::INFINITY, ui);
+    if detail.size().x < right - said.right() - space::S {
+        put(ui.painter(), pos2(right, head.center().y), Align2::RIGHT_CENTER, detail);
+    }
 
     let track = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 4.0 * scale), rect.max);
     ui.painter().rect_filled(track, 2.0 * scale, palette.track);

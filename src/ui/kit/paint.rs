@@ -54,10 +54,24 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
         break_on_newline: false,
         ..LayoutJob::default()
     };
+    let largest = runs.iter().map(|run| theme.font(run.step).size).fold(0.0, f32::max);
     for run in runs {
-        job.append(run.text, run.gap, format(theme, run.step, run.color));
+        let mut format = format(theme, run.step, run.color);
+        format.line_height = Some(baseline_height(format.font_id.size, largest));
+        job.append(run.text, run.gap, format);
     }
     ui.fonts_mut(|fonts| fonts.layout_job(job))
+}
+
+/// The line height that puts text of `size` on one baseline with text of size `largest`, set as [`format`] sets it.
+///
+/// egui aligns the lower edges of line boxes and centres text in a box of given height. With ascent `a` and descent `d` (shares of
+/// the size), the baseline lies `(height + (a - d) size) / 2` below the upper edge of its own box; asking for `d · largest` below
+/// it for all gives the height.
+fn baseline_height(size: f32, largest: f32) -> f32 {
+    // Inter's ascender and descender, of 2048 units to the em.
+    let (ascent, descent) = (1984.0 / 2048.0, 494.0 / 2048.0);
+    (ascent - descent) * size + 2.0 * descent * largest
 }
 
 /// Sets text in as many lines as it needs.

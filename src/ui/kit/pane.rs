@@ -1,7 +1,7 @@
 //! What lies over the stage: the one difference of a pane at its top, its numbers at its bottom.
 
 use super::chip::{Mood, chip_size, paint_chip};
-use super::metrics::{Metric, metric_strip_ui};
+use super::metrics::{Metric, metric_strip_height, metric_strip_ui};
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2};
@@ -40,11 +40,14 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     if !title.text.is_empty() {
         runs.push(Run::new(title.text, Type::Body, palette.text).after(space::XS + 1.0));
     }
+    let essential = runs.len();
     if !title.secondary.is_empty() {
         runs.push(Run::new("·", Type::Body, palette.muted).after(space::XS + 1.0));
         runs.push(Run::new(title.secondary, Type::Body, palette.muted).after(space::XS + 1.0));
     }
-    let galley = line_of(&runs, right - left, ui);
+    // Where there is little room, what is said twice gives way before anything is cut.
+    let fits = line_of(&runs, f32::INFINITY, ui).size().x <= right - left;
+    let galley = line_of(if fits { &runs } else { &runs[..essential] }, right - left, ui);
     put(ui.painter(), pos2(left, strip.center().y), Align2::LEFT_CENTER, galley);
     let response = ui.interact(
         strip,
@@ -56,19 +59,18 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     strip
 }
 
-/// The numbers over the bottom of `pane`.
-pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) {
+/// The numbers over the bottom of `pane`. Returns the strip they stand in, so that a caption can keep clear of it.
+pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) -> Rect {
     if metrics.is_empty() {
-        return;
+        return pane.with_min_y(pane.bottom());
     }
-    let scale = theme_of(ui).scale();
-    let height = (36.0 * scale).round() + 2.0 * space::M;
+    let height = metric_strip_height(metrics, pane.width() - 2.0 * space::M, ui) + 2.0 * space::M;
     let strip = Rect::from_min_max(pos2(pane.left(), pane.bottom() - height), pane.max);
     scrim(strip.with_min_y(strip.top() - space::L), Direction::BottomUp, ui);
     let inner = strip.shrink(space::M);
-    ui.scope_builder(UiBuilder::new().id_salt(("footer", pane.min.x.to_bits())).max_rect(inner), |ui| {
-        metric_strip_ui(metrics, ui)
-    });
+    let builder = UiBuilder::new().id_salt(("footer", pane.min.x.to_bits())).max_rect(inner);
+    metric_strip_ui(metrics, &mut ui.new_child(builder));
+    strip
 }
 
 /// The ground's colour, fading into the picture, so that text stays legible over bodies.

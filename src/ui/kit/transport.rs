@@ -47,7 +47,7 @@ pub(crate) enum TransportEvent {
 pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<TransportEvent> {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let scale = theme.scale();
-    let height = (36.0 * scale).round();
+    let height = transport_height(ui);
     let width = ui.available_width();
     // On a phone, the steps give way: the timeline itself is there to scrub.
     let narrow = width < 520.0 * scale;
@@ -57,7 +57,8 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         .id_salt("transport")
         .max_rect(row)
         .layout(Layout::left_to_right(Align::Center));
-    let right_end = ui.scope_builder(builder, |ui| {
+    let right_end = {
+        let ui = &mut ui.new_child(builder);
         ui.spacing_mut().item_spacing.x = 2.0;
         if play_button_ui(transport.playing, ui) {
             event = Some(TransportEvent::SetPlaying(!transport.playing));
@@ -89,11 +90,16 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         let (_, rect) = ui.allocate_space(vec2(galley.size().x, height));
         put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
         rect.right()
-    });
-    let left = right_end.inner + space::L;
+    };
+    let left = right_end + space::L;
     let caption = line_of(&[Run::new(transport.caption, Type::Body, palette.muted)], row.right() - left, ui);
     put(ui.painter(), pos2(row.right(), row.center().y), Align2::RIGHT_CENTER, caption);
     event
+}
+
+/// How high [`transport_ui`] is.
+pub(crate) fn transport_height(ui: &Ui) -> f32 {
+    (36.0 * theme_of(ui).scale()).round()
 }
 
 /// The round button that starts and stops time. Was it pressed?

@@ -1,0 +1,58 @@
+//! Words to type, and values only to read.
+
+use super::paint::{Run, faded, full_width, line_of, put};
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2};
+
+/// What was done to a text field.
+#[derive(Debug)]
+pub(crate) struct FieldResponse {
+    /// The text was finished: Enter, or the focus went elsewhere. Esc does not finish.
+    pub(crate) committed: bool,
+    /// The field.
+    pub(crate) response: Response,
+}
+
+/// A line of text to type, as wide as the panel. `name` is its accessible name, `hint` stands in it while it is empty.
+pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut Ui) -> FieldResponse {
+    let theme = theme_of(ui);
+    let size = vec2(ui.available_width(), theme.row_height());
+    let edit = TextEdit::singleline(text)
+        .hint_text(hint)
+        .font(theme.font(Type::Body))
+        .margin(Margin::symmetric(8, 5))
+        .desired_width(size.x);
+    let response = ui.add_sized(size, edit).accessible_name(name);
+    // egui may report the loss of the focus in two frames; the text is finished once.
+    let typing_id = response.id.with("typing");
+    let was_typing = ui.data(|data| data.get_temp(typing_id)).unwrap_or(false);
+    let typing = response.has_focus();
+    ui.data_mut(|data| data.insert_temp(typing_id, typing));
+    let escaped = ui.input(|input| input.key_pressed(Key::Escape));
+    FieldResponse {
+        committed: was_typing && !typing && !escaped,
+        response,
+    }
+}
+
+/// A value that is found, not set: the label left, the number and its unit right, as in a slider's row.
+pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) -> Response {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let row = full_width((22.0 * theme.scale()).round(), ui);
+    let mut runs = vec![Run::new(value, Type::Number, faded(palette.text, enabled))];
+    if !unit.is_empty() {
+        runs.push(Run::new(unit, Type::Label, faded(palette.muted, enabled)).after(space::XS));
+    }
+    let number = line_of(&runs, row.width() * 0.6, ui);
+    let at = put(ui.painter(), row.right_center(), Align2::RIGHT_CENTER, number);
+    let label_galley = line_of(
+        &[Run::new(label, Type::Label, faded(palette.text, enabled))],
+        at.left() - row.left() - space::S,
+        ui,
+    );
+    put(ui.painter(), pos2(row.left(), row.center().y), Align2::LEFT_CENTER, label_galley);
+    let response = ui.interact(row, ui.make_persistent_id(("value", label)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, enabled, format!("{label}: {value} {unit}")));
+    response
+}

@@ -1,0 +1,165 @@
+//! The line above the track: the label, who decides, the value and its unit, and the field to type one.
+
+use super::super::paint::{Run, faded, focus_ring, line_of, put};
+use super::super::words::Words;
+use super::{SliderResponse, SliderRow, Source};
+use crate::ui::theme::{self, Type, palette_of, space, theme_of};
+use eframe::egui::{self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+
+/// The line with label and value; returns the label, which may be double-clicked.
+pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: &mut SliderResponse, ui: &mut Ui) -> Response {
+    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let enabled = ui.is_enabled();
+    let (text, muted) = (faded(palette.text, enabled), faded(palette.muted, enabled));
+    let shown = out.changed.unwrap_or(value);
+
+    let number = line_of(&[Run::new(&row.written(shown), Type::Number, text)], f32::INFINITY, ui);
+    let mut tail = Vec::new();
+    if !row.unit.is_empty() {
+        tail.push(Run::new(row.unit, Type::Label, muted).after(space::XS));
+    }
+    if !row.secondary.is_empty() {
+        tail.push(Run::new("·", Type::Label, muted).after(space::XS));
+        tail.push(Run::new(row.secondary, Type::Label, muted).after(space::XS));
+    }
+    let tail = line_of(&tail, f32::INFINITY, ui);
+    let mut right = head.right();
+    put(ui.painter(), pos2(right, head.center().y), Align2::RIGHT_CENTER, tail.clone());
+    right -= tail.size().x;
+
+    let pad = space::XS;
+    let number_rect = Align2::RIGHT_CENTER
+        .anchor_size(pos2(right, head.center().y), number.size())
+        .expand2(vec2(pad, 2.0));
+    let edit_id = id.with("typed");
+    let typed = ui.data(|data| data.get_temp::<String>(edit_id));
+    if let Some(mut typed) = typed {
+        let wide = number_rect.width().max(64.0 * theme.scale());
+        let field = Rect::from_min_max(
+            pos2(number_rect.right() - wide, head.top() - 1.0),
+            pos2(number_rect.right(), head.bottom() + 1.0),
+        );
+        edit_ui(&mut typed, edit_id, field, row, out, ui);
+        right = field.left();
+    } else {
+        let mut value_hit = number_rect;
+        value_hit.set_left(value_hit.left().min(value_hit.right() - theme::HIT));
+        let number_response = ui
+            .interact(value_hit, id.with("value"), Sense::click())
+            .on_hover_cursor(CursorIcon::Text);
+        if number_response.hovered() && enabled {
+            ui.painter().rect_filled(number_rect, theme::radius::S, palette.hover);
+        }
+        put(ui.painter(), number_rect.center(), Align2::CENTER_CENTER, number);
+        focus_ring(number_rect, theme::radius::S, &number_response, ui);
+        number_response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, format!("{}: {}", row.label, words.type_value)));
+        if number_response.clicked() {
+            let start = row.written(value).replace('−', "-");
+            ui.data_mut(|data| data.insert_temp(edit_id, start));
+            ui.data_mut(|data| data.insert_temp(edit_id.with("fresh"), true));
+        }
+        number_response.on_hover_text(words.type_value);
+        right = value_hit.left();
+    }
+
+    if row.source != Source::Manual {
+        right = auto_tag_ui(row, pos2(right - space::XS, head.center().y), id, out, ui).left();
+    }
+
+    let label = line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
+    let rect = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, label);
+    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(words.reset_hint)
+}
+
+/// The word that says who decides: filled while the app does; an outline to press while the user does and the app could.
+fn auto_tag_ui(row: &SliderRow<'_>, right_center: Pos2, id: Id, out: &mut SliderResponse, ui: &Ui) -> Rect {
+    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let auto = row.source == Source::Auto;
+    let hit_id = id.with("auto");
+    let hot = !auto
+        && ui
+            .ctx()
+            .read_response(hit_id)
+            .is_some_and(|response| response.hovered() || response.has_focus());
+    let ink = if auto || hot { palette.accent_ink } else { palette.muted };
+    let tag = line_of(&[Run::new(words.auto, Type::SmallStrong, ink)], f32::INFINITY, ui);
+    let at = Align2::RIGHT_CENTER.anchor_size(right_center, tag.size() + vec2(12.0, 4.0));
+    let corner = at.height() / 2.0;
+    if auto || hot {
+        ui.painter().rect_filled(at, corner, palette.accent_wash);
+    } else {
+        let line = Stroke::new(theme.hairline(), palette.line_strong);
+        ui.painter().rect_stroke(at, corner, line, StrokeKind::Inside);
+    }
+    put(ui.painter(), at.center(), Align2::CENTER_CENTER, tag);
+    if !auto {
+        let hit = Rect::from_center_size(at.center(), at.size().max(vec2(theme::HIT, theme::HIT)));
+        let response = ui.interact(hit, hit_id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+        focus_ring(at, 8, &response, ui);
+        let (enabled, name) = (ui.is_enabled(), format!("{}: {}", row.label, words.auto));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
+        out.reset |= response.clicked();
+    }
+    at
+}
+
+fn edit_ui(typed: &mut String, edit_id: Id, field: Rect, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &mut Ui) {
+    let fresh_id = edit_id.with("fresh");
+    let fresh = ui.data_mut(|data| data.remove_temp::<bool>(fresh_id)).unwrap_or(false);
+    let font = theme_of(ui).font(Type::Number);
+    // Asked before the field sees the keys: Esc also takes the focus away, and that must not commit.
+    let escape = ui.input(|input| input.key_pressed(Key::Escape));
+    let edit = egui::TextEdit::singleline(typed)
+        .id(edit_id.with("field"))
+        .font(font)
+        .align(egui::Align2::RIGHT_CENTER);
+    let edit = edit.desired_width(field.width()).margin(egui::Margin::symmetric(4, 1));
+    let response = ui.put(field, edit).accessible_name(row.label);
+    if fresh {
+        response.request_focus();
+        if let Some(mut state) = egui::TextEdit::load_state(ui.ctx(), response.id) {
+            let all = egui::text::CCursorRange::two(
+                egui::text::CCursor::default(),
+                egui::text::CCursor {
+                    index: typed.chars().count().into(),
+                    ..Default::default()
+                },
+            );
+            state.cursor.set_char_range(Some(all));
+            state.store(ui.ctx(), response.id);
+        }
+    }
+    if response.lost_focus() || (escape && !fresh) {
+        if !escape && let Some(value) = parsed(typed) {
+            out.changed = Some(value.clamp(*row.range.start(), *row.range.end()));
+        }
+        ui.data_mut(|data| data.remove::<String>(edit_id));
+        out.response.request_focus();
+    } else {
+        ui.data_mut(|data| data.insert_temp(edit_id, typed.clone()));
+    }
+}
+
+/// The number that someone typed: a decimal comma, a true minus sign and a unit behind it are fine.
+fn parsed(typed: &str) -> Option<f64> {
+    let plain = typed.trim().replace(',', ".").replace('−', "-");
+    let end = plain
+        .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+')))
+        .unwrap_or(plain.len());
+    plain.get(..end)?.parse::<f64>().ok().filter(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typed_numbers_may_carry_units_and_commas() {
+        assert_eq!(parsed(" 30 frames"), Some(30.0));
+        assert_eq!(parsed("0,25 s"), Some(0.25));
+        assert_eq!(parsed("−12.5°"), Some(-12.5));
+        assert_eq!(parsed("frames"), None);
+        assert_eq!(parsed(""), None);
+        assert_eq!(parsed("inf"), None);
+    }
+}

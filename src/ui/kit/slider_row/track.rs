@@ -1,0 +1,184 @@
+//! The track: how pointer, keys and screen readers move the handle, and how it looks.
+
+use super::super::keys::keys_pressed;
+use super::super::paint::{faded, focus_ring};
+use super::{SliderResponse, SliderRow, Source};
+use crate::ui::theme::{palette_of, theme_of};
+use eframe::egui::{
+    EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2,
+    accesskit::{Action, ActionData},
+    pos2, vec2,
+};
+
+/// Where the pointer holds the handle, kept between frames: unclamped, so that the way back from beyond an end is as long as
+/// the way there.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    position: f64,
+    pointer_x: f32,
+}
+
+pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderResponse, ui: &Ui) {
+    let response = &out.response;
+    let held_id = response.id.with("held");
+    let held = ui.data(|data| data.get_temp::<Held>(held_id));
+    let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+    let Some(Pos2 { x, .. }) = pointer else {
+        if held.is_some() {
+            ui.data_mut(|data| data.remove::<Held>(held_id));
+            out.drag_ended = true;
+        }
+        return;
+    };
+    let rail = rail(hit, ui);
+    let width = f64::from(rail.width().max(1.0));
+    let held = if let Some(held) = held {
+        let speed = if ui.input(|input| input.modifiers.shift) { 0.1 } else { 1.0 };
+        Held {
+            position: held.position + speed * f64::from(x - held.pointer_x) / width,
+            pointer_x: x,
+        }
+    } else {
+        response.request_focus();
+        out.drag_started = true;
+        let position = row.position(value);
+        let handle_x = f64::from(rail.left()) + position * width;
+        // Taken by the handle, the value stays; elsewhere on the track it jumps to the pointer.
+        let grabbed = (f64::from(x) - handle_x).abs() <= 12.0;
+        let position = if grabbed { position } else { (f64::from(x - rail.left())) / width };
+        Held { position, pointer_x: x }
+    };
+    ui.data_mut(|data| data.insert_temp(held_id, held));
+    let fine = ui.input(|input| input.modifiers.shift);
+    let moved = !out.drag_started || (held.position - row.position(value)).abs() > f64::EPSILON;
+    if moved && ui.input(|input| out.drag_started || input.pointer.delta() != Vec2::ZERO) {
+        out.changed = Some(row.value_at(held.position, if fine { row.fine } else { row.step }));
+    }
+}
+
+pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {
+    if !out.response.has_focus() {
+        return;
+    }
+    let filter = EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(out.response.id, filter));
+    let mut next = value;
+    for (key, modifiers) in keys_pressed(ui) {
+        let steps = match key {
+            Key::ArrowRight | Key::ArrowUp => 1.0,
+            Key::ArrowLeft | Key::ArrowDown => -1.0,
+            Key::PageUp => 10.0,
+            Key::PageDown => -10.0,
+            Key::Home => {
+                next = *row.range.start();
+                continue;
+            }
+            Key::End => {
+                next = *row.range.end();
+                continue;
+            }
+            _ => continue,
+        };
+        let step = if modifiers.shift { row.fine } else { row.step };
+        next = if row.log {
+            // On a logarithmic track a step is a fiftieth of the way, or the small values could not be reached.
+            let share = if modifiers.shift { 0.002 } else { 0.02 };
+            row.value_at(row.position(next) + steps * share, row.fine)
+        } else {
+            row.snapped(next + steps * step, step)
+        };
+    }
+    if next != value {
+        out.changed = Some(next);
+    }
+}
+
+/// What screen readers ask for.
+pub(super) fn assistive(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {
+    let id = out.response.id;
+    ui.input(|input| {
+        let up = input.num_accesskit_action_requests(id, Action::Increment) as f64;
+        let down = input.num_accesskit_action_requests(id, Action::Decrement) as f64;
+        if up != down {
+            out.changed = Some(row.snapped(value + (up - down) * row.step, row.step));
+        }
+        for request in input.accesskit_action_requests(id, Action::SetValue) {
+            if let Some(ActionData::NumericValue(asked)) = request.data
+                && asked.is_finite()
+            {
+                out.changed = Some(asked.clamp(*row.range.start(), *row.range.end()));
+            }
+        }
+    });
+}
+
+/// The line along which the middle of the handle moves.
+fn rail(area: Rect, ui: &Ui) -> Rect {
+    area.shrink2(vec2(handle_radius(ui), 0.0))
+}
+
+fn handle_radius(ui: &Ui) -> f32 {
+    7.0 * theme_of(ui).scale()
+}
+
+pub(super) fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response: &Response, ui: &Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let thickness = 4.0 * theme.scale();
+    let rail = rail(area, ui);
+    let bar = Rect::from_center_size(area.center(), vec2(area.width(), thickness));
+    let x_of = |value: f64| rail.left() + row.position(value) as f32 * rail.width();
+    let painter = ui.painter();
+    painter.rect_filled(bar, thickness / 2.0, palette.track);
+    let auto = row.source == Source::Auto;
+    // A value the app found is there but not asserted: its bar is quieter.
+    let fill = faded(
+        if auto {
+            palette.accent.gamma_multiply(0.45)
+        } else {
+            palette.accent
+        },
+        enabled,
+    );
+    let handle = pos2(x_of(value), bar.center().y);
+    painter.rect_filled(Rect::from_min_max(bar.min, pos2(handle.x, bar.bottom())), thickness / 2.0, fill);
+    for mark in row.marks {
+        let x = x_of(mark.value);
+        let tick = Rect::from_center_size(pos2(x, bar.center().y), vec2(2.0 * theme.scale(), thickness + 6.0));
+        painter.rect_filled(tick, 1.0, mark.color);
+    }
+    let radius = handle_radius(ui);
+    focus_ring(
+        Rect::from_center_size(handle, vec2(2.0, 2.0) * (radius + 1.0)),
+        radius as u8 + 2,
+        response,
+        ui,
+    );
+    let hot = response.hovered() || response.is_pointer_button_down_on() || response.has_focus();
+    let grown = ui.ctx().animate_bool(response.id.with("hot"), hot && enabled);
+    if grown > 0.0 {
+        painter.circle_filled(handle, radius + 5.0 * grown, palette.accent_wash);
+    }
+    painter.circle_filled(handle + vec2(0.0, 1.0), radius + 0.5, palette.shadow);
+    if auto {
+        painter.circle(
+            handle,
+            radius - 1.0,
+            palette.panel,
+            Stroke::new(2.0 * theme.scale(), faded(palette.handle, enabled)),
+        );
+    } else {
+        let tone = if enabled { palette.handle } else { palette.muted };
+        painter.circle_filled(handle, radius, tone);
+    }
+    // The default, as a nick below the track: where a double click would go. Only for whoever is at this track.
+    let default_x = x_of(row.default);
+    if !auto && grown > 0.0 && (default_x - handle.x).abs() > radius + 2.0 {
+        let nick = Rect::from_center_size(pos2(default_x, bar.bottom() + 4.0), vec2(2.0, 4.0));
+        painter.rect_filled(nick, 1.0, palette.muted.gamma_multiply(grown));
+    }
+}

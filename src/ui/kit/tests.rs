@@ -1,0 +1,497 @@
+//! What the widgets do when they are pressed, dragged, typed into and read aloud.
+
+use super::*;
+use crate::ui::theme::Theme;
+use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Ui, accesskit::Toggled, pos2, vec2};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+
+/// A panel 300 points wide with one widget, and a record of what it returned.
+fn bench<S: 'static>(state: S, widget: impl Fn(&mut S, &mut Ui) + 'static) -> Harness<'static, S> {
+    let builder = Harness::builder()
+        .with_size(vec2(300.0, 240.0))
+        .with_max_steps(120)
+        .with_step_dt(1.0 / 60.0)
+        .with_context_setup(|ctx| Theme::default().install(ctx));
+    let mut harness = builder.build_ui_state(move |ui, state: &mut S| widget(state, ui), state);
+    harness.run();
+    harness
+}
+
+fn press<S>(harness: &mut Harness<'_, S>, pos: Pos2, pressed: bool) {
+    harness.event(Event::PointerMoved(pos));
+    harness.event(Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    });
+    harness.step();
+}
+
+fn move_to<S>(harness: &mut Harness<'_, S>, pos: Pos2, modifiers: Modifiers) {
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.event(Event::PointerMoved(pos));
+    harness.step();
+}
+
+/// A slider's value and what happened to it.
+#[derive(Default)]
+struct Slid {
+    value: f64,
+    source: Source,
+    changes: usize,
+    resets: usize,
+    started: usize,
+    ended: usize,
+}
+
+fn slider(value: f64, source: Source) -> Harness<'static, Slid> {
+    bench(
+        Slid {
+            value,
+            source,
+            ..Slid::default()
+        },
+        |state, ui| {
+            let row = SliderRow::new("Blend window", 0.0..=100.0, 15.0)
+                .step(1.0)
+                .unit("frames")
+                .source(state.source);
+            let out = slider_row_ui(state.value, &row, ui);
+            state.changes += usize::from(out.changed.is_some());
+            state.resets += usize::from(out.reset);
+            state.started += usize::from(out.drag_started);
+            state.ended += usize::from(out.drag_ended);
+            state.value = out.changed.unwrap_or(state.value);
+        },
+    )
+}
+
+#[test]
+fn arrow_keys_step_a_slider_and_shift_steps_finely() {
+    let mut harness = slider(30.0, Source::Manual);
+    harness.get_by_label("Blend window").focus();
+    harness.run();
+    for (key, modifiers, expected) in [
+        (Key::ArrowRight, Modifiers::NONE, 31.0),
+        (Key::ArrowLeft, Modifiers::NONE, 30.0),
+        (Key::ArrowUp, Modifiers::SHIFT, 30.1),
+        (Key::PageDown, Modifiers::NONE, 20.0),
+        (Key::End, Modifiers::NONE, 100.0),
+        (Key::ArrowRight, Modifiers::NONE, 100.0),
+        (Key::Home, Modifiers::NONE, 0.0),
+        (Key::ArrowLeft, Modifiers::NONE, 0.0),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run();
+        assert!(
+            (harness.state().value - expected).abs() < 1e-9,
+            "{key:?}: {}",
+            harness.state().value
+        );
+    }
+    assert_eq!(harness.state().started, 0);
+}
+
+#[test]
+fn a_double_click_on_the_label_resets_a_slider() {
+    let mut harness = slider(30.0, Source::ManualOverAuto);
+    // The label is a hidden target above the track; the track is what has the name.
+    let track = harness.get_by_label("Blend window").rect();
+    let label = pos2(track.left() + 20.0, track.top() - 6.0);
+    for pressed in [true, false, true, false] {
+        press(&mut harness, label, pressed);
+    }
+    assert_eq!((harness.state().resets, harness.state().value), (1, 15.0));
+    assert_eq!(harness.state().started, 0, "the label does not drag");
+}
+
+#[test]
+fn dragging_a_slider_is_one_gesture_and_the_handle_does_not_jump() {
+    let mut harness = slider(50.0, Source::Manual);
+    let track = harness.get_by_label("Blend window").rect();
+    // A little off the middle of the handle: the value stays, for it is held where it is.
+    let start = pos2(track.center().x + 5.0, track.bottom() - 9.0);
+    press(&mut harness, start, true);
+    assert_eq!((harness.state().value, harness.state().started), (50.0, 1));
+    let tenth = (track.width() - 14.0) / 10.0;
+    move_to(&mut harness, start + vec2(tenth, 0.0), Modifiers::NONE);
+    assert_eq!(harness.state().value, 60.0);
+    // With shift, a tenth of the way, and in fine steps.
+    move_to(&mut harness, start + vec2(2.0 * tenth, 0.0), Modifiers::SHIFT);
+    assert!((harness.state().value - 61.0).abs() < 0.11, "{}", harness.state().value);
+    // Far beyond the end it is the end; the way back is as long as the way there.
+    move_to(&mut harness, start + vec2(30.0 * tenth, 0.0), Modifiers::NONE);
+    assert_eq!(harness.state().value, 100.0);
+    press(&mut harness, start + vec2(30.0 * tenth, 0.0), false);
+    assert_eq!((harness.state().started, harness.state().ended), (1, 1));
+    // Pressed elsewhere on the track, it jumps there.
+    press(&mut harness, pos2(track.left() + 7.0 + 2.0 * tenth, start.y), true);
+    assert_eq!((harness.state().value, harness.state().started), (20.0, 2));
+}
+
+#[test]
+fn a_value_can_be_typed_and_escape_leaves_it() {
+    let mut harness = slider(30.0, Source::Manual);
+    let value = "Blend window: Click to type a value";
+    for (typed, key, expected) in [
+        ("42", Key::Enter, 42.0),
+        ("77", Key::Escape, 42.0),
+        ("1000 frames", Key::Enter, 100.0),
+        ("x", Key::Enter, 100.0),
+    ] {
+        harness.get_by_label(value).click();
+        harness.run();
+        // The field replaces the number with all of it selected: typing overwrites.
+        harness.event(Event::Text(typed.to_owned()));
+        harness.step();
+        harness.key_press(key);
+        harness.run();
+        assert_eq!(harness.state().value, expected, "after {typed} and {key:?}");
+        assert!(harness.query_by_label(value).is_some(), "the field is gone after {typed}");
+    }
+}
+
+#[test]
+fn dragging_takes_over_an_automatic_value() {
+    let mut harness = slider(50.0, Source::Auto);
+    assert_eq!(harness.state().changes, 0);
+    let track = harness.get_by_label("Blend window").rect();
+    let y = track.bottom() - 9.0;
+    press(&mut harness, pos2(track.left() + 7.0, y), true);
+    press(&mut harness, pos2(track.left() + 7.0, y), false);
+    assert_eq!((harness.state().value, harness.state().changes), (0.0, 1));
+}
+
+#[test]
+fn the_word_auto_gives_a_value_back_to_the_app() {
+    let mut harness = slider(30.0, Source::ManualOverAuto);
+    harness.get_by_label("Blend window: auto").click();
+    harness.run();
+    assert_eq!(harness.state().resets, 1);
+    harness.state_mut().source = Source::Auto;
+    harness.run();
+    assert!(
+        harness.query_by_label("Blend window: auto").is_none(),
+        "nothing to press while the app decides"
+    );
+}
+
+#[test]
+fn a_text_field_is_finished_by_enter_and_not_by_escape() {
+    let mut harness = bench((String::new(), 0), |(text, committed), ui| {
+        *committed += usize::from(text_field_ui("Name", "a name", text, ui).committed);
+        value_row_ui("Distance", "4.1", "cm", ui);
+    });
+    for (typed, key, expected) in [("draft", Key::Escape, 0), ("done", Key::Enter, 1)] {
+        harness.get_by_label("Name").click();
+        harness.run();
+        harness.event(Event::Text(typed.to_owned()));
+        harness.step();
+        harness.key_press(key);
+        harness.run();
+        assert_eq!(harness.state().1, expected, "{key:?}");
+    }
+    assert!(harness.state().0.contains("done"), "{}", harness.state().0);
+    assert!(harness.query_by_label("Distance: 4.1 cm").is_some());
+}
+
+#[test]
+fn screen_readers_can_read_and_set_a_slider() {
+    let mut harness = slider(30.0, Source::Manual);
+    let node = harness.get_by_label("Blend window");
+    assert_eq!(node.accesskit_node().numeric_value(), Some(30.0));
+    assert_eq!(node.value().as_deref(), Some("30.00 frames"));
+    node.set_value_accesskit(12.0);
+    harness.run();
+    assert_eq!(harness.state().value, 12.0);
+    harness.get_by_label("Blend window").increment_accesskit();
+    harness.run();
+    assert_eq!(harness.state().value, 13.0);
+}
+
+#[test]
+fn a_switch_turns_by_click_and_by_key() {
+    let mut harness = bench(false, |on, ui| {
+        if let Some(asked) = switch_row_ui("Foot lock", *on, ui) {
+            *on = asked;
+        }
+    });
+    assert_eq!(harness.get_by_label("Foot lock").accesskit_node().toggled(), Some(Toggled::False));
+    harness.get_by_label("Foot lock").click();
+    harness.run();
+    assert!(*harness.state());
+    assert_eq!(harness.get_by_label("Foot lock").accesskit_node().toggled(), Some(Toggled::True));
+    harness.get_by_label("Foot lock").focus();
+    harness.run();
+    harness.key_press(Key::Space);
+    harness.run();
+    assert!(!*harness.state());
+}
+
+#[test]
+fn segments_are_chosen_by_click_and_by_arrows() {
+    let mut harness = bench((0, 0), |(chosen, asked), ui| {
+        if let Some(value) = segmented_ui("Method", *chosen, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui) {
+            (*chosen, *asked) = (value, *asked + 1);
+        }
+    });
+    harness.get_by_label("inertialize").click();
+    harness.run();
+    assert_eq!(*harness.state(), (2, 1));
+    // Choosing what is chosen asks for nothing.
+    harness.get_by_label("inertialize").click();
+    harness.run();
+    assert_eq!(*harness.state(), (2, 1));
+    harness.get_by_label("inertialize").focus();
+    harness.run();
+    harness.key_press(Key::ArrowLeft);
+    harness.run();
+    assert_eq!(harness.state().0, 1);
+    assert!(harness.get_by_label("dissolve").is_focused(), "the focus goes along");
+    harness.key_press(Key::ArrowLeft);
+    harness.run();
+    harness.key_press(Key::ArrowLeft);
+    harness.run();
+    assert_eq!(harness.state().0, 0, "no way beyond the first");
+}
+
+#[test]
+fn a_choice_opens_and_closes_and_says_what_was_chosen() {
+    let mut harness = bench('a', |chosen, ui| {
+        if let Some(value) = choice_row_ui("Blend in", *chosen, &[('a', "joint rotations"), ('b', "world space")], ui) {
+            *chosen = value;
+        }
+    });
+    assert!(harness.query_by_label("world space").is_none());
+    harness.get_by_label("Blend in").click();
+    harness.run();
+    harness.get_by_label("world space").click();
+    harness.run();
+    assert_eq!(*harness.state(), 'b');
+    assert!(harness.query_by_label("world space").is_none(), "it closes after the choice");
+    assert_eq!(harness.get_by_label("Blend in").value().as_deref(), Some("world space"));
+}
+
+#[test]
+fn a_clip_its_letter_and_its_actions_are_told_apart() {
+    let mut harness = bench(Vec::new(), |done: &mut Vec<String>, ui| {
+        let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
+        let row = ClipRow {
+            name: "walk",
+            detail: "3.9 s",
+            part: Part::A,
+            actions: &actions,
+            ..ClipRow::default()
+        };
+        let out = clip_row_ui(row, ui);
+        done.extend(out.clicked.then(|| "row".to_owned()));
+        done.extend(out.badge_clicked.then(|| "letter".to_owned()));
+        done.extend(out.action.map(|action| format!("action {action}")));
+    });
+    assert!(harness.query_by_label("Remove").is_none(), "actions wait for the pointer");
+    let row = harness.get_by_label("walk, 3.9 s").rect();
+    harness.hover_at(pos2(row.center().x, row.bottom() - 6.0));
+    harness.run();
+    harness.get_by_label("Remove").click();
+    harness.run();
+    harness.get_by_label("walk: A").click();
+    harness.run();
+    let row_pos = pos2(row.center().x, row.bottom() - 6.0);
+    press(&mut harness, row_pos, true);
+    press(&mut harness, row_pos, false);
+    harness.run();
+    assert_eq!(*harness.state(), ["action 1", "letter", "row"]);
+}
+
+#[test]
+fn notices_are_dismissed_and_acted_on_and_tasks_are_stopped() {
+    let mut harness = bench((Vec::new(), false), |(events, stopped): &mut (Vec<NoticeEvent>, bool), ui| {
+        let text = "A long notice that needs more than one line in a panel as narrow as this one is, and is not cut.";
+        events.extend(notice_ui(
+            &Notice {
+                text,
+                mood: Mood::Warning,
+                action: "Show",
+            },
+            ui,
+        ));
+        *stopped |= progress_row_ui("Distance matrix", Some(0.5), "half", ui);
+    });
+    harness.get_by_label("Dismiss").click();
+    harness.run();
+    harness.get_by_label("Show").click();
+    harness.run();
+    harness.get_by_label("Cancel").click();
+    harness.run();
+    assert_eq!(harness.state().0, [NoticeEvent::Dismissed, NoticeEvent::Acted]);
+    assert!(harness.state().1);
+    let notice = harness.get_by_label_contains("A long notice").rect();
+    assert!(notice.height() > 40.0 && notice.right() < 300.0, "{notice:?}");
+    assert!(harness.get_by_label("Show").rect().top() >= notice.bottom());
+    assert_eq!(harness.get_by_label("Distance matrix").accesskit_node().numeric_value(), Some(0.5));
+}
+
+/// The timeline's state and what was asked of it.
+struct Timed {
+    now: f64,
+    transition: (f64, f64),
+    events: Vec<TimelineEvent>,
+}
+
+fn timeline() -> Harness<'static, Timed> {
+    let start = Timed {
+        now: 1.0,
+        transition: (4.0, 6.0),
+        events: Vec::new(),
+    };
+    bench(start, |state, ui| {
+        let points: Vec<[f64; 2]> = (0..=100_u32).map(|i| [f64::from(i) / 10.0, f64::from(i)]).collect();
+        let ink = egui::Color32::WHITE;
+        let series = [Series {
+            name: "result",
+            color: ink,
+            ink,
+            strong: true,
+            points: &points,
+        }];
+        let view = Timeline {
+            duration: 10.0,
+            now: state.now,
+            fps: 50.0,
+            transition: Some(state.transition.0..state.transition.1),
+            transition_editable: true,
+            out_point: Some(9.0),
+            curves: Some(Curves {
+                title: "speed",
+                unit: "m/s",
+                decimals: 1,
+                include: None,
+                series: &series,
+            }),
+            ..Timeline::default()
+        };
+        for event in timeline_ui(&view, ui) {
+            match event {
+                TimelineEvent::Seek(time) => state.now = time,
+                TimelineEvent::SetTransitionStart(time) => state.transition.0 = time,
+                _ => {}
+            }
+            state.events.push(event);
+        }
+    })
+}
+
+#[test]
+fn the_timeline_seeks_scrubs_and_steps_by_frames() {
+    let mut harness = timeline();
+    let area = harness.get_by_label("Timeline").rect();
+    let at = |time: f32| pos2(area.left() + time / 10.0 * area.width(), area.bottom() - 4.0);
+    press(&mut harness, at(3.0), true);
+    assert!((harness.state().now - 3.0).abs() < 1e-3);
+    move_to(&mut harness, at(7.5), Modifiers::NONE);
+    assert!((harness.state().now - 7.5).abs() < 1e-3);
+    move_to(&mut harness, at(40.0), Modifiers::NONE);
+    assert_eq!(harness.state().now, 10.0);
+    press(&mut harness, at(40.0), false);
+    let events = &harness.state().events;
+    assert_eq!(events.first(), Some(&TimelineEvent::ScrubStarted));
+    assert_eq!(events.last(), Some(&TimelineEvent::ScrubEnded));
+    assert_eq!(events.iter().filter(|event| !matches!(event, TimelineEvent::Seek(_))).count(), 2);
+
+    // From between two frames to a whole one, then by ten.
+    harness.state_mut().now = 2.013;
+    harness.get_by_label("Timeline").focus();
+    harness.run();
+    for (key, modifiers, expected) in [
+        (Key::ArrowRight, Modifiers::NONE, 2.04),
+        (Key::ArrowLeft, Modifiers::NONE, 2.02),
+        (Key::ArrowRight, Modifiers::SHIFT, 2.22),
+        (Key::End, Modifiers::NONE, 10.0),
+        (Key::ArrowRight, Modifiers::NONE, 10.0),
+        (Key::Home, Modifiers::NONE, 0.0),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run();
+        assert!((harness.state().now - expected).abs() < 1e-9, "{key:?}: {}", harness.state().now);
+    }
+}
+
+#[test]
+fn an_edge_of_the_transition_is_dragged_as_one_gesture() {
+    let mut harness = timeline();
+    let area = harness.get_by_label("Timeline").rect();
+    let edge = harness.get_by_label("Transition start").rect();
+    assert!(
+        (edge.center().x - (area.left() + 0.4 * area.width())).abs() < 1.0,
+        "{edge:?} in {area:?}"
+    );
+    press(&mut harness, edge.center(), true);
+    let target = pos2(area.left() + 0.25 * area.width(), edge.center().y);
+    move_to(&mut harness, target, Modifiers::NONE);
+    press(&mut harness, target, false);
+    harness.run();
+    let state = harness.state();
+    assert!((state.transition.0 - 2.5).abs() < 1e-3, "{}", state.transition.0);
+    assert_eq!(state.events.first(), Some(&TimelineEvent::EditStarted));
+    assert_eq!(state.events.last(), Some(&TimelineEvent::EditEnded));
+    assert_eq!(state.now, 1.0, "the playhead stays");
+}
+
+#[test]
+fn transport_asks_to_play_step_and_change_speed() {
+    let mut harness = Harness::builder()
+        .with_size(vec2(800.0, 400.0))
+        .with_context_setup(|ctx| Theme::default().install(ctx))
+        .build_ui_state(
+            |ui, events: &mut Vec<TransportEvent>| {
+                ui.add_space(300.0);
+                let view = Transport {
+                    playing: false,
+                    repeat: true,
+                    speed: 1.0,
+                    now: 0.5,
+                    frame: 15,
+                    frames: 90,
+                    caption: "speed",
+                };
+                events.extend(transport_ui(&view, ui));
+            },
+            Vec::new(),
+        );
+    for name in ["Play", "One frame back", "Repeat", "Speed"] {
+        harness.get_by_label(name).click();
+        harness.run();
+    }
+    harness.get_by_label("0.25×").click();
+    harness.run();
+    let asked = [
+        TransportEvent::SetPlaying(true),
+        TransportEvent::Step(-1),
+        TransportEvent::SetRepeat(false),
+        TransportEvent::SetSpeed(0.25),
+    ];
+    assert_eq!(*harness.state(), asked);
+}
+
+#[test]
+fn tabs_fold_into_a_menu_where_there_is_no_room() {
+    const LABS: [(usize, &str); 4] = [(0, "View"), (1, "Blend"), (2, "Transition"), (3, "Graph")];
+    for (width, folded) in [(600.0, false), (120.0, true)] {
+        let mut harness = bench(1, move |chosen, ui| {
+            let picked = ui.horizontal(|ui| tabs_ui("Lab", *chosen, &LABS, width, ui)).inner;
+            *chosen = picked.unwrap_or(*chosen);
+        });
+        assert_eq!(harness.query_by_label("Lab").is_some(), folded);
+        if folded {
+            harness.get_by_label("Lab").click();
+            harness.run();
+        }
+        harness.get_by_label("Graph").click();
+        harness.run();
+        assert_eq!(*harness.state(), 3);
+    }
+}

@@ -1,0 +1,150 @@
+//! How the timeline looks: bars, seconds, the playhead, what a loop leaves out.
+
+use super::super::paint::{Run, gradient_bar, line_of, put};
+use super::{Moment, TimeAxis, Timeline, Track};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, duration: f64, ui: &Ui) {
+    let palette = palette_of(ui);
+    let (fill, ink) = track.part.fill(palette);
+    let (start, end) = (track.start.clamp(0.0, duration), track.end.clamp(0.0, duration));
+    let bar = Rect::from_x_y_ranges(axis.x_of(start)..=axis.x_of(end), row);
+    if bar.width() < 1.0 {
+        return;
+    }
+    // What fades is a veil of the panel's colour, not nothing: the bar's shape stays in sight to its end.
+    let faint = palette.panel.lerp_to_gamma(fill, 0.14);
+    let length = (end - start).max(f64::EPSILON);
+    let (fade_in, fade_out) = ((track.fade_in / length) as f32, (track.fade_out / length) as f32);
+    let mut stops = Vec::new();
+    if fade_in > 0.0 {
+        stops.push((0.0, faint));
+    }
+    stops.extend([(fade_in.min(1.0), fill), ((1.0 - fade_out).max(0.0), fill)]);
+    if fade_out > 0.0 {
+        stops.push((1.0, faint));
+    }
+    stops.sort_by(|one, other| one.0.total_cmp(&other.0));
+    gradient_bar(bar, f32::from(radius::S), &stops, ui.painter());
+
+    // The name stands where the bar is full: at its beginning, or at its end if it fades in.
+    let name = line_of(&[Run::new(track.name, Type::SmallStrong, ink)], bar.width() - 2.0 * space::S, ui);
+    let (anchor, x) = if fade_in > 0.0 {
+        (Align2::RIGHT_CENTER, bar.right() - space::S)
+    } else {
+        (Align2::LEFT_CENTER, bar.left() + space::S)
+    };
+    if name.size().x < bar.width() * (1.0 - fade_in - fade_out).max(0.2) {
+        put(ui.painter(), pos2(x, row.center()), anchor, name);
+    }
+}
+
+/// Seconds along the bottom, and hairlines up through the curves.
+pub(super) fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, ui: &Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    if axis.duration <= 0.0 {
+        return;
+    }
+    let step = nice_step(axis.duration, f64::from(axis.x.span() / (76.0 * theme.scale())));
+    let decimals = usize::from(step < 1.0) + usize::from(step < 0.1);
+    let line = Stroke::new(theme.hairline(), palette.line.gamma_multiply(0.7));
+    ui.painter().hline(axis.x, bottom, Stroke::new(theme.hairline(), palette.line));
+    let count = (axis.duration / step + 1e-6).floor() as u32;
+    for tick in 0..=count {
+        let time = f64::from(tick) * step;
+        let x = axis.x_of(time).round();
+        if tick > 0 && plot.height() > 0.0 {
+            ui.painter().vline(x, plot.y_range(), line);
+        }
+        let decimals = if tick == 0 { 0 } else { decimals };
+        let unit = if tick == 0 { " s" } else { "" };
+        let label = line_of(
+            &[Run::new(&format!("{time:.decimals$}{unit}"), Type::Small, palette.muted)],
+            f32::INFINITY,
+            ui,
+        );
+        let anchor = if tick == 0 { Align2::LEFT_BOTTOM } else { Align2::CENTER_BOTTOM };
+        if x + label.size().x / 2.0 <= axis.x.max + 1.0 || tick == 0 {
+            put(ui.painter(), pos2(x, ruler.bottom()), anchor, label);
+        }
+    }
+}
+
+/// The step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` pieces.
+pub(crate) fn nice_step(span: f64, most: f64) -> f64 {
+    let rough = span / most.max(1.0);
+    if !(rough.is_finite() && rough > 0.0) {
+        return 1.0;
+    }
+    let power = 10.0_f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|&step| step >= rough * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+/// What a loop leaves out is veiled.
+pub(super) fn outside_loop(timeline: &Timeline<'_>, axis: TimeAxis, area: Rect, ui: &Ui) {
+    let veil = palette_of(ui).panel.gamma_multiply(0.66);
+    let cover = |from: f64, to: f64| {
+        if to > from {
+            ui.painter()
+                .rect_filled(Rect::from_x_y_ranges(axis.x_of(from)..=axis.x_of(to), area.y_range()), 0.0, veil);
+        }
+    };
+    if let Some(time) = timeline.in_point {
+        cover(0.0, time);
+    }
+    if let Some(time) = timeline.out_point {
+        cover(time, timeline.duration);
+    }
+}
+
+pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui: &Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let x = ui.painter().round_to_pixel_center(x);
+    let width = if theme.projector { 2.0 } else { 1.5 };
+    ui.painter()
+        .vline(x, top..=bottom, Stroke::new(width + 2.0, palette.panel.gamma_multiply(0.45)));
+    ui.painter().vline(x, top..=bottom, Stroke::new(width, palette.handle));
+    let hot = ui
+        .ctx()
+        .animate_bool(scrub.id.with("hot"), scrub.hovered() || scrub.is_pointer_button_down_on());
+    ui.painter()
+        .circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
+}
+
+/// A moment: a small diamond that says its name under the pointer.
+pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
+    let size = 3.0 * theme_of(ui).scale();
+    let diamond = vec![
+        center - vec2(0.0, size),
+        center + vec2(size, 0.0),
+        center + vec2(0.0, size),
+        center - vec2(size, 0.0),
+    ];
+    ui.painter().add(Shape::convex_polygon(diamond, moment.color, Stroke::NONE));
+    let response = ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
+    let said = format!("{}, {:.2} s", moment.name, moment.time);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
+    response.on_hover_text(said);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_round_and_few() {
+        assert_eq!(nice_step(10.0, 10.0), 1.0);
+        assert_eq!(nice_step(3.9, 10.0), 0.5);
+        assert_eq!(nice_step(61.0, 8.0), 10.0);
+        assert_eq!(nice_step(0.0, 8.0), 1.0);
+        for span in [0.3, 1.7, 9.9, 128.0] {
+            let step = nice_step(span, 8.0);
+            assert!(span / step <= 8.0 + 1e-9 && span / step > 8.0 / 5.1, "{span} in steps of {step}");
+        }
+    }
+}

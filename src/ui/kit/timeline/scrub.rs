@@ -1,0 +1,84 @@
+//! How pointer, keys and screen readers move the playhead.
+
+use super::super::keys::keys_pressed;
+use super::super::words::Words;
+use super::{TimeAxis, Timeline, TimelineEvent};
+use eframe::egui::{
+    EventFilter, Key, Pos2, Response, Ui, WidgetInfo,
+    accesskit::{Action, ActionData},
+};
+
+/// Moves `now` as it was asked to, and says so in `events`.
+pub(super) fn scrub_ui(timeline: &Timeline<'_>, axis: TimeAxis, scrub: &Response, now: &mut f64, events: &mut Vec<TimelineEvent>, ui: &Ui) {
+    let held_id = scrub.id.with("held");
+    let was_held = ui.data(|data| data.get_temp::<bool>(held_id)).unwrap_or(false);
+    let pointer = scrub.interact_pointer_pos().filter(|_| scrub.is_pointer_button_down_on());
+    if let Some(Pos2 { x, .. }) = pointer {
+        if !was_held {
+            scrub.request_focus();
+            ui.data_mut(|data| data.insert_temp(held_id, true));
+            events.push(TimelineEvent::ScrubStarted);
+        }
+        let asked = axis.time_at(x);
+        if asked != *now {
+            events.push(TimelineEvent::Seek(asked));
+            *now = asked;
+        }
+    } else if was_held {
+        ui.data_mut(|data| data.remove::<bool>(held_id));
+        events.push(TimelineEvent::ScrubEnded);
+    }
+
+    let mut asked = *now;
+    let frame = if timeline.fps > 0.0 {
+        1.0 / timeline.fps
+    } else {
+        timeline.duration / 100.0
+    };
+    if scrub.has_focus() {
+        let filter = EventFilter {
+            horizontal_arrows: true,
+            ..EventFilter::default()
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(scrub.id, filter));
+        for (key, modifiers) in keys_pressed(ui) {
+            let frames = if modifiers.shift { 10.0 } else { 1.0 };
+            // From one whole frame to the next, wherever between two one was.
+            asked = match key {
+                Key::ArrowRight => ((asked / frame).round() + frames) * frame,
+                Key::ArrowLeft => ((asked / frame).round() - frames) * frame,
+                Key::Home => 0.0,
+                Key::End => timeline.duration,
+                _ => asked,
+            };
+        }
+    }
+    ui.input(|input| {
+        let up = input.num_accesskit_action_requests(scrub.id, Action::Increment) as f64;
+        let down = input.num_accesskit_action_requests(scrub.id, Action::Decrement) as f64;
+        asked += (up - down) * frame;
+        for request in input.accesskit_action_requests(scrub.id, Action::SetValue) {
+            if let Some(ActionData::NumericValue(value)) = request.data
+                && value.is_finite()
+            {
+                asked = value;
+            }
+        }
+    });
+    asked = asked.clamp(0.0, timeline.duration.max(0.0));
+    if asked != *now {
+        events.push(TimelineEvent::Seek(asked));
+        *now = asked;
+    }
+    let (said, enabled, name) = (*now, ui.is_enabled(), Words::of(ui).timeline);
+    scrub.widget_info(|| WidgetInfo::slider(enabled, said, name));
+    ui.ctx().accesskit_node_builder(scrub.id, |node| {
+        node.set_min_numeric_value(0.0);
+        node.set_max_numeric_value(timeline.duration);
+        node.set_numeric_value_step(frame);
+        node.set_value(format!("{said:.2} s"));
+        node.add_action(Action::SetValue);
+        node.add_action(Action::Increment);
+        node.add_action(Action::Decrement);
+    });
+}
