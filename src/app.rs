@@ -146,7 +146,11 @@ impl Segue {
             frames: Frames::default(),
             events: Vec::new(),
             told: Told::default(),
-            clock: Clock { ticked_at_ms: now_ms, own_ms: 0.0, frame_began_ms: now_ms },
+            clock: Clock {
+                ticked_at_ms: now_ms,
+                own_ms: 0.0,
+                frame_began_ms: now_ms,
+            },
             window: Window::default(),
             panels: UiState::default(),
             curves: CurveCache::default(),
@@ -157,16 +161,23 @@ impl Segue {
     /// Takes a new window, with all that belongs to its graphics device.
     fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.wakes(&cc.egui_ctx);
-        self.window = Window { generation: self.window.generation + 1, ..Window::default() };
+        self.window = Window {
+            generation: self.window.generation + 1,
+            ..Window::default()
+        };
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
         self.window.backend = api::backend_name(state.adapter.get_info().backend).to_owned();
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
-        state.device.set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
+        state
+            .device
+            .set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
         // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of everything.
-        state.device.on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
+        state
+            .device
+            .on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
     }
 
     /// Lets go of the window: what becomes of its device is no news.
@@ -230,7 +241,8 @@ impl Segue {
                 self.samples.retain(|id| *id != sample.id);
                 let loaded = result.and_then(|packed| self.session.load_sample(sample, &packed).map_err(|error| error.to_string()));
                 if let Err(reason) = loaded {
-                    self.session.say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
+                    self.session
+                        .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
                 }
             }
             Incoming::Progress { address, done, total } => {
@@ -296,7 +308,8 @@ impl Segue {
             }
         }
         let wanted = self.session.params().text(Key::Src);
-        self.downloads.keep_only(|address| wanted.split_whitespace().any(|source| source == address));
+        self.downloads
+            .keep_only(|address| wanted.split_whitespace().any(|source| source == address));
     }
 
     /// What happens in every frame, and now and then while the page is hidden. No drawing.
@@ -376,7 +389,10 @@ impl Segue {
         }
         self.window.within_event = ctx.input(|input| {
             let computed_at_once = |event: &egui::Event| {
-                matches!(event, egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_))
+                matches!(
+                    event,
+                    egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_)
+                )
             };
             input.events.iter().any(computed_at_once)
         });
@@ -411,16 +427,23 @@ impl Segue {
             if notice.id >= self.told.next_notice {
                 self.told.next_notice = notice.id + 1;
                 if notice.level == Level::Error {
-                    events.push(Event::Error { message: notice.text.clone() });
+                    events.push(Event::Error {
+                        message: notice.text.clone(),
+                    });
                 }
             }
         }
         for (name, progress) in self.session.jobs() {
-            events.push(Event::Progress { name: name.to_owned(), progress: Some(f64::from(progress)) });
+            events.push(Event::Progress {
+                name: name.to_owned(),
+                progress: Some(f64::from(progress)),
+            });
         }
         if self.session.revision() != self.told.revision && !self.keeper.is_waiting() {
             self.told.revision = self.session.revision();
-            events.push(Event::Change { query: link_query(&self.session) });
+            events.push(Event::Change {
+                query: link_query(&self.session),
+            });
         }
         events
     }
@@ -437,7 +460,10 @@ impl View {
     /// A window that begins to draw `segue`.
     pub(crate) fn new(segue: Shared, cc: &eframe::CreationContext<'_>, tell: impl Fn(Vec<Event>) + 'static) -> Self {
         segue.borrow_mut().attach(cc);
-        Self { segue, tell: Box::new(tell) }
+        Self {
+            segue,
+            tell: Box::new(tell),
+        }
     }
 }
 

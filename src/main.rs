@@ -1,6 +1,9 @@
 //! The Segue app: a desktop window natively, the whole page on the web.
 
-#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "the page's API needs more of it than the window does"))]
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "the page's API needs more of it than the window does")
+)]
 mod app;
 mod platform;
 mod render;
@@ -16,13 +19,20 @@ fn main() -> eframe::Result {
     let segue = app::Segue::start(inbox.clone());
     platform::read_arguments(&inbox);
     let options = eframe::NativeOptions {
-        viewport: ViewportBuilder::default().with_title("Segue").with_inner_size([1280.0, 800.0]).with_min_inner_size([390.0, 600.0]),
+        viewport: ViewportBuilder::default()
+            .with_title("Segue")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([390.0, 600.0]),
         ..Default::default()
     };
-    eframe::run_native("segue", options, Box::new(move |cc| Ok(Box::new(app::View::new(segue, cc, |_| {})))))
+    eframe::run_native(
+        "segue",
+        options,
+        Box::new(move |cc| Ok(Box::new(app::View::new(segue, cc, |_| {})))),
+    )
 }
 
-/// The page's modules start the app, through [`platform::SegueHandle`]; here is only what comes before.
+/// The page's modules start the app, through the `SegueHandle` of [`platform`]; here is only what comes before.
 #[cfg(target_arch = "wasm32")]
 fn main() {
     eframe::WebLogger::init(log::LevelFilter::Warn).ok();

@@ -21,7 +21,11 @@ pub(crate) struct AddressBar {
 /// The query of a link to this state. A link without any would show what a first visitor sees, so it always names something.
 pub(crate) fn link_query(session: &Session) -> String {
     let query = session.query();
-    if query.is_empty() { format!("{}={}", Key::Lab.param().name, session.params().text(Key::Lab)) } else { query }
+    if query.is_empty() {
+        format!("{}={}", Key::Lab.param().name, session.params().text(Key::Lab))
+    } else {
+        query
+    }
 }
 
 impl AddressBar {

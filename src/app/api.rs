@@ -112,7 +112,11 @@ pub(crate) fn backend_name(backend: Backend) -> &'static str {
 /// Every row of the table of parameters.
 pub(crate) fn keys() -> Vec<KeyInfo> {
     let row = |param: &'static Param| {
-        let number = if let Kind::Number { min, max, step, auto, .. } = param.kind { Some((min, max, step, auto)) } else { None };
+        let number = if let Kind::Number { min, max, step, auto, .. } = param.kind {
+            Some((min, max, step, auto))
+        } else {
+            None
+        };
         KeyInfo {
             key: param.name,
             label: param.label,
@@ -121,7 +125,11 @@ pub(crate) fn keys() -> Vec<KeyInfo> {
             max: number.map(|(_, max, ..)| max),
             step: number.map(|(_, _, step, _)| step),
             auto: number.is_some_and(|(.., auto)| auto),
-            choices: if let Kind::Choice(choices) = param.kind { choices.iter().map(|choice| choice.key).collect() } else { Vec::new() },
+            choices: if let Kind::Choice(choices) = param.kind {
+                choices.iter().map(|choice| choice.key).collect()
+            } else {
+                Vec::new()
+            },
             default: param.to_json(&param.default_value()),
             unit: param.unit,
             lab: param.group.name(),
@@ -140,12 +148,18 @@ impl Segue {
     /// Every parameter's value by its key.
     pub(crate) fn params(&self) -> Map<String, Json> {
         let params = self.session.params();
-        PARAMS.iter().map(|param| (param.name.to_owned(), param.to_json(params.get(param.key)))).collect()
+        PARAMS
+            .iter()
+            .map(|param| (param.name.to_owned(), param.to_json(params.get(param.key))))
+            .collect()
     }
 
     /// Sets parameters, all or none.
     pub(crate) fn set(&mut self, values: &Map<String, Json>) -> Result<(), String> {
-        let checked = values.iter().map(|(name, json)| self.checked(name, json)).collect::<Result<Vec<_>, String>>()?;
+        let checked = values
+            .iter()
+            .map(|(name, json)| self.checked(name, json))
+            .collect::<Result<Vec<_>, String>>()?;
         self.apply(Command::Set(checked)).map_err(|error| error.to_string())?;
         self.apply(Command::Settle).map_err(|error| error.to_string())
     }
@@ -154,7 +168,11 @@ impl Segue {
         let key = Key::from_name(name).ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
         let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
         if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
-            let entry = self.session.library().find(id).ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
+            let entry = self
+                .session
+                .library()
+                .find(id)
+                .ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
             value = Value::Text(entry.id.clone());
         }
         Ok((key, value))
@@ -165,7 +183,10 @@ impl Segue {
         self.pump();
         let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
-        Ok(LoadedClips { clips, warnings: loaded.warnings })
+        Ok(LoadedClips {
+            clips,
+            warnings: loaded.warnings,
+        })
     }
 
     /// The link that restores this state.
@@ -204,10 +225,16 @@ impl Segue {
         let panes = self.session.panes();
         let Some(index) = pane else {
             let entry = self.session.library().find(which);
-            let entry = entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
-            return entry.motion.clone().ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
+            let entry =
+                entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
+            return entry
+                .motion
+                .clone()
+                .ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
         };
-        let pane = panes.get(index).ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
+        let pane = panes
+            .get(index)
+            .ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
         match (&pane.outcome, &pane.problem) {
             (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
             (None, Some(problem)) => Err(format!("there is no result: {problem}")),
@@ -234,9 +261,16 @@ impl Segue {
     pub(crate) fn metrics(&self) -> BTreeMap<&'static str, MetricInfo> {
         let panes = self.session.panes();
         let of_pane = |pane: &Pane, id| {
-            pane.outcome.as_ref()?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
+            pane.outcome
+                .as_ref()?
+                .metrics
+                .iter()
+                .find(|metric| metric.id == id)
+                .and_then(|metric| metric.value)
         };
-        let Some(main) = self.session.main_outcome() else { return BTreeMap::new() };
+        let Some(main) = self.session.main_outcome() else {
+            return BTreeMap::new();
+        };
         let info = |metric: &Metric| MetricInfo {
             label: metric.label,
             value: metric.value,
@@ -255,8 +289,16 @@ impl Segue {
         }
         let motion = self.motion(which)?;
         let text = bvh::write(&motion.clip, &bvh::WriteOptions::default());
-        let stem = if which.starts_with("result") { self.result_name() } else { motion.clip.name().to_owned() };
-        Ok(ExportedFile { name: file_name(&stem, "bvh"), mime: "text/plain", bytes: text.into_bytes() })
+        let stem = if which.starts_with("result") {
+            self.result_name()
+        } else {
+            motion.clip.name().to_owned()
+        };
+        Ok(ExportedFile {
+            name: file_name(&stem, "bvh"),
+            mime: "text/plain",
+            bytes: text.into_bytes(),
+        })
     }
 
     /// What a result is called as a file: what it was made from.
@@ -271,9 +313,17 @@ impl Segue {
 
     /// What is under way.
     fn jobs(&self) -> Vec<JobInfo> {
-        let computed = self.session.jobs().into_iter().map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
+        let computed = self
+            .session
+            .jobs()
+            .into_iter()
+            .map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
         let samples = self.samples.iter().map(|id| ((*id).to_owned(), None));
-        computed.chain(self.downloads.under_way()).chain(samples).map(|(name, progress)| JobInfo { name, progress }).collect()
+        computed
+            .chain(self.downloads.under_way())
+            .chain(samples)
+            .map(|(name, progress)| JobInfo { name, progress })
+            .collect()
     }
 
     /// How the app is doing.
@@ -300,7 +350,13 @@ impl Segue {
 
 /// A file's name that every system takes.
 fn file_name(stem: &str, ending: &str) -> String {
-    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' };
+    let plain = |c: char| {
+        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') {
+            c
+        } else {
+            '_'
+        }
+    };
     let stem: String = stem.chars().map(plain).take(100).collect();
     let stem = stem.trim().trim_start_matches('.');
     format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
@@ -319,19 +375,30 @@ mod tests {
     }
 
     fn object(json: Json) -> Map<String, Json> {
-        if let Json::Object(map) = json { map } else { panic!("{json} is no object") }
+        if let Json::Object(map) = json {
+            map
+        } else {
+            panic!("{json} is no object")
+        }
     }
 
     #[test]
     fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
         let mut segue = open("lab=blend");
-        segue.set(&object(json!({ "blend_window": 24, "align": false, "weight_law": "linear", "leave_a": "auto" }))).unwrap();
+        segue
+            .set(&object(
+                json!({ "blend_window": 24, "align": false, "weight_law": "linear", "leave_a": "auto" }),
+            ))
+            .unwrap();
         assert_eq!(segue.params()["blend_window"], json!(24.0));
         assert_eq!(segue.params()["align"], json!(false));
         let before = segue.url();
         for (values, part) in [
             (json!({ "blend_window": 12, "colour": "red" }), "`colour` is not a parameter"),
-            (json!({ "align": true, "blend_window": 0 }), "blend_window: found 0, expected 1 to 240 frames"),
+            (
+                json!({ "align": true, "blend_window": 0 }),
+                "blend_window: found 0, expected 1 to 240 frames",
+            ),
             (json!({ "blend_window": null }), "blend_window: found `null`, expected a number"),
             (json!({ "a": "nobody" }), "a: there is no clip `nobody`"),
             (json!({ "blend_window": [1, 2] }), "blend_window: found `[1,2]`"),
@@ -348,7 +415,7 @@ mod tests {
         assert_eq!(segue.url(), "?blend_window=24");
         segue.set(&object(json!({ "blend_window": 30 }))).unwrap();
         assert_eq!(segue.url(), "?lab=blend");
-        assert_eq!(open("lab=blend").params(), segue.params());
+        assert_eq!(open("lab=blend").url(), segue.url());
     }
 
     #[test]
@@ -371,7 +438,10 @@ mod tests {
         let pose = segue.pose("result:1", 0.5).unwrap();
         let joints = pose.joints.len();
         assert!(joints > 10);
-        assert_eq!((pose.parents.len(), pose.positions.len(), pose.rotations.len()), (joints, 3 * joints, 4 * joints));
+        assert_eq!(
+            (pose.parents.len(), pose.positions.len(), pose.rotations.len()),
+            (joints, 3 * joints, 4 * joints)
+        );
         assert_eq!(pose.parents[0], -1);
         // Bones keep their lengths: a child is as far from its parent as at the start.
         let start = segue.pose("result:1", 0.0).unwrap();
@@ -407,7 +477,12 @@ mod tests {
         assert_eq!(loaded.clips.len(), 1);
         assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
         assert_eq!(segue.export("result", "csv").unwrap_err(), "found `csv`, expected bvh");
-        assert!(segue.load_file("x.bvh", Arc::from(&b"HIERARCHY oops"[..])).unwrap_err().starts_with("x.bvh:1:"));
+        assert!(
+            segue
+                .load_file("x.bvh", Arc::from(&b"HIERARCHY oops"[..]))
+                .unwrap_err()
+                .starts_with("x.bvh:1:")
+        );
         assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
     }
 

@@ -27,7 +27,13 @@ impl Downloads {
             return;
         }
         let fetch = fetch(&address, inbox);
-        self.0.push_back(Download { address, done: 0, total: None, fetched: None, _fetch: fetch });
+        self.0.push_back(Download {
+            address,
+            done: 0,
+            total: None,
+            fetched: None,
+            _fetch: fetch,
+        });
     }
 
     /// Stops what is not asked for any more.

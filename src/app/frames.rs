@@ -48,7 +48,11 @@ impl Frames {
             let index = (share * sorted.len() as f32).ceil() as usize;
             sorted.get(index.saturating_sub(1)).copied().unwrap_or_default()
         };
-        FrameTimes { p50: rank(0.5), p95: rank(0.95), max: rank(1.0) }
+        FrameTimes {
+            p50: rank(0.5),
+            p95: rank(0.95),
+            max: rank(1.0),
+        }
     }
 }
 
@@ -62,6 +66,13 @@ mod tests {
         assert_eq!(frames.times(), FrameTimes::default());
         (0..1000).for_each(|_| frames.took(500.0));
         (1..=REMEMBERED).rev().for_each(|millis| frames.took(millis as f32));
-        assert_eq!(frames.times(), FrameTimes { p50: 120.0, p95: 228.0, max: 240.0 });
+        assert_eq!(
+            frames.times(),
+            FrameTimes {
+                p50: 120.0,
+                p95: 228.0,
+                max: 240.0
+            }
+        );
     }
 }

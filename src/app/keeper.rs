@@ -18,7 +18,10 @@ struct Mark {
 
 impl Mark {
     fn of(session: &Session) -> Self {
-        Self { library: session.library_revision(), query: session.query() }
+        Self {
+            library: session.library_revision(),
+            query: session.query(),
+        }
     }
 }
 
@@ -69,7 +72,11 @@ impl Keeper {
             return false;
         }
         self.open(session, None);
-        self.phase = if self.storage.is_some() { Phase::Late { begun: Mark::of(session) } } else { Phase::Ready };
+        self.phase = if self.storage.is_some() {
+            Phase::Late { begun: Mark::of(session) }
+        } else {
+            Phase::Ready
+        };
         true
     }
 
@@ -135,14 +142,19 @@ impl Keeper {
 
     /// Stores the work at once, if there is anything new in it.
     pub(crate) fn save_now(&mut self, session: &Session) {
-        let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else { return };
+        let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else {
+            return;
+        };
         self.changed_at_ms = None;
         let now = Mark::of(session);
         if now == self.stored {
             return;
         }
         match serde_json::to_string(&session.saved()) {
-            Ok(record) => storage.save(Work { record, files: files_of(session) }),
+            Ok(record) => storage.save(Work {
+                record,
+                files: files_of(session),
+            }),
             Err(error) => log::error!("the work cannot be written down: {error}"),
         }
         self.stored.clone_from(&now);
@@ -166,8 +178,14 @@ mod tests {
     use segue::session::{Command, Key, Value};
 
     fn stored(query: &str) -> Option<Stored> {
-        let saved = Saved { query: query.into(), ..Session::new().saved() };
-        Some(Stored { saved, files: StoredFiles::new() })
+        let saved = Saved {
+            query: query.into(),
+            ..Session::new().saved()
+        };
+        Some(Stored {
+            saved,
+            files: StoredFiles::new(),
+        })
     }
 
     fn keeper(link: &str) -> (Keeper, Session) {
@@ -175,14 +193,19 @@ mod tests {
     }
 
     fn set_window(session: &mut Session, frames: f64) {
-        session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
+        session
+            .apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]))
+            .unwrap();
     }
 
     #[test]
     fn what_is_stored_comes_before_the_first_frame() {
         let (mut keeper, mut session) = keeper("");
         assert!(!keeper.wait(&mut session, 1100.0) && keeper.is_waiting());
-        assert!(!keeper.arrived(&mut session, stored("blend_window=24")), "the address does not say what is shown");
+        assert!(
+            !keeper.arrived(&mut session, stored("blend_window=24")),
+            "the address does not say what is shown"
+        );
         assert!(!keeper.is_waiting());
         assert_eq!(session.query(), "blend_window=24");
     }
@@ -200,7 +223,11 @@ mod tests {
         let welcome = session.query();
         assert!(keeper.wait(&mut session, 1151.0) && !keeper.is_waiting());
         assert_eq!(session.query(), welcome);
-        assert_eq!(keeper.tend(&session, 9000.0), None, "nothing is stored over what has not been read yet");
+        assert_eq!(
+            keeper.tend(&session, 9000.0),
+            None,
+            "nothing is stored over what has not been read yet"
+        );
         keeper.arrived(&mut session, stored("blend_window=24"));
         assert_eq!(session.query(), "blend_window=24");
     }

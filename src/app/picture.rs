@@ -50,7 +50,10 @@ impl Picture {
         let Some((rect, panes, painter, index)) = place.0 else { return };
         let scale = ui.ctx().pixels_per_point();
         let size = render::stage_pixels(ui.ctx(), rect);
-        let shown: Vec<(usize, Viewport)> = panes.into_iter().map(|(pane, place)| (pane, within(rect, place, size, scale))).collect();
+        let shown: Vec<(usize, Viewport)> = panes
+            .into_iter()
+            .map(|(pane, place)| (pane, within(rect, place, size, scale)))
+            .collect();
         let stage = self.director.stage(session, &shown, scale, look, &colors_of(palette), dt_secs);
         painter.set(index, render::paint_callback(STAGE, rect, stage));
     }
@@ -69,9 +72,20 @@ impl Picture {
 /// A part of a stage in the pixels of its target.
 fn within(stage: Rect, part: Rect, size: [u32; 2], scale: f32) -> Viewport {
     let pixel = |points: f32, most: u32| (points * scale).round().clamp(0.0, most as f32) as u32;
-    let (left, right) = (pixel(part.left() - stage.left(), size[0]), pixel(part.right() - stage.left(), size[0]));
-    let (top, bottom) = (pixel(part.top() - stage.top(), size[1]), pixel(part.bottom() - stage.top(), size[1]));
-    Viewport { x: left, y: top, width: right.saturating_sub(left), height: bottom.saturating_sub(top) }
+    let (left, right) = (
+        pixel(part.left() - stage.left(), size[0]),
+        pixel(part.right() - stage.left(), size[0]),
+    );
+    let (top, bottom) = (
+        pixel(part.top() - stage.top(), size[1]),
+        pixel(part.bottom() - stage.top(), size[1]),
+    );
+    Viewport {
+        x: left,
+        y: top,
+        width: right.saturating_sub(left),
+        height: bottom.saturating_sub(top),
+    }
 }
 
 fn colors_of(palette: &Palette) -> Colors {
@@ -94,7 +108,10 @@ mod tests {
     fn panes_fill_the_target_without_gaps() {
         let stage = Rect::from_min_size(pos2(10.0, 48.0), vec2(1001.0, 400.0));
         let middle = pos2(343.0, 48.0);
-        let (left, right) = (Rect::from_min_max(stage.min, pos2(middle.x, 448.0)), Rect::from_min_max(middle, stage.max));
+        let (left, right) = (
+            Rect::from_min_max(stage.min, pos2(middle.x, 448.0)),
+            Rect::from_min_max(middle, stage.max),
+        );
         for scale in [1.0, 1.25, 1.5, 2.0] {
             let size = [(1001.0 * scale) as u32, (400.0 * scale) as u32];
             let (a, b) = (within(stage, left, size, scale), within(stage, right, size, scale));

@@ -7,9 +7,14 @@ use percent_encoding::percent_decode_str;
 const BACKEND: &str = "backend";
 
 /// The value of `backend=` in a query.
-#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a window has no backend to choose by its address"))]
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "a window has no backend to choose by its address")
+)]
 pub(super) fn backend_of(query: &str) -> Option<String> {
-    form_urlencoded::parse(bare(query).as_bytes()).find(|(key, _)| key == BACKEND).map(|(_, value)| value.into_owned())
+    form_urlencoded::parse(bare(query).as_bytes())
+        .find(|(key, _)| key == BACKEND)
+        .map(|(_, value)| value.into_owned())
 }
 
 /// `query` with the `backend=` that `old` has.
@@ -25,8 +30,10 @@ pub(super) fn with_backend_of(query: &str, old: &str) -> String {
 
 /// A query without its question mark and without `backend=`.
 pub(super) fn state_of(query: &str) -> String {
-    let pairs: Vec<&str> =
-        bare(query).split('&').filter(|pair| !pair.is_empty() && pair.split('=').next() != Some(BACKEND)).collect();
+    let pairs: Vec<&str> = bare(query)
+        .split('&')
+        .filter(|pair| !pair.is_empty() && pair.split('=').next() != Some(BACKEND))
+        .collect();
     pairs.join("&")
 }
 
@@ -41,7 +48,11 @@ pub(crate) fn file_name_of(address: &str) -> String {
     // The host alone names no file.
     let name = path.split_once('/').map_or("", |(_, path)| last_part(path));
     let name = percent_decode_str(name).decode_utf8_lossy();
-    if name.is_empty() { "download".to_owned() } else { name.into_owned() }
+    if name.is_empty() {
+        "download".to_owned()
+    } else {
+        name.into_owned()
+    }
 }
 
 #[cfg(test)]

@@ -124,10 +124,19 @@ mod tests {
         });
         let other_end = inbox.clone();
         for name in ["1.bvh", "2.bvh"] {
-            other_end.push(Incoming::File { name: name.into(), bytes: Arc::from([]) });
+            other_end.push(Incoming::File {
+                name: name.into(),
+                bytes: Arc::from([]),
+            });
         }
         let names: Vec<String> = (inbox.take().into_iter())
-            .map(|incoming| if let Incoming::File { name, .. } = incoming { name } else { String::new() })
+            .map(|incoming| {
+                if let Incoming::File { name, .. } = incoming {
+                    name
+                } else {
+                    String::new()
+                }
+            })
             .collect();
         assert_eq!(names, ["1.bvh", "2.bvh"]);
         assert!(inbox.take().is_empty());

@@ -16,7 +16,7 @@ pub(crate) use native::*;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use web::*;
 
-pub(crate) use inbox::{Incoming, Inbox};
+pub(crate) use inbox::{Inbox, Incoming};
 
 use segue::session::Saved;
 use std::collections::BTreeMap;
@@ -50,7 +50,11 @@ pub(crate) struct Work {
 fn too_large(name: &str, bytes: u64) -> Option<String> {
     (bytes > MAX_FILE_BYTES).then(|| {
         let megabytes = |bytes: u64| bytes.div_ceil(1024 * 1024);
-        format!("{name} has {} MB; files of up to {} MB are read.", megabytes(bytes), megabytes(MAX_FILE_BYTES))
+        format!(
+            "{name} has {} MB; files of up to {} MB are read.",
+            megabytes(bytes),
+            megabytes(MAX_FILE_BYTES)
+        )
     })
 }
 

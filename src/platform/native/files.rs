@@ -31,7 +31,11 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
 
 /// Reads the files that the command line names, in order.
 pub(crate) fn read_arguments(inbox: &Inbox) {
-    let paths: Vec<PathBuf> = std::env::args().skip(1).filter(|argument| !is_query(argument)).map(PathBuf::from).collect();
+    let paths: Vec<PathBuf> = std::env::args()
+        .skip(1)
+        .filter(|argument| !is_query(argument))
+        .map(PathBuf::from)
+        .collect();
     let inbox = inbox.clone();
     std::thread::spawn(move || {
         for path in paths {
@@ -61,7 +65,10 @@ fn read_path(path: &Path, inbox: &Inbox) {
         }
     };
     inbox.push(match bytes {
-        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
+        Ok(bytes) => Incoming::File {
+            name,
+            bytes: Arc::from(bytes),
+        },
         Err(reason) => Incoming::Failed { reason },
     });
 }
@@ -73,7 +80,9 @@ pub(crate) fn download(file_name: &str, _mime: &str, bytes: &[u8], inbox: &Inbox
     std::thread::spawn(move || {
         let Some(file) = pollster::block_on(asked) else { return };
         if let Err(error) = std::fs::write(file.path(), bytes) {
-            inbox.push(Incoming::Failed { reason: format!("{} could not be saved: {error}.", file.path().display()) });
+            inbox.push(Incoming::Failed {
+                reason: format!("{} could not be saved: {error}.", file.path().display()),
+            });
         }
     });
 }
@@ -94,7 +103,13 @@ mod tests {
         read_path(Path::new(env!("CARGO_MANIFEST_DIR")), &inbox);
         read_path(Path::new("/nowhere/walk.bvh"), &inbox);
         let reasons: Vec<String> = (inbox.take().into_iter())
-            .map(|incoming| if let Incoming::Failed { reason } = incoming { reason } else { String::new() })
+            .map(|incoming| {
+                if let Incoming::Failed { reason } = incoming {
+                    reason
+                } else {
+                    String::new()
+                }
+            })
             .collect();
         assert!(reasons[0].ends_with("is a folder. Drop the files in it."), "{reasons:?}");
         assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");

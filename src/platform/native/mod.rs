@@ -21,7 +21,10 @@ pub(crate) fn now_ms() -> f64 {
 
 /// The state that the command line describes: `segue "lab=blend&blend_window=24"`.
 pub(crate) fn location_query() -> String {
-    std::env::args().skip(1).find(|argument| files::is_query(argument)).map_or_else(String::new, |query| address::state_of(&query))
+    std::env::args()
+        .skip(1)
+        .find(|argument| files::is_query(argument))
+        .map_or_else(String::new, |query| address::state_of(&query))
 }
 
 /// A window has no address.
@@ -42,15 +45,24 @@ pub(crate) struct Fetch;
 /// A window loads nothing over the network, and says so.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let reason = format!("This window does not load files over the network. Download {address} and drop the file here.");
-    inbox.push(Incoming::Fetched { address: address.to_owned(), result: Err(reason) });
+    inbox.push(Incoming::Fetched {
+        address: address.to_owned(),
+        result: Err(reason),
+    });
     Fetch
 }
 
 /// Reads a bundled take; [`Incoming::Sample`] brings it. They lie in `samples` beside the program, or in the project's folder.
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
-    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join("samples")));
+    let beside = std::env::current_exe()
+        .ok()
+        .and_then(|program| Some(program.parent()?.join("samples")));
     let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples");
-    let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(sample.file)).collect();
+    let paths: Vec<_> = beside
+        .into_iter()
+        .chain([in_project])
+        .map(|folder| folder.join(sample.file))
+        .collect();
     let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
     let result = match read {
         Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),

@@ -60,7 +60,10 @@ impl Storage {
                 }
             }
         });
-        Self(Some(Arc::new(Mutex::new(Writer { queue: Some(queue), thread: Some(thread) }))))
+        Self(Some(Arc::new(Mutex::new(Writer {
+            queue: Some(queue),
+            thread: Some(thread),
+        }))))
     }
 
     /// Writes the work, the newest one last. What it no longer needs is deleted.
@@ -90,7 +93,9 @@ fn folder() -> Option<PathBuf> {
 
 fn read(folder: &Path) -> Option<Stored> {
     let record = fs::read(folder.join(RECORD)).ok()?;
-    let saved = serde_json::from_slice(&record).map_err(|error| log::warn!("the stored work is of another version: {error}")).ok()?;
+    let saved = serde_json::from_slice(&record)
+        .map_err(|error| log::warn!("the stored work is of another version: {error}"))
+        .ok()?;
     let mut files = StoredFiles::new();
     for entry in fs::read_dir(folder.join(FILES)).ok().into_iter().flatten().flatten() {
         if let (Some(key), Ok(bytes)) = (entry.file_name().to_str(), fs::read(entry.path())) {
@@ -139,7 +144,10 @@ mod tests {
     }
 
     fn work_of(query: &str, files: &[&str]) -> Work {
-        let saved = Saved { query: query.into(), entries: Vec::new() };
+        let saved = Saved {
+            query: query.into(),
+            entries: Vec::new(),
+        };
         Work {
             record: serde_json::to_string(&saved).unwrap(),
             files: files.iter().map(|&key| (key.to_owned(), Arc::from(key.as_bytes()))).collect(),

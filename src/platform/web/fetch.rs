@@ -50,7 +50,10 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
             Ok(response) if !response.ok() => Err(format!("its server answered {}", response.status())),
             Ok(response) => whole(&response).await.map_err(|error| words_of(&error)),
         };
-        inbox.push(Incoming::Sample { sample, result: result.map(Arc::from) });
+        inbox.push(Incoming::Sample {
+            sample,
+            result: result.map(Arc::from),
+        });
     });
 }
 
@@ -76,12 +79,25 @@ async fn get(address: &str, signal: Option<&AbortSignal>, inbox: &Inbox) -> Resu
     match response.status() {
         200..=299 => {}
         404 | 410 => return Err(format!("There is no file at {address} (answer {}).", response.status())),
-        401 | 403 => return Err(format!("{} does not give {name} to everybody (answer {}).", host_of(address), response.status())),
-        status => return Err(format!("{} answered {status} instead of {name}. Try again later.", host_of(address))),
+        401 | 403 => {
+            return Err(format!(
+                "{} does not give {name} to everybody (answer {}).",
+                host_of(address),
+                response.status()
+            ));
+        }
+        status => {
+            return Err(format!(
+                "{} answered {status} instead of {name}. Try again later.",
+                host_of(address)
+            ));
+        }
     }
     let header = |key| response.headers().get(key).ok().flatten();
     if header("content-type").is_some_and(|kind| kind.starts_with("text/html")) {
-        return Err(format!("{address} is a web page, not a motion file. Use the address of the file itself (on GitHub: Raw)."));
+        return Err(format!(
+            "{address} is a web page, not a motion file. Use the address of the file itself (on GitHub: Raw)."
+        ));
     }
     let total = header("content-length").and_then(|length| length.parse::<u64>().ok());
     if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes)) {
@@ -125,7 +141,11 @@ async fn read(response: &Response, address: &str, total: Option<u64>, inbox: &In
         bytes.extend(piece.to_vec());
         // The length is that of what travels, packed; once there is more than that, it says nothing.
         let total = total.filter(|&total| done <= total);
-        inbox.push(Incoming::Progress { address: address.to_owned(), done, total });
+        inbox.push(Incoming::Progress {
+            address: address.to_owned(),
+            done,
+            total,
+        });
     }
 }
 
@@ -135,7 +155,10 @@ async fn why_refused(address: &str) -> String {
     let host = host_of(address);
     let Some(window) = window() else { return String::new() };
     if !window.navigator().on_line() {
-        return format!("There is no connection to the internet, so {} was not loaded.", file_name_of(address));
+        return format!(
+            "There is no connection to the internet, so {} was not loaded.",
+            file_name_of(address)
+        );
     }
     if address.starts_with("http://") && window.is_secure_context() && window.location().protocol().is_ok_and(|p| p == "https:") {
         return format!("Browsers do not let a secure page load from {address}. Use an address that starts with https://.");

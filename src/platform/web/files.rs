@@ -26,7 +26,9 @@ pub(crate) fn open_files(inbox: &Inbox) {
         document.body().ok_or("no body")?.append_child(&input)?;
         let (chosen, inbox) = (input.clone(), inbox.clone());
         listen(Some(&input), "change", move |_| {
-            let files = chosen.files().map(|list| (0..list.length()).filter_map(|index| list.get(index)).collect());
+            let files = chosen
+                .files()
+                .map(|list| (0..list.length()).filter_map(|index| list.get(index)).collect());
             chosen.remove();
             spawn_local(read(files.unwrap_or_default(), inbox.clone()));
         });
@@ -55,10 +57,15 @@ async fn read(files: Vec<File>, inbox: Inbox) {
 
 fn deliver(name: String, bytes: Result<Vec<u8>, String>, inbox: &Inbox) {
     inbox.push(match bytes {
-        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
+        Ok(bytes) => Incoming::File {
+            name,
+            bytes: Arc::from(bytes),
+        },
         Err(error) => {
             log::warn!("{name}: {error}");
-            Incoming::Failed { reason: format!("{name} cannot be read. If it is a folder, drop the files in it.") }
+            Incoming::Failed {
+                reason: format!("{name} cannot be read. If it is a folder, drop the files in it."),
+            }
         }
     });
 }
@@ -68,7 +75,11 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
         for file in files {
-            let name = file.path().file_name().and_then(|name| name.to_str()).map_or_else(|| path_text(file.path()), str::to_owned);
+            let name = file
+                .path()
+                .file_name()
+                .and_then(|name| name.to_str())
+                .map_or_else(|| path_text(file.path()), str::to_owned);
             let size = file.web_file().map_or(0.0, |file| file.size());
             if let Some(reason) = too_large(&name, size as u64) {
                 inbox.push(Incoming::Failed { reason });
@@ -106,6 +117,8 @@ pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox)
         Ok(())
     })();
     if let Err(error) = handed {
-        inbox.push(Incoming::Failed { reason: format!("{file_name} could not be saved: {}.", words_of(&error)) });
+        inbox.push(Incoming::Failed {
+            reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
+        });
     }
 }

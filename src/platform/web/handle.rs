@@ -99,7 +99,9 @@ impl SegueHandle {
     /// What it panicked over, and where.
     #[wasm_bindgen(js_name = panicSummary)]
     pub fn panic_summary(&self) -> Option<String> {
-        self.runner.panic_summary().map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
+        self.runner
+            .panic_summary()
+            .map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
     }
 
     /// Reads a file, as if it were dropped on the page.
@@ -176,7 +178,11 @@ impl SegueHandle {
     /// A motion as the bytes of a file.
     #[wasm_bindgen(js_name = exportClip)]
     pub fn export_clip(&self, which: &str, format: &str) -> Result<Vec<u8>, JsValue> {
-        Ok(self.borrow()?.export(which, format).map_err(|reason| error(format!("export: {reason}")))?.bytes)
+        Ok(self
+            .borrow()?
+            .export(which, format)
+            .map_err(|reason| error(format!("export: {reason}")))?
+            .bytes)
     }
 
     /// The stage as a PNG.
@@ -211,11 +217,15 @@ impl SegueHandle {
 
 impl SegueHandle {
     fn borrow(&self) -> Result<std::cell::Ref<'_, Segue>, JsValue> {
-        self.segue.try_borrow().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+        self.segue
+            .try_borrow()
+            .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
     fn borrow_mut(&self) -> Result<std::cell::RefMut<'_, Segue>, JsValue> {
-        self.segue.try_borrow_mut().map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
+        self.segue
+            .try_borrow_mut()
+            .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
     async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
@@ -230,7 +240,10 @@ impl SegueHandle {
             }
         };
         let options = WebOptions {
-            wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() },
+            wgpu_options: WgpuConfiguration {
+                wgpu_setup: WgpuSetup::CreateNew(setup),
+                ..WgpuConfiguration::default()
+            },
             ..WebOptions::default()
         };
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));

@@ -12,7 +12,6 @@ pub(crate) use fetch::{Fetch, fetch, load_sample};
 pub(crate) use files::{download, open_files, read_dropped};
 pub(crate) use page::{full_link, location_query, now_ms, replace_query, watch_navigation};
 pub(crate) use storage::Storage;
-pub use handle::SegueHandle;
 
 use wasm_bindgen::{JsCast as _, JsValue};
 

@@ -18,7 +18,9 @@ pub(super) fn document() -> Option<Document> {
 
 /// Milliseconds since some fixed moment; never goes back.
 pub(crate) fn now_ms() -> f64 {
-    window().and_then(|window| window.performance()).map_or_else(js_sys::Date::now, |performance| performance.now())
+    window()
+        .and_then(|window| window.performance())
+        .map_or_else(js_sys::Date::now, |performance| performance.now())
 }
 
 fn search() -> String {
@@ -42,7 +44,11 @@ pub(crate) fn replace_query(query: &str) {
     let location = window.location();
     let result = location.pathname().and_then(|path| {
         let hash = location.hash().unwrap_or_default();
-        let address = if query.is_empty() { format!("{path}{hash}") } else { format!("{path}?{query}{hash}") };
+        let address = if query.is_empty() {
+            format!("{path}{hash}")
+        } else {
+            format!("{path}?{query}{hash}")
+        };
         window.history()?.replace_state_with_url(&JsValue::NULL, "", Some(&address))
     });
     if let Err(error) = result {
@@ -63,18 +69,18 @@ pub(crate) fn full_link(query: &str) -> String {
 /// Tells the app when the user goes back or forward, or changes the address.
 pub(crate) fn watch_navigation(inbox: &Inbox) {
     let inbox = inbox.clone();
-    listen(window().as_deref(), "popstate", move |_| inbox.push(Incoming::Navigated(location_query())));
+    listen(window(), "popstate", move |_| inbox.push(Incoming::Navigated(location_query())));
 }
 
 /// Calls back when the page may be about to go: in the background a browser may end it without a word.
 pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     let hidden = on_hide.clone();
-    listen(document().as_ref().map(AsRef::as_ref), "visibilitychange", move |_| {
+    listen(document(), "visibilitychange", move |_| {
         if is_hidden() {
             hidden();
         }
     });
-    listen(window().as_deref(), "pagehide", move |_| on_hide());
+    listen(window(), "pagehide", move |_| on_hide());
 }
 
 /// Whether nothing is drawn because nobody could see it.
@@ -83,10 +89,13 @@ pub(super) fn is_hidden() -> bool {
 }
 
 /// Listens for as long as the page lives.
-pub(super) fn listen(target: Option<&EventTarget>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+pub(super) fn listen(target: Option<impl AsRef<EventTarget>>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
     let Some(target) = target else { return };
     let closure = Closure::<dyn FnMut(web_sys::Event)>::new(listener);
-    if let Err(error) = target.add_event_listener_with_callback(event, closure.as_ref().unchecked_ref()) {
+    if let Err(error) = target
+        .as_ref()
+        .add_event_listener_with_callback(event, closure.as_ref().unchecked_ref())
+    {
         log::error!("no `{event}` events: {}", super::words_of(&error));
     }
     closure.forget();
@@ -95,7 +104,11 @@ pub(super) fn listen(target: Option<&EventTarget>, event: &str, listener: impl F
 /// Waits.
 pub(super) async fn sleep(millis: i32) {
     resolved(|resolve| {
-        window().is_some_and(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis).is_ok())
+        window().is_some_and(|window| {
+            window
+                .set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis)
+                .is_ok()
+        })
     })
     .await;
 }

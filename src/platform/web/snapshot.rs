@@ -43,8 +43,10 @@ fn copy(canvas: &HtmlCanvasElement, area: Option<Area>) -> Result<HtmlCanvasElem
     let copy: HtmlCanvasElement = document().ok_or("no document")?.create_element("canvas")?.dyn_into()?;
     copy.set_width(width.max(1.0) as u32);
     copy.set_height(height.max(1.0) as u32);
-    let context: CanvasRenderingContext2d =
-        copy.get_context("2d")?.ok_or_else(|| Error::new("snapshot: this browser cannot copy pictures"))?.dyn_into()?;
+    let context: CanvasRenderingContext2d = copy
+        .get_context("2d")?
+        .ok_or_else(|| Error::new("snapshot: this browser cannot copy pictures"))?
+        .dyn_into()?;
     context.draw_image_with_html_canvas_element_and_sw_and_sh_and_dx_and_dy_and_dw_and_dh(
         canvas, x, y, width, height, 0.0, 0.0, width, height,
     )?;
@@ -56,7 +58,9 @@ async fn pack(canvas: &HtmlCanvasElement) -> Result<Blob, JsValue> {
     let promise = Promise::new(&mut |resolve, reject| {
         let done = Closure::once_into_js(move |blob: JsValue| {
             if blob.is_null() {
-                reject.call1(&JsValue::NULL, &Error::new("snapshot: the picture could not be packed")).ok();
+                reject
+                    .call1(&JsValue::NULL, &Error::new("snapshot: the picture could not be packed"))
+                    .ok();
             } else {
                 resolve.call1(&JsValue::NULL, &blob).ok();
             }

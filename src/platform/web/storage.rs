@@ -1,6 +1,5 @@
 //! The work in the browser's IndexedDB: one record, and the files' bytes by their SHA-256.
 
-use super::words_of;
 use crate::platform::{Inbox, Incoming, Stored, StoredFiles, Work};
 use idb::{Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, TransactionMode, TransactionResult};
 use js_sys::Uint8Array;
@@ -38,7 +37,10 @@ struct State {
 impl Storage {
     /// Opens the storage and reads it; [`Incoming::Stored`] brings what is in it.
     pub(crate) fn open(inbox: &Inbox) -> Self {
-        let storage = Self { state: Rc::default(), inbox: inbox.clone() };
+        let storage = Self {
+            state: Rc::default(),
+            inbox: inbox.clone(),
+        };
         let this = storage.clone();
         spawn_local(async move {
             let stored = match this.read().await {
@@ -118,13 +120,17 @@ impl Storage {
         let known = std::mem::take(&mut self.state.borrow_mut().known);
         let written = async {
             // Asked before anything is awaited: when the page is about to go, this much is under way.
-            transaction.object_store(WORK)?.put(&JsValue::from(&work.record), Some(&JsValue::from(LATEST)))?;
+            transaction
+                .object_store(WORK)?
+                .put(&JsValue::from(&work.record), Some(&JsValue::from(LATEST)))?;
             let put = |key: &String, bytes: &Arc<[u8]>| files.put(&Uint8Array::from(&bytes[..]), Some(&JsValue::from(key)));
             for (key, bytes) in work.files.iter().filter(|(key, _)| !known.contains(*key)) {
                 put(key, bytes)?;
             }
             // Another tab of Segue may have written meanwhile: what is there is asked, not remembered.
-            let there: BTreeSet<String> = (files.get_all_keys(None, None)?.await?.iter()).filter_map(JsValue::as_string).collect();
+            let there: BTreeSet<String> = (files.get_all_keys(None, None)?.await?.iter())
+                .filter_map(JsValue::as_string)
+                .collect();
             for key in there.iter().filter(|key| !work.files.contains_key(*key)) {
                 files.delete(JsValue::from(key))?;
             }
