@@ -10,8 +10,8 @@ use segue::session::Session;
 
 /// The one stage of the page.
 const STAGE: u64 = 0;
-/// A camera does not leap over the time that nothing was drawn in, seconds.
-const LONGEST_STEP_SECS: f64 = 0.1;
+/// A camera does not leap over the time that nothing was drawn in, seconds. Slow machines need a second for a frame of many bodies.
+const LONGEST_STEP_SECS: f64 = 1.0;
 
 /// What goes on from frame to frame.
 #[derive(Debug, Default)]

@@ -316,6 +316,9 @@ impl StageRenderer {
             pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
             self.encode_pane(&mut pass, view, pane);
         }
+        // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor would cut.
+        let [width, height] = view.targets.size();
+        pass.set_scissor_rect(0, 0, width, height);
     }
 
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) {

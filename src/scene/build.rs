@@ -144,25 +144,27 @@ impl Director {
         }
     }
 
+    /// Both sources about the transition, as far as they differ from the result: A appears as its weight falls, B vanishes as its weight rises.
     fn draw_sources(&mut self, outcome: &Outcome, now: f64, colors: &Colors, pane: &mut Pane) {
         let Some(transition) = outcome.transition else { return };
-        let outside = (transition.start_secs - now).max(now - transition.end_secs).max(0.0);
-        let fade = (1.0 - outside / GHOST_FADE_SECS) as f32;
-        if fade <= 0.0 {
-            return;
-        }
+        let length = transition.end_secs - transition.start_secs;
+        let inside = ((now - transition.start_secs) / length.max(1e-6)).clamp(0.0, 1.0);
+        let before = ((transition.start_secs - now) / GHOST_FADE_SECS).max(0.0);
+        let behind = ((now - transition.end_secs) / GHOST_FADE_SECS).max(0.0);
         for source in &outcome.sources {
             let at = now - source.starts_at_secs;
-            if !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
+            let (color, share) = match source.slot {
+                Slot::A => (colors.a, inside * (1.0 - behind)),
+                Slot::B => (colors.b, (1.0 - inside) * (1.0 - before)),
+            };
+            // Half of the way there a ghost is as clear as it gets: only where it lies on the result it must not be seen.
+            let share = (2.0 * share).clamp(0.0, 1.0) as f32;
+            if share < 0.02 || !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
                 continue;
             }
             if let Some(world) = pose_at(&source.motion, at, &source.world_from_clip) {
-                let color = match source.slot {
-                    Slot::A => colors.a,
-                    Slot::B => colors.b,
-                };
                 let body = self.body(&source.motion);
-                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * fade));
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * share));
             }
         }
     }

@@ -8,12 +8,13 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Key as Keyboard, RectAlign, RichText, TextEdit, Ui};
 use segue::clip::UpAxis;
 use segue::formats::ImportOptions;
-use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot, format_number};
+use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot};
 use segue::skeleton::Role;
 
 /// The whole panel.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(text::LIBRARY, ui);
+    ui.spacing_mut().item_spacing.y = 1.0;
     for entry in session.library().entries() {
         // A take that nobody asked for yet is behind "samples".
         if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {
@@ -68,15 +69,14 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
     }
 }
 
-/// `3.9 s · 120 fps · 30 joints`.
+/// `3.9 s · 468 frames · 30 joints`.
 fn facts(entry: &Entry) -> String {
     match (&entry.motion, &entry.origin) {
         (Some(motion), _) => {
             let clip = &motion.clip;
             format!(
-                "{:.1} s · {} fps · {} frames · {} joints",
+                "{:.1} s · {} frames · {} joints",
                 clip.duration_secs(),
-                format_number(clip.fps(), 0.01),
                 clip.frames(),
                 clip.skeleton().len()
             )

@@ -75,7 +75,7 @@ fn desk_ui(
     });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
     if layout == Layout::Desk || state.library_open {
-        Panel::left("library").exact_size(232.0 * scale).frame(side(ui)).resizable(false).show(ui, |ui| {
+        Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| library_panel::library_panel_ui(session, state, out, ui));
         });
     }

@@ -29,13 +29,14 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     paint(stage, &shown, ui);
 
     let verdicts = verdicts(panes);
+    let mut numbers_top = stage.bottom();
     for (place, &(index, rect)) in shown.iter().enumerate() {
         if place > 0 {
             let line = egui::Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
             ui.painter().vline(rect.left(), rect.y_range(), line);
         }
         if let Some(pane) = panes.get(index) {
-            pane_ui(pane, index, &verdicts, session, rect, ui);
+            numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, ui));
         }
     }
     if layout == Layout::Phone && panes.len() > 1 {
@@ -43,7 +44,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     }
     camera_buttons_ui(session, stage, state, out, ui);
     if state.hint && session.compare().is_some() && layout != Layout::Phone {
-        let above_numbers = Rect::from_min_max(stage.min, pos2(stage.right(), stage.bottom() - 76.0 * theme_of(ui).scale()));
+        let above_numbers = stage.with_max_y(numbers_top - space::S);
         kit::caption_ui(text::WELCOME_HINT, above_numbers, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
@@ -90,7 +91,8 @@ fn ranking(panes: &[Pane], id: &str) -> Verdicts {
     }
 }
 
-fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, rect: Rect, ui: &mut Ui) {
+/// What lies over one pane. Returns where its numbers begin, from the top of the page.
+fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, rect: Rect, ui: &mut Ui) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let words = pane_words(pane, session);
     let (chip, mood) = if verdicts.best == Some(index) {
@@ -111,7 +113,9 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         let galley = kit::paint::line_of(&[kit::paint::Run::new(text::EMPTY_PANE, Type::Body, palette.muted)], rect.width(), ui);
         kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
-    let Some(outcome) = pane.outcome.as_deref() else { return };
+    let Some(outcome) = pane.outcome.as_deref() else {
+        return rect.bottom();
+    };
     let panes = session.panes();
     let shown = text::METRICS.iter().filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
     let numbers: Vec<(String, &str, Rank, &str)> = shown
@@ -128,7 +132,7 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         })
         .collect();
     let strip: Vec<Metric<'_>> = numbers.iter().map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint }).collect();
-    kit::pane_footer_ui(&strip, rect, ui);
+    kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
 /// A metric's number as it is read at a glance.

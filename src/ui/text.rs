@@ -15,6 +15,7 @@ pub(crate) const LINK: &str = "Link";
 pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
+pub(crate) const LARGER: &str = "Aa";
 pub(crate) const HELP: &str = "Shortcuts";
 pub(crate) const MENU: &str = "Menu";
 pub(crate) const UNDO: &str = "Undo";

@@ -60,7 +60,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
         out.set_once(Key::Theme, other_theme(ui));
     }
     let projector = session.params().is_on(Key::Projector);
-    if kit::button_ui(Button::icon_only(Icon::Search, text::PROJECTOR).quiet().selected(projector), ui).clicked() {
+    if kit::button_ui(Button::new(text::LARGER).name(text::PROJECTOR).hint(text::PROJECTOR).quiet().selected(projector), ui).clicked() {
         out.toggle(Key::Projector, projector);
     }
     if kit::icon_button_ui(Icon::Redo, text::REDO, ui).clicked() {
