@@ -294,3 +294,29 @@ onBackend("webgl2", "listeners hear of changes, and may act on them at once", as
   await page.waitForFunction(() => window.queries.some((query) => query.includes("blend_window=8")));
   assert.equal((await segue("params")).blend_window, 8);
 });
+
+onBackend("webgl2", "a bundled take is there once set() has resolved", async ({ open }) => {
+  const { segue } = await open("lab=view&play=off");
+  await segue("set", { a: "cmu_jump" });
+  const take = (await segue("clips")).find(({ id }) => id === "cmu_jump");
+  assert.ok(take.frames > 100 && take.height > 1.4 && take.height < 2.1, JSON.stringify(take));
+  assert.equal((await segue("pose", "result", 0)).joints.length, take.joints);
+});
+
+onBackend("webgpu", "where WebGPU gives no device, WebGL 2 draws", async ({ open }) => {
+  const prepare = (page) => page.addInitScript(() => {
+    GPUAdapter.prototype.requestDevice = () => Promise.reject(new DOMException("not today", "OperationError"));
+  });
+  const { segue, pixels } = await open("play=off", { prepare });
+  assert.equal((await segue("stats")).backend, "webgl2");
+  assert.ok((await pixels()).colours() > 50);
+});
+
+onBackend("webgl2", "copying puts the link into the clipboard, and says so only then", async ({ open }) => {
+  const { page, segue } = await open("blend_window=24&play=off");
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.locator("#segue").focus();
+  await page.keyboard.press("Control+c");
+  await page.waitForTimeout(500);
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await segue("url"));
+});
