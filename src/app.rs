@@ -236,6 +236,7 @@ impl Segue {
     fn receive(&mut self, incoming: Incoming) {
         match incoming {
             Incoming::File { name, bytes } => self.load(&name, bytes),
+            Incoming::Copied => self.session.say(Level::Info, ui::LINK_COPIED),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
                 self.samples.retain(|id| *id != sample.id);
@@ -368,10 +369,7 @@ impl Segue {
     fn act(&mut self, action: &Action, ctx: &egui::Context) {
         match action {
             Action::OpenFiles => platform::open_files(&self.inbox),
-            Action::CopyLink => {
-                ctx.copy_text(platform::full_link(&link_query(&self.session)));
-                self.session.say(Level::Info, ui::LINK_COPIED);
-            }
+            Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
             Action::SaveBvh(which) => match self.export(which, "bvh") {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
                 Err(reason) => self.session.say(Level::Error, reason),

@@ -67,7 +67,8 @@ pub(crate) struct MetricInfo {
     unit: &'static str,
     /// The numbers of all panes, left to right.
     panes: Vec<Option<f64>>,
-    better: Better,
+    /// `lower`, `higher`, or `neutral` where neither is better.
+    better: &'static str,
     help: &'static str,
 }
 
@@ -276,7 +277,11 @@ impl Segue {
             value: metric.value,
             unit: metric.unit,
             panes: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
-            better: metric.better,
+            better: match metric.better {
+                Better::Lower => "lower",
+                Better::Higher => "higher",
+                Better::Neutral => "neutral",
+            },
             help: metric.help,
         };
         main.metrics.iter().map(|metric| (metric.id, info(metric))).collect()

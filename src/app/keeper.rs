@@ -44,6 +44,8 @@ pub(crate) struct Keeper {
     link: String,
     stored: Mark,
     seen: Mark,
+    /// The session's revision at which `seen` was taken.
+    revision: u64,
     changed_at_ms: Option<f64>,
 }
 
@@ -56,6 +58,7 @@ impl Keeper {
             link,
             stored: Mark::default(),
             seen: Mark::default(),
+            revision: 0,
             changed_at_ms: None,
         }
     }
@@ -127,10 +130,13 @@ impl Keeper {
         if !matches!(self.phase, Phase::Ready) || self.storage.is_none() {
             return None;
         }
-        let now = Mark::of(session);
-        if now != self.seen {
-            self.seen = now;
-            self.changed_at_ms = Some(now_ms);
+        if self.revision != session.revision() {
+            self.revision = session.revision();
+            let now = Mark::of(session);
+            if now != self.seen {
+                self.seen = now;
+                self.changed_at_ms = Some(now_ms);
+            }
         }
         let wait = self.changed_at_ms? + QUIET_MS - now_ms;
         if wait > 0.0 {

@@ -20,6 +20,8 @@ pub(crate) enum Incoming {
         /// What happened and what to do, in a sentence or two.
         reason: String,
     },
+    /// The text that was to be copied is in the clipboard.
+    Copied,
     /// A bundled take.
     Sample {
         /// Which.

@@ -7,6 +7,7 @@ pub(crate) use files::{download, open_files, read_arguments, read_dropped};
 pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};
+use eframe::egui;
 use segue::session::Sample;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -25,6 +26,12 @@ pub(crate) fn location_query() -> String {
         .skip(1)
         .find(|argument| files::is_query(argument))
         .map_or_else(String::new, |query| address::state_of(&query))
+}
+
+/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there.
+pub(crate) fn copy_text(text: String, ctx: &egui::Context, inbox: &Inbox) {
+    ctx.copy_text(text);
+    inbox.push(Incoming::Copied);
 }
 
 /// A window has no address.

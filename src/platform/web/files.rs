@@ -1,15 +1,15 @@
 //! Files of the user: into the page and out of it.
 
-use super::page::{document, listen};
+use super::page::{document, listen, window};
 use super::words_of;
 use crate::platform::{Inbox, Incoming, too_large};
-use eframe::egui::DroppedFileHandle;
-use js_sys::{Array, Uint8Array};
+use eframe::egui::{self, DroppedFileHandle};
+use js_sys::{Array, Reflect, Uint8Array};
 use std::path::Path;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
-use wasm_bindgen_futures::spawn_local;
-use web_sys::{Blob, BlobPropertyBag, File, HtmlAnchorElement, HtmlInputElement, Url};
+use wasm_bindgen_futures::{JsFuture, spawn_local};
+use web_sys::{Blob, BlobPropertyBag, Clipboard, File, HtmlAnchorElement, HtmlInputElement, Url};
 
 /// Lets the user choose files.
 ///
@@ -121,4 +121,27 @@ pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox)
             reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
         });
     }
+}
+
+/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser refuses, the text itself is shown.
+pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
+    // Undefined on an insecure address, whatever the type says.
+    let clipboard = window().map(|window| window.navigator()).and_then(|navigator| Reflect::get(&navigator, &"clipboard".into()).ok());
+    let clipboard = clipboard.and_then(|clipboard| clipboard.dyn_into::<Clipboard>().ok());
+    // At once and not in the task: Safari allows it within the user's gesture only.
+    let written = clipboard.map(|clipboard| JsFuture::from(clipboard.write_text(&text)));
+    let inbox = inbox.clone();
+    spawn_local(async move {
+        let done = match written {
+            Some(written) => written.await.is_ok(),
+            None => false,
+        };
+        inbox.push(if done {
+            Incoming::Copied
+        } else {
+            Incoming::Failed {
+                reason: format!("This browser does not let the page use the clipboard. Copy it by hand: {text}"),
+            }
+        });
+    });
 }

@@ -1,6 +1,6 @@
 //! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
 
-use super::page::{next_frame, sleep, wanted_backend, watch_hiding};
+use super::page::{listen, next_frame, sleep, wanted_backend, watch_hiding};
 use super::snapshot::snapshot;
 use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
@@ -13,7 +13,7 @@ use serde_wasm_bindgen::Serializer;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
-use wasm_bindgen::JsValue;
+use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::spawn_local;
 use web_sys::{Blob, HtmlCanvasElement};
@@ -67,7 +67,6 @@ impl SegueHandle {
     /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was.
     pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         self.borrow_mut()?.detach();
-        self.canvas.replace(canvas.clone());
         self.run(canvas).await
     }
 
@@ -228,17 +227,32 @@ impl SegueHandle {
             .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
+    /// Runs on the canvas, with the graphics that the address asks for.
     async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+        let both = Backends::BROWSER_WEBGPU | Backends::GL;
+        match wanted_backend().as_deref() {
+            Some("webgl2") => return self.run_on(canvas, Backends::GL).await,
+            Some("webgpu") => return self.run_on(canvas, Backends::BROWSER_WEBGPU).await,
+            None | Some("auto") => {}
+            Some(other) => log::warn!("backend: found `{other}`, expected webgpu or webgl2"),
+        }
+        let Err(reason) = self.run_on(canvas.clone(), both).await else { return Ok(()) };
+        // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of context it once had, so it needs a new one.
+        log::warn!("the graphics could not be set up, trying WebGL 2 alone: {}", super::words_of(&reason));
+        let fresh: HtmlCanvasElement = canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
+        canvas.replace_with_with_node_1(&fresh)?;
+        let listener = Rc::clone(&self.listener);
+        // The page looks after the canvas that it knows of. This one tells it by itself.
+        listen(Some(&fresh), "webglcontextlost", move |event| {
+            event.prevent_default();
+            tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
+        });
+        self.run_on(fresh, Backends::GL).await.map_err(|_| reason)
+    }
+
+    async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
         let mut setup = WgpuSetupCreateNew::without_display_handle();
-        setup.instance_descriptor.backends = match wanted_backend().as_deref() {
-            Some("webgl2") => Backends::GL,
-            Some("webgpu") => Backends::BROWSER_WEBGPU,
-            None | Some("auto") => Backends::BROWSER_WEBGPU | Backends::GL,
-            Some(other) => {
-                log::warn!("backend: found `{other}`, expected webgpu or webgl2");
-                Backends::BROWSER_WEBGPU | Backends::GL
-            }
-        };
+        setup.instance_descriptor.backends = backends;
         let options = WebOptions {
             wgpu_options: WgpuConfiguration {
                 wgpu_setup: WgpuSetup::CreateNew(setup),
@@ -249,6 +263,7 @@ impl SegueHandle {
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
         let create: eframe::AppCreator<'static> =
             Box::new(move |cc| Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events)))));
+        self.canvas.replace(canvas.clone());
         self.runner.start(canvas, options, create).await
     }
 

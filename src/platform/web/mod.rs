@@ -9,7 +9,7 @@ mod storage;
 
 pub(crate) use super::address::file_name_of;
 pub(crate) use fetch::{Fetch, fetch, load_sample};
-pub(crate) use files::{download, open_files, read_dropped};
+pub(crate) use files::{copy_text, download, open_files, read_dropped};
 pub(crate) use page::{full_link, location_query, now_ms, replace_query, watch_navigation};
 pub(crate) use storage::Storage;
 

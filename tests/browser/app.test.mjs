@@ -1,0 +1,322 @@
+// The app in a real browser: the page's API, files in and out, the link, storage, and a graphics device that goes away.
+
+import assert from "node:assert/strict";
+import { Buffer } from "node:buffer";
+import http from "node:http";
+import { onBackend, onBothBackends } from "./harness.mjs";
+import { decodePng } from "./png.mjs";
+
+/** A small file to bring along: a hip with one bone that turns. */
+function bvh(frames = 60, bone = "Spine") {
+  const rows = Array.from({ length: frames }, (_, i) => `${i * 0.01} 1 0 0 ${i} 0 0 0 0`);
+  return Buffer.from([
+    "HIERARCHY", "ROOT Hips", "{", "OFFSET 0 0 0", "CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
+    `JOINT ${bone}`, "{", "OFFSET 0 0.5 0", "CHANNELS 3 Zrotation Yrotation Xrotation", "End Site", "{", "OFFSET 0 0.5 0", "}", "}", "}",
+    "MOTION", `Frames: ${frames}`, "Frame Time: 0.0166667", ...rows, "",
+  ].join("\n"));
+}
+
+/** Waits until `check` holds of what the API's member returns. */
+async function until({ segue, page }, member, check, what) {
+  for (const deadline = Date.now() + 20_000; ; ) {
+    const value = await segue(member);
+    if (check(value)) return value;
+    if (Date.now() > deadline) assert.fail(`${what}; last: ${JSON.stringify(value)}`);
+    await page.waitForTimeout(100);
+  }
+}
+
+const brought = (clips) => clips.filter((clip) => clip.sha256).map((clip) => clip.name);
+
+onBothBackends("the API answers, and set() is all or nothing", async ({ open, backend }) => {
+  const { segue } = await open("blend_window=24&play=off");
+  assert.equal((await segue("stats")).backend, backend);
+  const keys = await segue("keys");
+  const params = await segue("params");
+  assert.deepEqual(keys.map(({ key }) => key).sort(), Object.keys(params).sort());
+  assert.equal(params.blend_window, 24);
+
+  await segue("set", { blend_window: 12, align: false });
+  assert.equal((await segue("params")).blend_window, 12);
+  assert.match(await segue("url"), /\?blend_window=12&align=off&play=off$/);
+  const before = await segue("params");
+  await assert.rejects(segue("set", { align: true, colour: "red" }), /`colour` is not a parameter/);
+  await assert.rejects(segue("set", { align: true, blend_window: 500 }), /blend_window: found 500, expected 1 to 240 frames/);
+  await assert.rejects(segue("set", { a: "nobody" }), /no clip `nobody`/);
+  await assert.rejects(segue("set", "blend_window=3"), /expected an object/);
+  assert.deepEqual(await segue("params"), before);
+
+  const pose = await segue("pose", "result", 0.5);
+  assert.equal(pose.positions.length, 3 * pose.joints.length);
+  assert.equal(pose.rotations.length, 4 * pose.joints.length);
+  await assert.rejects(segue("pose", "result:7", 0), /found `result:7`/);
+  await assert.rejects(segue("export", "result", "csv"), /export: found `csv`, expected bvh/);
+  assert.match((await segue("export", "result", "bvh")).toString(), /^HIERARCHY\n/);
+});
+
+onBothBackends("metrics() has one number per pane", async ({ open }) => {
+  const { segue } = await open("compare=blend_window:30,15,10&play=off");
+  const metrics = Object.entries(await segue("metrics"));
+  assert.ok(metrics.length > 3);
+  for (const [name, { value, unit, panes }] of metrics) {
+    assert.equal(panes.length, 3, name);
+    assert.equal(panes[0], value, name);
+    assert.equal(typeof unit, "string", name);
+  }
+});
+
+onBothBackends("time runs, stops and is set; a still page draws nothing", async ({ open }) => {
+  const { page, segue } = await open("play=off&t=0.5&follow=off");
+  assert.equal(await segue("time"), 0.5);
+  await segue("seek", 0.25);
+  assert.equal(await segue("time"), 0.25);
+  await page.waitForTimeout(4000); // cameras settle, presets are made, the address is written, the work is stored
+  const { frames } = await segue("stats");
+  await page.waitForTimeout(1500);
+  assert.equal((await segue("stats")).frames, frames, "nothing moved, so nothing was drawn");
+  await segue("play");
+  await page.waitForTimeout(1500);
+  assert.notEqual(await segue("time"), 0.25);
+  await segue("pause");
+  const stopped = await segue("time");
+  await page.waitForTimeout(500);
+  assert.equal(await segue("time"), stopped);
+});
+
+onBothBackends("snapshot() is a picture of the stage", async ({ open }) => {
+  const { page } = await open("play=off");
+  const base64 = await page.evaluate(async () => {
+    const blob = await window.segue.snapshot();
+    const bytes = new Uint8Array(await blob.arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  });
+  const png = decodePng(Buffer.from(base64, "base64"));
+  assert.ok(png.width > 300 && png.width < 1280 && png.height < 800, `${png.width}×${png.height}`);
+  assert.ok(png.colours() > 50, `${png.colours()} colours`);
+});
+
+onBackend("webgl2", "files come by drop and by call, bad ones are told and change nothing", async ({ open }) => {
+  const opened = await open("lab=view&play=off");
+  const { page, segue, load, dropFile } = opened;
+  await page.evaluate(() => {
+    window.heard = [];
+    window.segue.on("error", ({ message }) => window.heard.push(message));
+  });
+  const { clips, warnings } = await load("turn.bvh", bvh());
+  assert.equal(clips.length, 1);
+  assert.equal(clips[0].frames, 60);
+  assert.ok(Array.isArray(warnings));
+  assert.equal((await segue("params")).a, clips[0].id);
+
+  await assert.rejects(load("broken.bvh", Buffer.from("HIERARCHY\nROOT Hips\nnonsense")), /broken\.bvh:3:\d+: found .*expected/);
+  await dropFile("other.bvh", bvh(30, "Chest"));
+  await until(opened, "clips", (clips) => brought(clips).length === 2, "the dropped file is in the library");
+  await dropFile("notes.txt", Buffer.from("hello"));
+  await page.waitForFunction(() => window.heard.some((message) => message.includes("notes.txt")));
+  assert.equal(brought(await segue("clips")).length, 2);
+});
+
+onBackend("webgl2", "several files in one drop arrive in order", async ({ open }) => {
+  const opened = await open("play=off");
+  await opened.page.evaluate((texts) => {
+    const dataTransfer = new DataTransfer();
+    for (const [name, text] of texts) dataTransfer.items.add(new File([text], name));
+    document.getElementById("segue").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
+  }, [["one.bvh", bvh(240).toString()], ["two.bvh", bvh(30, "Chest").toString()]]);
+  await until(opened, "clips", (clips) => brought(clips).length === 2, "both are in the library");
+  const { a, b } = await opened.segue("params");
+  assert.match(a, /^one~/);
+  assert.match(b, /^two~/);
+});
+
+onBackend("webgl2", "the address follows the state and leads back to it", async ({ open }) => {
+  const opened = await open("blend_window=24&play=off&backend=webgl2");
+  const { page, segue } = opened;
+  await segue("set", { blend_window: 48 });
+  await page.waitForFunction(() => location.search.includes("blend_window=48"));
+  assert.match(page.url(), /&backend=webgl2$/, "what belongs to the page stays");
+  assert.doesNotMatch(await segue("url"), /backend/);
+  const before = await segue("params");
+  await page.reload();
+  await opened.ready();
+  assert.deepEqual(await segue("params"), before);
+
+  await page.evaluate(() => {
+    history.pushState(null, "", "?blend_window=7&play=off");
+    history.pushState(null, "", "?blend_window=9&play=off");
+    history.back();
+  });
+  await until(opened, "params", ({ blend_window }) => blend_window === 7, "going back opens that link");
+});
+
+onBackend("webgl2", "work survives a reload, and only what is in the library is kept", async ({ open }) => {
+  const opened = await open("");
+  const { page, segue, load } = opened;
+  await load("kept.bvh", bvh());
+  await load("also.bvh", bvh(30, "Chest"));
+  await segue("set", { blend_window: 33, play: false });
+  const stored = () => page.evaluate(() => new Promise((resolve, reject) => {
+    const request = indexedDB.open("segue");
+    request.onerror = () => reject(request.error);
+    request.onsuccess = () => {
+      const transaction = request.result.transaction(["work", "files"]);
+      const work = transaction.objectStore("work").get("latest");
+      const files = transaction.objectStore("files").getAllKeys();
+      transaction.oncomplete = () => { request.result.close(); resolve({ work: work.result && JSON.parse(work.result), files: files.result }); };
+    };
+  }));
+  const hashes = (await segue("clips")).map((clip) => clip.sha256).filter(Boolean).sort();
+  for (let tries = 0; ; tries++) {
+    const { work, files } = await stored();
+    if (work?.query.includes("blend_window=33") && files.length === 2) {
+      assert.deepEqual(files.sort(), hashes);
+      break;
+    }
+    assert.ok(tries < 100, "the work was not stored");
+    await page.waitForTimeout(100);
+  }
+
+  // Without a query: what comes back comes from storage alone.
+  await page.goto(page.url().split("?")[0]);
+  await opened.ready();
+  assert.deepEqual(brought(await segue("clips")).sort(), ["also", "kept"]);
+  assert.equal((await segue("params")).blend_window, 33);
+  assert.match((await segue("params")).a, /^kept~/);
+
+  // A link goes before stored parameters; the library comes back all the same.
+  await page.goto(`${page.url().split("?")[0]}?blend_window=5`);
+  await opened.ready();
+  assert.equal((await segue("params")).blend_window, 5);
+  assert.equal(brought(await segue("clips")).length, 2);
+
+  // A framed page neither shows nor overwrites it.
+  await page.goto(`${page.url().split("?")[0]}?embed=1&blend_window=6`);
+  await opened.ready();
+  assert.equal(brought(await segue("clips")).length, 0);
+  await segue("set", { blend_window: 7 });
+  await page.waitForTimeout(1500);
+  assert.match((await stored()).work.query, /blend_window=33/, "a link that was only looked at is not stored, nor is a frame");
+});
+
+/** A server of another origin. Playwright's own answers would come with CORS headers, so this is a real one. */
+async function elsewhere(answers, body) {
+  const server = http.createServer(async (request, response) => {
+    const { status = 200, cors = true, after = 0, type = "application/octet-stream", text = "" } = answers[request.url] ?? { status: 404 };
+    await new Promise((resolve) => setTimeout(resolve, after));
+    response.writeHead(status, { "content-type": type, ...(cors && { "access-control-allow-origin": "*" }) }).end(text);
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  try {
+    await body(`http://127.0.0.1:${server.address().port}`);
+  } finally {
+    server.closeAllConnections();
+    server.close();
+  }
+}
+
+onBackend("webgl2", "files are fetched in the order of the link, and refusals are explained", async ({ open }) => {
+  const answers = {
+    "/slow.bvh": { text: bvh(90), after: 800 },
+    "/fast.bvh": { text: bvh(30, "Chest") },
+    "/page.html": { text: "<!doctype html>", type: "text/html" },
+    "/closed.bvh": { text: bvh(), cors: false },
+    "/shut.bvh": { status: 403 },
+  };
+  await elsewhere(answers, async (far) => {
+    const opened = await open(`src=${far}/slow.bvh%20${far}/fast.bvh&play=off`);
+    const { page, segue } = opened;
+    await until(opened, "clips", (clips) => brought(clips).length === 2, "both files are in the library");
+    const { a, b } = await segue("params");
+    assert.match(a, /^slow~/);
+    assert.match(b, /^fast~/);
+
+    await page.evaluate(() => {
+      window.heard = [];
+      window.segue.on("error", ({ message }) => window.heard.push(message));
+    });
+    for (const [address, reason] of [
+      [`${far}/gone.bvh`, /^There is no file at .*gone\.bvh \(answer 404\)/],
+      [`${far}/shut.bvh`, /^127\.0\.0\.1:\d+ does not give shut\.bvh to everybody/],
+      [`${far}/page.html`, /is a web page, not a motion file/],
+      [`${far}/closed.bvh`, /^127\.0\.0\.1:\d+ does not allow other pages to read its files \(CORS\)\. Download the file and drop it here\./],
+      ["http://127.0.0.1:1/nobody.bvh", /^127\.0\.0\.1:1 cannot be reached/],
+      ["ftp://somewhere/x.bvh", /expected an address that starts with https/],
+    ]) {
+      await segue("set", { src: address }); // resolves once the file is there, or refused
+      await page.waitForTimeout(100);
+      const heard = await page.evaluate(() => window.heard);
+      assert.ok(heard.some((message) => reason.test(message)), `${reason} among\n${heard.join("\n")}`);
+    }
+    assert.equal(brought(await segue("clips")).length, 2);
+  });
+});
+
+onBothBackends("a lost graphics device is replaced and the state stays", async ({ open, backend }) => {
+  const prepare = (page) => page.addInitScript(() => {
+    // The handle by which the test takes the device away.
+    if (window.GPUAdapter) {
+      const request = GPUAdapter.prototype.requestDevice;
+      GPUAdapter.prototype.requestDevice = async function (...args) {
+        return (window.device = await request.apply(this, args));
+      };
+    }
+  });
+  const opened = await open("blend_window=24&play=off", { prepare });
+  const { page, segue, pixels } = opened;
+  await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
+  await segue("set", { blend_window: 31 });
+  for (let time = 0; time < 2; time++) {
+    const { frames } = await segue("stats");
+    await page.evaluate((backend) => {
+      const canvas = document.getElementById("segue");
+      if (backend === "webgpu") window.device.destroy();
+      else canvas.getContext("webgl2").getExtension("WEBGL_lose_context").loseContext();
+    }, backend);
+    await page.waitForFunction(() => document.getElementById("segue") !== window.firstCanvas);
+    await until(opened, "stats", (stats) => stats.frames > frames + 1, "it draws again");
+    await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
+  }
+  assert.equal(await page.locator(".veil").count(), 0);
+  assert.equal((await segue("params")).blend_window, 31);
+  assert.ok((await pixels()).colours() > 50);
+});
+
+onBackend("webgl2", "listeners hear of changes, and may act on them at once", async ({ open }) => {
+  const { page, segue } = await open("play=off");
+  await page.evaluate(() => {
+    window.queries = [];
+    window.segue.on("change", ({ query }) => {
+      window.queries.push(query);
+      if (query.includes("blend_window=9")) window.segue.set({ blend_window: 8 });
+    });
+  });
+  await segue("set", { blend_window: 9 });
+  await page.waitForFunction(() => window.queries.some((query) => query.includes("blend_window=8")));
+  assert.equal((await segue("params")).blend_window, 8);
+});
+
+onBackend("webgl2", "a bundled take is there once set() has resolved", async ({ open }) => {
+  const { segue } = await open("lab=view&play=off");
+  await segue("set", { a: "cmu_jump" });
+  const take = (await segue("clips")).find(({ id }) => id === "cmu_jump");
+  assert.ok(take.frames > 100 && take.height > 1.4 && take.height < 2.1, JSON.stringify(take));
+  assert.equal((await segue("pose", "result", 0)).joints.length, take.joints);
+});
+
+onBackend("webgpu", "where WebGPU gives no device, WebGL 2 draws", async ({ open }) => {
+  const prepare = (page) => page.addInitScript(() => {
+    GPUAdapter.prototype.requestDevice = () => Promise.reject(new DOMException("not today", "OperationError"));
+  });
+  const { segue, pixels } = await open("play=off", { prepare });
+  assert.equal((await segue("stats")).backend, "webgl2");
+  assert.ok((await pixels()).colours() > 50);
+});
+
+onBackend("webgl2", "copying puts the link into the clipboard, and says so only then", async ({ open }) => {
+  const { page, segue } = await open("blend_window=24&play=off");
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.locator("#segue").focus();
+  await page.keyboard.press("Control+c");
+  await page.waitForTimeout(500);
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await segue("url"));
+});
