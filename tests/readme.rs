@@ -9,18 +9,35 @@ const END: &str = "<!-- /parameters -->";
 fn row(param: &Param) -> String {
     let values = match param.kind {
         Kind::Number { min, max, auto, .. } => {
-            let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+            let unit = if param.unit.is_empty() {
+                String::new()
+            } else {
+                format!(" {}", param.unit)
+            };
             format!("{min} to {max}{unit}{}", if auto { ", or `auto`" } else { "" })
         }
         Kind::Switch => "`on`, `off`".to_owned(),
-        Kind::Choice(choices) => choices.iter().map(|choice| format!("`{}`", choice.key)).collect::<Vec<_>>().join(", "),
+        Kind::Choice(choices) => choices
+            .iter()
+            .map(|choice| format!("`{}`", choice.key))
+            .collect::<Vec<_>>()
+            .join(", "),
         Kind::Clip => "a clip's id".to_owned(),
         Kind::Compare => "`key:value,value`".to_owned(),
         Kind::Text => "text".to_owned(),
     };
     let default = param.format(&param.default_value());
-    let default = if default.is_empty() { String::new() } else { format!("`{default}`") };
-    format!("| `{}` | {} | {values} | {default} | {} |\n", param.name, param.group.name(), param.help)
+    let default = if default.is_empty() {
+        String::new()
+    } else {
+        format!("`{default}`")
+    };
+    format!(
+        "| `{}` | {} | {values} | {default} | {} |\n",
+        param.name,
+        param.group.name(),
+        param.help
+    )
 }
 
 fn table() -> String {
@@ -43,6 +60,9 @@ fn the_table_of_parameters_is_the_programs() {
         write!(new, "{before}{BEGIN}{table}{END}{after}").expect("writing to a string works");
         std::fs::write(path, new).expect("the README can be written");
     } else {
-        assert!(old == table, "the README's table is not that of the program: run `cargo xtask docs`");
+        assert!(
+            old == table,
+            "the README's table is not that of the program: run `cargo xtask docs`"
+        );
     }
 }

@@ -82,16 +82,10 @@ pub(super) struct FigureUniform {
 pub(super) struct FigureDraw {
     pub(super) fine: Range<u32>,
     pub(super) coarse: Range<u32>,
-    pub(super) casts: bool,
+    /// The limbs whose shadow is drawn.
+    pub(super) casting: Range<u32>,
     pub(super) ghost: bool,
     depth: f32,
-}
-
-impl FigureDraw {
-    /// All its limbs.
-    pub(super) fn limbs(&self) -> Range<u32> {
-        self.fine.start..self.coarse.end
-    }
 }
 
 /// One pane in the instance buffers.
@@ -176,13 +170,24 @@ impl Frame {
             let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
                 continue;
             };
+            let plain = quality == Quality::Plain;
             let is_fine = |limb: &Limb| {
-                limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+                !plain && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
             };
             let start = self.limbs.len() as u32;
             self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
             let middle = self.limbs.len() as u32;
             self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(limb_instance));
+            // The shadows of high limbs are as wide as the body and hardly seen: where every pixel costs, only what is low casts one.
+            let casting = if figure.shadow <= 0.0 || (plain && figure.ghost) {
+                start..start
+            } else if plain {
+                self.limbs[start as usize..].sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+                let low = self.limbs[start as usize..].iter().take_while(|limb| lowest(limb) < PLAIN_SHADOW_HEIGHT_M).count();
+                start..start + low as u32
+            } else {
+                start..self.limbs.len() as u32
+            };
             // Nobody sees how limbs melt in a body that is small all over.
             if quality == Quality::Full && middle > start {
                 let bodys_own = &mut self.limbs[start as usize..];
@@ -193,7 +198,7 @@ impl Frame {
             self.figures.push(FigureDraw {
                 fine: start..middle,
                 coarse: middle..self.limbs.len() as u32,
-                casts: figure.shadow > 0.0,
+                casting,
                 ghost: figure.ghost,
                 depth: if depth.is_finite() { depth } else { 0.0 },
             });
@@ -215,6 +220,14 @@ impl Frame {
             }
         }
     }
+}
+
+/// Below this height a limb's shadow is worth its pixels on a machine that draws in software, metres.
+const PLAIN_SHADOW_HEIGHT_M: f32 = 0.5;
+
+/// The height of a limb's lower end, metres.
+fn lowest(limb: &LimbInstance) -> f32 {
+    limb.a[1].min(limb.b[1])
 }
 
 fn limb_instance(limb: &Limb) -> Option<LimbInstance> {

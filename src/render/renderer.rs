@@ -346,12 +346,12 @@ impl StageRenderer {
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
         pass.set_pipeline(ground);
         pass.draw(0..3, 0..1);
-        if figures().any(|(_, figure)| figure.casts) {
+        if figures().any(|(_, figure)| !figure.casting.is_empty()) {
             pass.set_pipeline(shadow);
             pass.set_vertex_buffer(0, limbs.slice(..));
-            for (index, figure) in figures().filter(|(_, figure)| figure.casts) {
+            for (index, figure) in figures().filter(|(_, figure)| !figure.casting.is_empty()) {
                 set_figure(pass, index);
-                pass.draw(0..4, figure.limbs());
+                pass.draw(0..4, figure.casting.clone());
             }
             pass.set_pipeline(shade);
             pass.draw(0..3, 0..1);

@@ -54,8 +54,15 @@ fn make_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let detail = match (param.key, session.params().text(Key::Gait)) {
             // What the chosen motion does not have is not offered.
             (Key::GaitSpeed | Key::TurnRate, "idle" | "spin" | "jump") | (Key::TurnRate, "start" | "stop") => continue,
-            (Key::GaitSpeed, "walk" | "start" | "stop") => Detail { max: Some(2.2), help: Some("How fast it walks.".into()), ..Detail::default() },
-            (Key::GaitSpeed, _) => Detail { help: Some("How fast it runs: 1.8 to 6.5.".into()), ..Detail::default() },
+            (Key::GaitSpeed, "walk" | "start" | "stop") => Detail {
+                max: Some(2.2),
+                help: Some("How fast it walks.".into()),
+                ..Detail::default()
+            },
+            (Key::GaitSpeed, _) => Detail {
+                help: Some("How fast it runs: 1.8 to 6.5.".into()),
+                ..Detail::default()
+            },
             _ => Detail::default(),
         };
         param_row_ui(param.key, &detail, session, out, ui);
@@ -74,13 +81,26 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.add_space(space::S);
     let outcome = session.main_outcome();
     let fps = outcome.map_or(60.0, |outcome| outcome.motion.clip.fps());
-    let duration = |slot| session.slot(slot).and_then(|entry| entry.motion.as_ref()).map(|motion| motion.clip.duration_secs());
+    let duration = |slot| {
+        session
+            .slot(slot)
+            .and_then(|entry| entry.motion.as_ref())
+            .map(|motion| motion.clip.duration_secs())
+    };
     let window = session.params().number(Key::BlendWindow);
     let shortest = [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
-    let longest_window = if shortest.is_finite() { Some((shortest * fps).floor()) } else { None };
+    let longest_window = if shortest.is_finite() {
+        Some((shortest * fps).floor())
+    } else {
+        None
+    };
     param_row_ui(
         Key::BlendWindow,
-        &Detail { secondary: format!("{:.2} s", window / fps), max: longest_window.map(|max| max.max(window)), ..Detail::default() },
+        &Detail {
+            secondary: format!("{:.2} s", window / fps),
+            max: longest_window.map(|max| max.max(window)),
+            ..Detail::default()
+        },
         session,
         out,
         ui,
@@ -126,9 +146,18 @@ fn found_sentence(session: &Session) -> String {
 /// Which clip is in a slot, to be chosen anew.
 fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
     let entries = session.library().entries();
-    let options: Vec<(usize, &str)> = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str())).collect();
-    let chosen = session.slot(slot).and_then(|entry| entries.iter().position(|other| other.id == entry.id)).unwrap_or(usize::MAX);
-    let picked = ui.push_id(slot.label(), |ui| kit::choice_row_ui(slot.label(), chosen, &options, ui)).inner;
+    let options: Vec<(usize, &str)> = entries
+        .iter()
+        .enumerate()
+        .map(|(index, entry)| (index, entry.name.as_str()))
+        .collect();
+    let chosen = session
+        .slot(slot)
+        .and_then(|entry| entries.iter().position(|other| other.id == entry.id))
+        .unwrap_or(usize::MAX);
+    let picked = ui
+        .push_id(slot.label(), |ui| kit::choice_row_ui(slot.label(), chosen, &options, ui))
+        .inner;
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         out.commands.push(Command::Assign(slot, entry.id.clone()));
     }
@@ -149,9 +178,16 @@ fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 fn folded_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let open = egui::CollapsingHeader::new(egui::RichText::new(title).font(theme_of(ui).font(Type::Strong)).color(palette_of(ui).muted));
+    let open = egui::CollapsingHeader::new(
+        egui::RichText::new(title)
+            .font(theme_of(ui).font(Type::Strong))
+            .color(palette_of(ui).muted),
+    );
     open.id_salt(title).show(ui, |ui| {
-        for param in PARAMS.iter().filter(|param| param.group == group && !is_handled_elsewhere(param.key)) {
+        for param in PARAMS
+            .iter()
+            .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
+        {
             if matches!(param.kind, segue::session::Kind::Choice(choices) if choices.len() <= 4) {
                 ui.label(egui::RichText::new(param.label).font(theme_of(ui).font(Type::Label)));
             }
@@ -177,8 +213,14 @@ fn lab_label(session: &Session) -> &'static str {
 fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     let named = session.params().changed().map(|(param, _)| param);
-    let named = named.filter(|param| matches!(param.group, Group::Make | Group::Blend)).map(|param| param.key);
-    named.chain(compared.into_iter().filter(|key| session.params().get(*key) == &key.param().default_value()))
+    let named = named
+        .filter(|param| matches!(param.group, Group::Make | Group::Blend))
+        .map(|param| param.key);
+    named.chain(
+        compared
+            .into_iter()
+            .filter(|key| session.params().get(*key) == &key.param().default_value()),
+    )
 }
 
 /// Whether the link names a parameter of the lab.

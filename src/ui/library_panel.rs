@@ -43,19 +43,31 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.add_space(space::S);
     for sample in Session::samples() {
-        let item = MenuItem { text: sample.label, icon: Some(Icon::Download), ..MenuItem::default() };
+        let item = MenuItem {
+            text: sample.label,
+            icon: Some(Icon::Download),
+            ..MenuItem::default()
+        };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Assign(free_slot(session), sample.id.to_owned()));
         }
     }
     ui.add_space(space::XS);
-    ui.label(RichText::new(segue::session::SAMPLES_CREDIT).font(theme.font(Type::Small)).color(palette.muted));
+    ui.label(
+        RichText::new(segue::session::SAMPLES_CREDIT)
+            .font(theme.font(Type::Small))
+            .color(palette.muted),
+    );
 }
 
 /// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not hold the other chosen clip.
 fn free_slot(session: &Session) -> Slot {
     let built_in = |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
-    if session.params().text(Key::Lab) == "view" || built_in(Slot::A) || !built_in(Slot::B) { Slot::A } else { Slot::B }
+    if session.params().text(Key::Lab) == "view" || built_in(Slot::A) || !built_in(Slot::B) {
+        Slot::A
+    } else {
+        Slot::B
+    }
 }
 
 fn part_of(session: &Session, entry: &Entry) -> Part {
@@ -102,13 +114,29 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let open = state.details.as_ref() == Some(&entry.id);
     let blending = session.params().text(Key::Lab) == "blend";
     let warning = entry.warnings.join("\n");
-    let actions = [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
+    let actions = [
+        (Icon::Sliders, text::DETAILS),
+        (Icon::Pencil, text::RENAME),
+        (Icon::Trash, text::REMOVE),
+    ];
     let facts = facts(entry);
-    let row = ClipRow { name: &entry.name, detail: &facts, part, warning: &warning, selected: open, actions: &actions };
+    let row = ClipRow {
+        name: &entry.name,
+        detail: &facts,
+        part,
+        warning: &warning,
+        selected: open,
+        actions: &actions,
+    };
     let response = kit::clip_row_ui(row, ui);
     match response.action {
         Some(0) => state.details = if open { None } else { Some(entry.id.clone()) },
-        Some(1) => state.renaming = Some(Renaming { id: entry.id.clone(), name: entry.name.clone() }),
+        Some(1) => {
+            state.renaming = Some(Renaming {
+                id: entry.id.clone(),
+                name: entry.name.clone(),
+            })
+        }
         Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
         None if response.clicked || response.badge_clicked => {
             // In Blend a click goes round: into A, from A into B, from B into A.
@@ -121,11 +149,23 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     menu.show(|ui| {
         for slot in [Slot::A, Slot::B] {
             let words = if slot == Slot::A { text::USE_AS_A } else { text::USE_AS_B };
-            if kit::menu_item_ui(MenuItem { text: words, ..MenuItem::default() }, ui).clicked() {
+            if kit::menu_item_ui(
+                MenuItem {
+                    text: words,
+                    ..MenuItem::default()
+                },
+                ui,
+            )
+            .clicked()
+            {
                 out.commands.push(Command::Assign(slot, entry.id.clone()));
             }
         }
-        let save = MenuItem { text: text::EXPORT_BVH, icon: Some(Icon::Download), ..MenuItem::default() };
+        let save = MenuItem {
+            text: text::EXPORT_BVH,
+            icon: Some(Icon::Download),
+            ..MenuItem::default()
+        };
         if kit::menu_item_ui(save, ui).clicked() {
             out.actions.push(Action::SaveBvh(entry.id.clone()));
         }
@@ -151,7 +191,13 @@ fn details_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
         ui.label(RichText::new(text::JOINTS_HELP).font(theme.font(Type::Small)).color(palette.muted));
         let skeleton = motion.clip.skeleton();
         let mut options = vec![(None, text::NOBODY)];
-        options.extend(skeleton.joints().iter().enumerate().map(|(index, joint)| (Some(index), joint.name.as_str())));
+        options.extend(
+            skeleton
+                .joints()
+                .iter()
+                .enumerate()
+                .map(|(index, joint)| (Some(index), joint.name.as_str())),
+        );
         for role in Role::ALL {
             if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles.get(role), &options, ui) {
                 out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
@@ -161,19 +207,37 @@ fn details_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
 }
 
 /// Metres per unit of length that files come in.
-const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254), ("CMU (0.45 inch)", 0.0254 / 0.45)];
+const UNITS: [(&str, f64); 5] = [
+    ("m", 1.0),
+    ("cm", 0.01),
+    ("mm", 0.001),
+    ("inch", 0.0254),
+    ("CMU (0.45 inch)", 0.0254 / 0.45),
+];
 
 fn units_ui(entry: &Entry, motion: &Motion, options: &ImportOptions, out: &mut Out, ui: &mut Ui) {
     let provenance = motion.clip.provenance();
-    let now = UNITS.iter().position(|(_, metres)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6).unwrap_or(usize::MAX);
+    let now = UNITS
+        .iter()
+        .position(|(_, metres)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6)
+        .unwrap_or(usize::MAX);
     let names: Vec<(usize, &str)> = UNITS.iter().enumerate().map(|(index, (name, _))| (index, *name)).collect();
     if let Some(index) = kit::choice_row_ui(text::UNIT, now, &names, ui) {
-        let options = ImportOptions { metres_per_unit: Some(UNITS[index].1), ..options.clone() };
+        let options = ImportOptions {
+            metres_per_unit: Some(UNITS[index].1),
+            ..options.clone()
+        };
         out.commands.push(Command::Reimport(entry.id.clone(), options));
     }
     let axes = [(UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
     if let Some(up) = kit::choice_row_ui(text::UP_AXIS, provenance.up, &axes, ui) {
-        out.commands.push(Command::Reimport(entry.id.clone(), ImportOptions { up: Some(up), ..options.clone() }));
+        out.commands.push(Command::Reimport(
+            entry.id.clone(),
+            ImportOptions {
+                up: Some(up),
+                ..options.clone()
+            },
+        ));
     }
 }
 

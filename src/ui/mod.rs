@@ -34,7 +34,10 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
         "light" => false,
         _ => system_dark,
     };
-    Theme { dark, projector: session.params().is_on(Key::Projector) }
+    Theme {
+        dark,
+        projector: session.params().is_on(Key::Projector),
+    }
 }
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
@@ -55,81 +58,118 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
 }
 
 fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
-    Frame::new().fill(palette_of(ui).panel).inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
+    Frame::new()
+        .fill(palette_of(ui).panel)
+        .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
 
-fn desk_ui(
-    session: &Session,
-    layout: Layout,
-    state: &mut UiState,
-    curves: &mut CurveCache,
-    out: &mut Out,
-    paint: Paint<'_>,
-    ui: &mut Ui,
-) {
+fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
     let frame = panel_frame(ui, space::L, space::S);
-    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| top_bar::top_bar_ui(session, layout, state, out, ui));
-    Panel::bottom("timeline").exact_size(214.0 * scale).frame(panel_frame(ui, space::L, space::S)).resizable(false).show(ui, |ui| {
-        timeline_panel::timeline_panel_ui(session, layout, curves, out, ui);
-    });
+    Panel::top("top bar")
+        .exact_size(48.0 * scale)
+        .frame(frame)
+        .show(ui, |ui| top_bar::top_bar_ui(session, layout, state, out, ui));
+    Panel::bottom("timeline")
+        .exact_size(214.0 * scale)
+        .frame(panel_frame(ui, space::L, space::S))
+        .resizable(false)
+        .show(ui, |ui| {
+            timeline_panel::timeline_panel_ui(session, layout, curves, out, ui);
+        });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
     if layout == Layout::Desk || state.library_open {
-        Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| library_panel::library_panel_ui(session, state, out, ui));
-        });
+        Panel::left("library")
+            .exact_size(244.0 * scale)
+            .frame(side(ui))
+            .resizable(false)
+            .show(ui, |ui| {
+                ScrollArea::vertical()
+                    .auto_shrink(false)
+                    .show(ui, |ui| library_panel::library_panel_ui(session, state, out, ui));
+            });
     }
-    Panel::right("lab").exact_size(288.0 * scale).frame(panel_frame(ui, space::L, space::M)).resizable(false).show(ui, |ui| {
-        if layout == Layout::Tablet {
-            library_panel::library_button_ui(state, ui);
-            ui.add_space(space::S);
-        }
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| lab_panel::lab_panel_ui(session, out, ui));
-    });
-    egui::CentralPanel::default().frame(Frame::new().fill(palette_of(ui).ground)).show(ui, |ui| {
-        stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
-    });
+    Panel::right("lab")
+        .exact_size(288.0 * scale)
+        .frame(panel_frame(ui, space::L, space::M))
+        .resizable(false)
+        .show(ui, |ui| {
+            if layout == Layout::Tablet {
+                library_panel::library_button_ui(state, ui);
+                ui.add_space(space::S);
+            }
+            ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| lab_panel::lab_panel_ui(session, out, ui));
+        });
+    egui::CentralPanel::default()
+        .frame(Frame::new().fill(palette_of(ui).ground))
+        .show(ui, |ui| {
+            stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
+        });
 }
 
 /// One column: bar, stage, timeline, parameters.
 fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
     let frame = panel_frame(ui, space::M, space::S);
-    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| top_bar::top_bar_ui(session, Layout::Phone, state, out, ui));
+    Panel::top("top bar")
+        .exact_size(48.0 * scale)
+        .frame(frame)
+        .show(ui, |ui| top_bar::top_bar_ui(session, Layout::Phone, state, out, ui));
     let height = ui.available_height();
-    Panel::top("stage").exact_size((height * 0.5).round()).frame(Frame::new().fill(palette_of(ui).ground)).show(ui, |ui| {
-        stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
-    });
-    Panel::top("timeline").exact_size(104.0 * scale).frame(panel_frame(ui, space::L, space::S)).show(ui, |ui| {
-        timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
-    });
-    egui::CentralPanel::default().frame(panel_frame(ui, space::L, space::M)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            if state.library_open {
-                library_panel::library_panel_ui(session, state, out, ui);
-                ui.add_space(space::M);
-                if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
-                    state.library_open = false;
-                }
-            } else {
-                lab_panel::lab_panel_ui(session, out, ui);
-            }
+    Panel::top("stage")
+        .exact_size((height * 0.5).round())
+        .frame(Frame::new().fill(palette_of(ui).ground))
+        .show(ui, |ui| {
+            stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
-    });
+    Panel::top("timeline")
+        .exact_size(104.0 * scale)
+        .frame(panel_frame(ui, space::L, space::S))
+        .show(ui, |ui| {
+            timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
+        });
+    egui::CentralPanel::default()
+        .frame(panel_frame(ui, space::L, space::M))
+        .show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if state.library_open {
+                    library_panel::library_panel_ui(session, state, out, ui);
+                    ui.add_space(space::M);
+                    if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
+                        state.library_open = false;
+                    }
+                } else {
+                    lab_panel::lab_panel_ui(session, out, ui);
+                }
+            });
+        });
 }
 
 /// Inside another page: the stage, a slim timeline, and the parameters that the link names.
 fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
-    Panel::bottom("timeline").exact_size(104.0 * scale).frame(panel_frame(ui, space::M, space::S)).show(ui, |ui| {
-        timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
-    });
+    Panel::bottom("timeline")
+        .exact_size(104.0 * scale)
+        .frame(panel_frame(ui, space::M, space::S))
+        .show(ui, |ui| {
+            timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
+        });
     if lab_panel::has_named_params(session) {
         let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
-        Panel::bottom("parameters").frame(frame).show(ui, |ui| lab_panel::named_params_ui(session, out, ui));
+        Panel::bottom("parameters")
+            .frame(frame)
+            .show(ui, |ui| lab_panel::named_params_ui(session, out, ui));
     }
-    let layout = if ui.available_width() < 480.0 * scale { Layout::Phone } else { Layout::Desk };
-    egui::CentralPanel::default().frame(Frame::new().fill(palette_of(ui).ground)).show(ui, |ui| {
-        stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
-    });
+    let layout = if ui.available_width() < 480.0 * scale {
+        Layout::Phone
+    } else {
+        Layout::Desk
+    };
+    egui::CentralPanel::default()
+        .frame(Frame::new().fill(palette_of(ui).ground))
+        .show(ui, |ui| {
+            stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
+        });
 }

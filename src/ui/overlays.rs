@@ -24,7 +24,14 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         Level::Warning => Mood::Warning,
         Level::Error => Mood::Bad,
     };
-    let notices: Vec<Notice<'_>> = list.iter().map(|notice| Notice { text: &notice.text, mood: mood(notice.level), action: "" }).collect();
+    let notices: Vec<Notice<'_>> = list
+        .iter()
+        .map(|notice| Notice {
+            text: &notice.text,
+            mood: mood(notice.level),
+            action: "",
+        })
+        .collect();
     if let Some((index, NoticeEvent::Dismissed)) = kit::toasts_ui(&notices, state.stage, ui)
         && let Some(notice) = list.get(index)
     {
@@ -59,8 +66,21 @@ fn drop_ui(ui: &Ui) {
     }
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let screen = ui.ctx().content_rect();
-    let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop")));
+    let painter = ui
+        .ctx()
+        .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop")));
     painter.rect_filled(screen, 0.0, palette.ground.gamma_multiply(0.7));
-    painter.rect_stroke(screen.shrink(space::M), radius::L, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
-    painter.text(screen.center(), Align2::CENTER_CENTER, text::DROP_NOW, theme.font(Type::Title), palette.text);
+    painter.rect_stroke(
+        screen.shrink(space::M),
+        radius::L,
+        Stroke::new(2.0, palette.accent),
+        StrokeKind::Inside,
+    );
+    painter.text(
+        screen.center(),
+        Align2::CENTER_CENTER,
+        text::DROP_NOW,
+        theme.font(Type::Title),
+        palette.text,
+    );
 }

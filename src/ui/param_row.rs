@@ -30,7 +30,10 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
         }
         Kind::Choice(choices) => {
             let options: Vec<(&'static str, &str)> = choices.iter().map(|choice| (choice.key, choice.label)).collect();
-            let chosen = choices.iter().find(|choice| choice.key == session.params().text(key)).map_or("", |choice| choice.key);
+            let chosen = choices
+                .iter()
+                .find(|choice| choice.key == session.params().text(key))
+                .map_or("", |choice| choice.key);
             let picked = if choices.len() <= 4 {
                 kit::segmented_ui(param.label, chosen, &options, ui)
             } else {
@@ -59,7 +62,16 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 
 fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {
     let param = key.param();
-    let Kind::Number { min, max, step, auto, logarithmic } = param.kind else { return };
+    let Kind::Number {
+        min,
+        max,
+        step,
+        auto,
+        logarithmic,
+    } = param.kind
+    else {
+        return;
+    };
     let given = session.params().optional(key);
     let default = match param.default_value() {
         Value::Number(number) => number,
@@ -68,10 +80,23 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let max = detail.max.map_or(max, |limit| limit.clamp(min + step, max));
     let compare = session.compare().filter(|compare| compare.key == key);
     let color = palette_of(ui).muted;
-    let marks: Vec<Mark> = compare.iter().flat_map(|compare| &compare.values).map(|&value| Mark { value, color }).collect();
+    let marks: Vec<Mark> = compare
+        .iter()
+        .flat_map(|compare| &compare.values)
+        .map(|&value| Mark { value, color })
+        .collect();
     let help = detail.help.as_deref().unwrap_or(param.help);
-    let mut row = SliderRow::new(param.label, min..=max, default).unit(param.unit).secondary(&detail.secondary).help(help).step(step).marks(&marks);
-    row = if step == 1.0 { row.whole() } else { row.decimals(decimals_of(step).min(2)) };
+    let mut row = SliderRow::new(param.label, min..=max, default)
+        .unit(param.unit)
+        .secondary(&detail.secondary)
+        .help(help)
+        .step(step)
+        .marks(&marks);
+    row = if step == 1.0 {
+        row.whole()
+    } else {
+        row.decimals(decimals_of(step).min(2))
+    };
     if logarithmic {
         row = row.log();
     }

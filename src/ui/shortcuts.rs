@@ -74,13 +74,19 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         }
     }
     if pressed(none, Keyboard::T) {
-        out.set_once(Key::Camera, Value::Choice(if params.text(Key::Camera) == "top" { "orbit" } else { "top" }));
+        out.set_once(
+            Key::Camera,
+            Value::Choice(if params.text(Key::Camera) == "top" { "orbit" } else { "top" }),
+        );
     }
     if pressed(none, Keyboard::F) {
         frame_everything(session, state, out);
     }
     if pressed(none, Keyboard::G) {
-        out.set_once(Key::Follow, Value::Choice(if params.text(Key::Follow) == "off" { "result" } else { "off" }));
+        out.set_once(
+            Key::Follow,
+            Value::Choice(if params.text(Key::Follow) == "off" { "result" } else { "off" }),
+        );
     }
     if pressed(none, Keyboard::B) {
         let next = match params.text(Key::Look) {

@@ -70,7 +70,11 @@ struct Verdicts {
 }
 
 fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
-    outcome?.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
+    outcome?
+        .metrics
+        .iter()
+        .find(|metric| metric.id == id)
+        .and_then(|metric| metric.value)
 }
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
@@ -89,16 +93,23 @@ fn least_difference(unit: &str) -> f64 {
 
 /// Which panes have the lowest and the highest value; none where they hardly differ.
 fn ranking(panes: &[Pane], id: &str) -> Verdicts {
-    let values: Vec<(usize, f64)> =
-        panes.iter().enumerate().filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?))).collect();
-    let unit = panes.iter().find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id)).map_or("", |metric| metric.unit);
+    let values: Vec<(usize, f64)> = panes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?)))
+        .collect();
+    let unit = panes
+        .iter()
+        .find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id))
+        .map_or("", |metric| metric.unit);
     let least = least_difference(unit);
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
     let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
     match (best, worst) {
-        (Some(best), Some(worst)) if worst.1 - best.1 >= least => {
-            Verdicts { best: Some(best.0), worst: Some(worst.0) }
-        }
+        (Some(best), Some(worst)) if worst.1 - best.1 >= least => Verdicts {
+            best: Some(best.0),
+            worst: Some(worst.0),
+        },
         _ => Verdicts::default(),
     }
 }
@@ -114,22 +125,37 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     } else {
         ("", Mood::default())
     };
-    let title = PaneTitle { strong: &words.strong, text: &words.text, secondary: &words.secondary, chip, mood };
+    let title = PaneTitle {
+        strong: &words.strong,
+        text: &words.text,
+        secondary: &words.secondary,
+        chip,
+        mood,
+    };
     kit::pane_header_ui(&title, rect, ui);
     if let Some(problem) = &pane.problem {
-        let builder = UiBuilder::new().max_rect(Rect::from_center_size(rect.center(), vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0)));
+        let builder = UiBuilder::new().max_rect(Rect::from_center_size(
+            rect.center(),
+            vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0),
+        ));
         ui.scope_builder(builder, |ui| {
             ui.vertical_centered(|ui| ui.label(egui::RichText::new(problem).font(theme.font(Type::Body)).color(palette.warning)));
         });
     } else if pane.outcome.is_none() {
-        let galley = kit::paint::line_of(&[kit::paint::Run::new(text::EMPTY_PANE, Type::Body, palette.muted)], rect.width(), ui);
+        let galley = kit::paint::line_of(
+            &[kit::paint::Run::new(text::EMPTY_PANE, Type::Body, palette.muted)],
+            rect.width(),
+            ui,
+        );
         kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
     let Some(outcome) = pane.outcome.as_deref() else {
         return rect.bottom();
     };
     let panes = session.panes();
-    let shown = text::METRICS.iter().filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
+    let shown = text::METRICS
+        .iter()
+        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
             let ranks = ranking(panes, metric.id);
@@ -143,7 +169,15 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
             (written(metric), label, rank, metric.help)
         })
         .collect();
-    let strip: Vec<Metric<'_>> = numbers.iter().map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint }).collect();
+    let strip: Vec<Metric<'_>> = numbers
+        .iter()
+        .map(|(value, label, rank, hint)| Metric {
+            value,
+            label,
+            rank: *rank,
+            hint,
+        })
+        .collect();
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
@@ -171,18 +205,39 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
     if let Some((key, value)) = pane.variant {
         let param = key.param();
         let step = if let Kind::Number { step, .. } = param.kind { step } else { 1.0 };
-        let secondary = if param.unit == "frames" { format!("{:.2} s", value / fps) } else { String::new() };
-        return Words { strong: format_number(value, step), text: param.unit.to_owned(), secondary };
+        let secondary = if param.unit == "frames" {
+            format!("{:.2} s", value / fps)
+        } else {
+            String::new()
+        };
+        return Words {
+            strong: format_number(value, step),
+            text: param.unit.to_owned(),
+            secondary,
+        };
     }
-    let name = |key| session.library().find(session.params().text(key)).map_or_else(String::new, |entry| entry.name.clone());
+    let name = |key| {
+        session
+            .library()
+            .find(session.params().text(key))
+            .map_or_else(String::new, |entry| entry.name.clone())
+    };
     match session.params().text(Key::Lab) {
         "blend" => Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: format!("{} frames", session.params().number(Key::BlendWindow)),
         },
-        "make" => Words { strong: session.params().text(Key::Gait).to_owned(), text: String::new(), secondary: String::new() },
-        _ => Words { strong: name(Key::A), text: String::new(), secondary: String::new() },
+        "make" => Words {
+            strong: session.params().text(Key::Gait).to_owned(),
+            text: String::new(),
+            secondary: String::new(),
+        },
+        _ => Words {
+            strong: name(Key::A),
+            text: String::new(),
+            secondary: String::new(),
+        },
     }
 }
 
@@ -200,7 +255,10 @@ fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
 fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let side = (30.0 * theme_of(ui).scale()).round();
-    let rect = Rect::from_min_size(pos2(stage.right() - side - space::S, stage.top() + 76.0), vec2(side, 3.0 * side + 2.0 * space::XS));
+    let rect = Rect::from_min_size(
+        pos2(stage.right() - side - space::S, stage.top() + 76.0),
+        vec2(side, 3.0 * side + 2.0 * space::XS),
+    );
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
         let follows = params.text(Key::Follow) != "off";
@@ -255,7 +313,11 @@ fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
         return (touch.translation_delta, true);
     }
     let other_button = response.dragged_by(egui::PointerButton::Secondary) || response.dragged_by(egui::PointerButton::Middle);
-    if response.dragged() { (response.drag_delta(), other_button || ui.input(|input| input.modifiers.shift)) } else { (Vec2::ZERO, false) }
+    if response.dragged() {
+        (response.drag_delta(), other_button || ui.input(|input| input.modifiers.shift))
+    } else {
+        (Vec2::ZERO, false)
+    }
 }
 
 /// The camera that the parameters describe, without what it follows.
@@ -264,7 +326,11 @@ fn camera_of(session: &Session) -> Camera {
     let from_above = params.text(Key::Camera) == "top";
     Camera {
         yaw: params.number(Key::CameraYaw).to_radians() as f32,
-        pitch: if from_above { std::f32::consts::FRAC_PI_2 } else { params.number(Key::CameraPitch).to_radians() as f32 },
+        pitch: if from_above {
+            std::f32::consts::FRAC_PI_2
+        } else {
+            params.number(Key::CameraPitch).to_radians() as f32
+        },
         distance: params.number(Key::CameraDistance) as f32,
         lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
         ..Camera::default()
@@ -290,8 +356,12 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
     let outcomes = || session.panes().iter().filter_map(|pane| pane.outcome.as_deref());
     let places = outcomes().flat_map(|outcome| outcome.motion.ground_frames.iter().map(Planar::origin));
-    let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else { return };
+    let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    });
+    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else {
+        return;
+    };
     let height = first.motion.roles.body_height(first.motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
@@ -300,7 +370,10 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
     let pan = camera.target - resting_point(first);
-    let mut values = vec![(Key::Follow, Value::Choice("off")), (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0)))];
+    let mut values = vec![
+        (Key::Follow, Value::Choice("off")),
+        (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),
+    ];
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {
         values.push((key, Value::Number(f64::from(value).clamp(-100.0, 100.0))));
     }

@@ -47,7 +47,8 @@ pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find th
 pub(crate) const SMOOTHEST: &str = "smoothest";
 pub(crate) const ROUGHEST: &str = "roughest";
 pub(crate) const CREDIT: &str = "Motion capture: mocap.cs.cmu.edu";
-pub(crate) const WELCOME_HINT: &str = "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
+pub(crate) const WELCOME_HINT: &str =
+    "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
 pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";

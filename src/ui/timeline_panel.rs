@@ -57,12 +57,27 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         .lines
         .iter()
         .map(|(part, points)| {
-            let color = if *part == Part::Result { palette.accent } else { part.fill(palette).0 };
+            let color = if *part == Part::Result {
+                palette.accent
+            } else {
+                part.fill(palette).0
+            };
             let name = if *part == Part::Result { text::RESULT } else { part.letter() };
-            Series { name, color, ink: part.ink(palette), strong: *part == Part::Result, points }
+            Series {
+                name,
+                color,
+                ink: part.ink(palette),
+                strong: *part == Part::Result,
+                points,
+            }
         })
         .collect();
-    let names = [Key::A, Key::B].map(|key| session.library().find(params.text(key)).map_or_else(String::new, |entry| entry.name.clone()));
+    let names = [Key::A, Key::B].map(|key| {
+        session
+            .library()
+            .find(params.text(key))
+            .map_or_else(String::new, |entry| entry.name.clone())
+    });
     let tracks = tracks(outcome, &names);
     let curves = Curves {
         title: label_of(quantity),
@@ -113,13 +128,35 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
 fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
     let duration = outcome.duration_secs();
     let Some(transition) = outcome.transition else {
-        return vec![Track { part: Part::A, label: "", name: &names[0], start: 0.0, end: duration, fade_in: 0.0, fade_out: 0.0 }];
+        return vec![Track {
+            part: Part::A,
+            label: "",
+            name: &names[0],
+            start: 0.0,
+            end: duration,
+            fade_in: 0.0,
+            fade_out: 0.0,
+        }];
     };
     let fade = transition.end_secs - transition.start_secs;
-    let track = |part, name, start, end, fade_in, fade_out| Track { part, label: "", name, start, end, fade_in, fade_out };
+    let track = |part, name, start, end, fade_in, fade_out| Track {
+        part,
+        label: "",
+        name,
+        start,
+        end,
+        fade_in,
+        fade_out,
+    };
     vec![
-        Track { label: "A", ..track(Part::A, names[0].as_str(), 0.0, transition.end_secs, 0.0, fade) },
-        Track { label: "B", ..track(Part::B, names[1].as_str(), transition.start_secs, duration, fade, 0.0) },
+        Track {
+            label: "A",
+            ..track(Part::A, names[0].as_str(), 0.0, transition.end_secs, 0.0, fade)
+        },
+        Track {
+            label: "B",
+            ..track(Part::B, names[1].as_str(), transition.start_secs, duration, fade, 0.0)
+        },
     ]
 }
 
@@ -158,7 +195,12 @@ fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> V
     let values = joint_curve(&motion.clip, joint, kind);
     let stride = values.len().div_ceil(CURVE_POINTS).max(1);
     let fps = motion.clip.fps();
-    values.iter().enumerate().step_by(stride).map(|(frame, &value)| [starts_at_secs + frame as f64 / fps, f64::from(value)]).collect()
+    values
+        .iter()
+        .enumerate()
+        .step_by(stride)
+        .map(|(frame, &value)| [starts_at_secs + frame as f64 / fps, f64::from(value)])
+        .collect()
 }
 
 fn unit_of(quantity: &str) -> &'static str {
@@ -170,8 +212,13 @@ fn unit_of(quantity: &str) -> &'static str {
 }
 
 fn label_of(quantity: &str) -> &'static str {
-    let Kind::Choice(choices) = Key::Curve.param().kind else { return "" };
-    choices.iter().find(|choice| choice.key == quantity).map_or("", |choice| choice.label)
+    let Kind::Choice(choices) = Key::Curve.param().kind else {
+        return "";
+    };
+    choices
+        .iter()
+        .find(|choice| choice.key == quantity)
+        .map_or("", |choice| choice.label)
 }
 
 /// Which joint and what of it: a menu on the caption.
@@ -182,7 +229,15 @@ fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out,
     kit::menu_ui(&opener, RectAlign::TOP_END, |ui| {
         if let Kind::Choice(choices) = Key::Curve.param().kind {
             for choice in choices {
-                if kit::menu_item_ui(kit::MenuItem { text: choice.label, ..kit::MenuItem::default() }, ui).clicked() {
+                if kit::menu_item_ui(
+                    kit::MenuItem {
+                        text: choice.label,
+                        ..kit::MenuItem::default()
+                    },
+                    ui,
+                )
+                .clicked()
+                {
                     out.set_once(Key::Curve, Value::Choice(choice.key));
                 }
             }
@@ -190,7 +245,15 @@ fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out,
         kit::menu_line_ui(ui);
         eframe::egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
             for role in Role::ALL.into_iter().filter(|&role| outcome.motion.roles.get(role).is_some()) {
-                if kit::menu_item_ui(kit::MenuItem { text: role.name(), ..kit::MenuItem::default() }, ui).clicked() {
+                if kit::menu_item_ui(
+                    kit::MenuItem {
+                        text: role.name(),
+                        ..kit::MenuItem::default()
+                    },
+                    ui,
+                )
+                .clicked()
+                {
                     out.set_once(Key::Joint, Value::Text(role.name().to_owned()));
                 }
             }

@@ -38,7 +38,10 @@ fn logo_ui(layout: Layout, ui: &mut Ui) {
 fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
     let Kind::Choice(labs) = Key::Lab.param().kind else { return None };
     let options: Vec<(&'static str, &str)> = labs.iter().map(|lab| (lab.key, lab.label)).collect();
-    let chosen = labs.iter().find(|lab| lab.key == session.params().text(Key::Lab)).map_or("", |lab| lab.key);
+    let chosen = labs
+        .iter()
+        .find(|lab| lab.key == session.params().text(Key::Lab))
+        .map_or("", |lab| lab.key);
     kit::tabs_ui(Key::Lab.param().label, chosen, &options, ui.available_width(), ui)
 }
 
@@ -60,7 +63,16 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
         out.set_once(Key::Theme, other_theme(ui));
     }
     let projector = session.params().is_on(Key::Projector);
-    if kit::button_ui(Button::new(text::LARGER).name(text::PROJECTOR).hint(text::PROJECTOR).quiet().selected(projector), ui).clicked() {
+    if kit::button_ui(
+        Button::new(text::LARGER)
+            .name(text::PROJECTOR)
+            .hint(text::PROJECTOR)
+            .quiet()
+            .selected(projector),
+        ui,
+    )
+    .clicked()
+    {
         out.toggle(Key::Projector, projector);
     }
     if kit::icon_button_ui(Icon::Redo, text::REDO, ui).clicked() {
@@ -70,7 +82,11 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
         out.commands.push(Command::Undo);
     }
     let panes = session.panes().len();
-    let label = if panes > 1 { format!("{} · {panes}", text::COMPARE) } else { text::COMPARE.to_owned() };
+    let label = if panes > 1 {
+        format!("{} · {panes}", text::COMPARE)
+    } else {
+        text::COMPARE.to_owned()
+    };
     if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui).clicked() {
         toggle_compare(session, out);
     }
@@ -78,7 +94,11 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
 
 /// What a phone has no room for in the bar.
 fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let item = |text, icon| MenuItem { text, icon: Some(icon), ..MenuItem::default() };
+    let item = |text, icon| MenuItem {
+        text,
+        icon: Some(icon),
+        ..MenuItem::default()
+    };
     if kit::menu_item_ui(item(text::LIBRARY, Icon::Folder), ui).clicked() {
         state.library_open = true;
     }
@@ -109,7 +129,11 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         out.set_once(Key::Compare, Value::Text(String::new()));
         return;
     }
-    let key = if session.params().text(Key::Lab) == "make" { Key::GaitSpeed } else { Key::BlendWindow };
+    let key = if session.params().text(Key::Lab) == "make" {
+        Key::GaitSpeed
+    } else {
+        Key::BlendWindow
+    };
     out.commands.push(Command::CompareThirds(key));
     if session.params().text(Key::Lab) == "view" {
         out.set_once(Key::Lab, Value::Choice("blend"));

@@ -2,7 +2,9 @@ use super::*;
 use crate::session::transport::Span;
 
 fn blend_window(session: &mut Session, frames: f64) {
-    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
+    session
+        .apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]))
+        .unwrap();
 }
 
 fn settle(session: &mut Session) {
@@ -23,8 +25,16 @@ fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
         assert!(outcome.metrics.iter().any(|metric| metric.value.is_some()));
     }
     // The panes differ in the window alone.
-    let places: Vec<_> = session.panes().iter().map(|pane| pane.outcome.as_ref().unwrap().transition.unwrap()).collect();
-    assert!(places.windows(2).all(|pair| pair[0].leave_a_secs == pair[1].leave_a_secs && pair[0].enter_b_secs == pair[1].enter_b_secs));
+    let places: Vec<_> = session
+        .panes()
+        .iter()
+        .map(|pane| pane.outcome.as_ref().unwrap().transition.unwrap())
+        .collect();
+    assert!(
+        places
+            .windows(2)
+            .all(|pair| pair[0].leave_a_secs == pair[1].leave_a_secs && pair[0].enter_b_secs == pair[1].enter_b_secs)
+    );
     assert!(session.params().is_on(Key::Play));
 }
 
@@ -35,7 +45,9 @@ fn what_did_not_change_is_not_computed_again() {
     let before = Arc::clone(session.main_outcome().unwrap());
     session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(10.0))])).unwrap();
     assert!(Arc::ptr_eq(&before, session.main_outcome().unwrap()));
-    session.apply(Command::Set(vec![(Key::WeightLaw, Value::Choice("linear"))])).unwrap();
+    session
+        .apply(Command::Set(vec![(Key::WeightLaw, Value::Choice("linear"))]))
+        .unwrap();
     assert!(!Arc::ptr_eq(&before, session.main_outcome().unwrap()));
 }
 
@@ -81,7 +93,9 @@ fn undo_leaves_the_playhead_and_the_camera_alone() {
 #[test]
 fn the_playhead_goes_round_in_the_span_between_the_marks() {
     let mut session = Session::new();
-    session.apply(Command::Set(vec![(Key::In, Value::Number(1.0)), (Key::Out, Value::Number(2.0))])).unwrap();
+    session
+        .apply(Command::Set(vec![(Key::In, Value::Number(1.0)), (Key::Out, Value::Number(2.0))]))
+        .unwrap();
     assert_eq!(session.span(), Span { start: 1.0, end: 2.0 });
     for _ in 0..100 {
         assert!(session.tick(0.03));
@@ -97,9 +111,16 @@ fn the_playhead_goes_round_in_the_span_between_the_marks() {
 
 fn made_bvh(seed: f64) -> Arc<[u8]> {
     let mut session = Session::new();
-    session.apply(Command::Set(vec![(Key::Lab, Value::Choice("make")), (Key::Seed, Value::Number(seed))])).unwrap();
+    session
+        .apply(Command::Set(vec![
+            (Key::Lab, Value::Choice("make")),
+            (Key::Seed, Value::Number(seed)),
+        ]))
+        .unwrap();
     let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
-    crate::formats::bvh::write(&clip, &crate::formats::bvh::WriteOptions::default()).into_bytes().into()
+    crate::formats::bvh::write(&clip, &crate::formats::bvh::WriteOptions::default())
+        .into_bytes()
+        .into()
 }
 
 #[test]
@@ -121,7 +142,9 @@ fn dropped_files_take_a_then_b_and_keep_their_bytes() {
 fn a_broken_file_is_named_and_nothing_changes() {
     let mut session = Session::new();
     let (query, clips) = (session.query(), session.clip_infos());
-    let error = session.load("broken.bvh", Arc::from(&b"HIERARCHY\nROOT Hips\n{\n  OFFSET 0 zero 0\n"[..])).unwrap_err();
+    let error = session
+        .load("broken.bvh", Arc::from(&b"HIERARCHY\nROOT Hips\n{\n  OFFSET 0 zero 0\n"[..]))
+        .unwrap_err();
     assert!(error.to_string().starts_with("broken.bvh:4:12: found "), "{error}");
     assert_eq!((session.query(), session.clip_infos()), (query, clips));
     assert_eq!(session.notices().list().last().unwrap().level, Level::Error);
@@ -138,11 +161,18 @@ fn a_link_to_a_dropped_file_waits_for_it() {
     let mut receiver = Session::new();
     receiver.apply(Command::OpenLink(query.clone())).unwrap();
     let notice = receiver.notices().list().last().unwrap();
-    assert!(notice.text.contains("mine") && notice.text.contains("drop that file"), "{}", notice.text);
+    assert!(
+        notice.text.contains("mine") && notice.text.contains("drop that file"),
+        "{}",
+        notice.text
+    );
     assert!(receiver.panes()[0].problem.is_some());
     receiver.load("renamed.bvh", bytes).unwrap();
     settle(&mut receiver);
-    assert_eq!(receiver.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned)), sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned)));
+    assert_eq!(
+        receiver.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned)),
+        sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned))
+    );
     assert_eq!(receiver.panes()[0].problem, None);
     assert_eq!(receiver.params().number(Key::BlendWindow), 24.0);
 }
@@ -203,13 +233,18 @@ fn made_clips_are_kept_and_travel_in_the_link() {
     let mut other = Session::new();
     other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
     assert_eq!(other.panes()[0].problem, None);
-    assert_eq!(other.main_outcome().unwrap().motion.clip.rotations(9), session.main_outcome().unwrap().motion.clip.rotations(9));
+    assert_eq!(
+        other.main_outcome().unwrap().motion.clip.rotations(9),
+        session.main_outcome().unwrap().motion.clip.rotations(9)
+    );
 }
 
 #[test]
 fn addresses_are_asked_for_and_others_are_refused() {
     let mut session = Session::new();
-    session.apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into())).unwrap();
+    session
+        .apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into()))
+        .unwrap();
     assert_eq!(session.take_requests(), [Request::Fetch("https://example.org/a.bvh".into())]);
     assert!(session.notices().list().iter().any(|notice| notice.text.contains("ftp://x/b.bvh")));
 }
