@@ -126,7 +126,9 @@ pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox)
 /// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser refuses, the text itself is shown.
 pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
     // Undefined on an insecure address, whatever the type says.
-    let clipboard = window().map(|window| window.navigator()).and_then(|navigator| Reflect::get(&navigator, &"clipboard".into()).ok());
+    let clipboard = window()
+        .map(|window| window.navigator())
+        .and_then(|navigator| Reflect::get(&navigator, &"clipboard".into()).ok());
     let clipboard = clipboard.and_then(|clipboard| clipboard.dyn_into::<Clipboard>().ok());
     // At once and not in the task: Safari allows it within the user's gesture only.
     let written = clipboard.map(|clipboard| JsFuture::from(clipboard.write_text(&text)));

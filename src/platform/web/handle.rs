@@ -13,8 +13,8 @@ use serde_wasm_bindgen::Serializer;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
-use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 use web_sys::{Blob, HtmlCanvasElement};
 
@@ -79,6 +79,7 @@ impl SegueHandle {
     }
 
     /// This version of Segue.
+    #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn version(&self) -> String {
         env!("CARGO_PKG_VERSION").to_owned()
     }
@@ -135,6 +136,7 @@ impl SegueHandle {
     }
 
     /// The table of parameters.
+    #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn keys(&self) -> Result<JsValue, JsValue> {
         to_js(&api::keys())
     }
@@ -236,16 +238,26 @@ impl SegueHandle {
             None | Some("auto") => {}
             Some(other) => log::warn!("backend: found `{other}`, expected webgpu or webgl2"),
         }
-        let Err(reason) = self.run_on(canvas.clone(), both).await else { return Ok(()) };
+        let Err(reason) = self.run_on(canvas.clone(), both).await else {
+            return Ok(());
+        };
         // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of context it once had, so it needs a new one.
-        log::warn!("the graphics could not be set up, trying WebGL 2 alone: {}", super::words_of(&reason));
+        log::warn!(
+            "the graphics could not be set up, trying WebGL 2 alone: {}",
+            super::words_of(&reason)
+        );
         let fresh: HtmlCanvasElement = canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
         canvas.replace_with_with_node_1(&fresh)?;
         let listener = Rc::clone(&self.listener);
         // The page looks after the canvas that it knows of. This one tells it by itself.
         listen(Some(&fresh), "webglcontextlost", move |event| {
             event.prevent_default();
-            tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
+            tell(
+                &listener,
+                vec![Event::Lost {
+                    message: "the WebGL context was lost".to_owned(),
+                }],
+            );
         });
         self.run_on(fresh, Backends::GL).await.map_err(|_| reason)
     }
