@@ -259,7 +259,8 @@ impl SegueHandle {
                 }],
             );
         });
-        self.run_on(fresh, Backends::GL).await.map_err(|_| reason)
+        let both_reasons = |second: JsValue| error(format!("WebGPU: {}. WebGL 2: {}", super::words_of(&reason), super::words_of(&second)));
+        self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
     }
 
     async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
