@@ -16,11 +16,17 @@ fn made(params: &Params) -> Synthesized {
 }
 
 fn walk(speed_mps: f32) -> Params {
-    Params { speed_mps, ..Params::new(Action::Walk) }
+    Params {
+        speed_mps,
+        ..Params::new(Action::Walk)
+    }
 }
 
 fn run(speed_mps: f32) -> Params {
-    Params { speed_mps, ..Params::new(Action::Run) }
+    Params {
+        speed_mps,
+        ..Params::new(Action::Run)
+    }
 }
 
 fn joint(clip: &Clip, name: &str) -> usize {
@@ -62,7 +68,12 @@ fn worst_slip(made: &Synthesized, height_m: f32) -> f32 {
 
 /// How far anything of a foot gets below the ground, metres.
 fn deepest(made: &Synthesized, height_m: f32) -> f32 {
-    soles(made, height_m).iter().flatten().flatten().map(|point| -point.y).fold(0.0, f32::max)
+    soles(made, height_m)
+        .iter()
+        .flatten()
+        .flatten()
+        .map(|point| -point.y)
+        .fold(0.0, f32::max)
 }
 
 /// The largest change of any joint's local angular velocity from frame to frame, rad/s², with its frame and joint.
@@ -83,18 +94,28 @@ fn worst_angular_acceleration(clip: &Clip) -> (f32, usize, usize) {
 
 fn knee_flexions(clip: &Clip) -> Vec<[f32; 2]> {
     let knees = ["LeftLeg", "RightLeg"].map(|name| joint(clip, name));
-    (0..clip.frames()).map(|frame| knees.map(|knee| quat::log(clip.rotations(frame)[knee]).x.to_degrees())).collect()
+    (0..clip.frames())
+        .map(|frame| knees.map(|knee| quat::log(clip.rotations(frame)[knee]).x.to_degrees()))
+        .collect()
 }
 
 fn least_and_greatest(values: impl Iterator<Item = f32>) -> (f32, f32) {
-    values.fold((f32::INFINITY, f32::NEG_INFINITY), |(least, greatest), v| (least.min(v), greatest.max(v)))
+    values.fold((f32::INFINITY, f32::NEG_INFINITY), |(least, greatest), v| {
+        (least.min(v), greatest.max(v))
+    })
 }
 
 fn every_action() -> Vec<Params> {
     let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
     for turn_rate_dps in [-120.0, -50.0, 0.0, 50.0, 120.0] {
-        all.extend([0.4, 1.0, 1.6, 2.2].map(|speed| Params { turn_rate_dps, ..walk(speed) }));
-        all.extend([1.8, 3.0, 5.0, 6.5].map(|speed| Params { turn_rate_dps, ..run(speed) }));
+        all.extend([0.4, 1.0, 1.6, 2.2].map(|speed| Params {
+            turn_rate_dps,
+            ..walk(speed)
+        }));
+        all.extend([1.8, 3.0, 5.0, 6.5].map(|speed| Params {
+            turn_rate_dps,
+            ..run(speed)
+        }));
     }
     for height_m in [1.0, 2.2] {
         all.extend(presets().iter().map(|preset| Params { height_m, ..preset.params }));
@@ -142,8 +163,14 @@ fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
 #[test]
 fn feet_do_not_go_through_each_other() {
     let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
-    all.extend([-90.0, 45.0, 120.0].map(|spin_degrees| Params { spin_degrees, ..Params::new(Action::Spin) }));
-    all.extend([-90.0, 60.0].map(|turn_rate_dps| Params { turn_rate_dps, ..walk(1.0) }));
+    all.extend([-90.0, 45.0, 120.0].map(|spin_degrees| Params {
+        spin_degrees,
+        ..Params::new(Action::Spin)
+    }));
+    all.extend([-90.0, 60.0].map(|turn_rate_dps| Params {
+        turn_rate_dps,
+        ..walk(1.0)
+    }));
     for params in all {
         let closest = (soles(&made(&params), params.height_m).iter())
             .map(|[left, right]| distance([left[0], left[2]], [right[0], right[2]]))
@@ -156,12 +183,18 @@ fn feet_do_not_go_through_each_other() {
 fn the_mean_speed_is_the_one_asked_for() {
     for turn_rate_dps in [0.0, 30.0, -90.0] {
         for speed in [0.4, 0.9, 1.4, 2.2] {
-            check_speed(&Params { turn_rate_dps, ..walk(speed) });
+            check_speed(&Params {
+                turn_rate_dps,
+                ..walk(speed)
+            });
         }
     }
     for turn_rate_dps in [0.0, -45.0, 120.0] {
         for speed in [1.8, 3.5, 6.5] {
-            check_speed(&Params { turn_rate_dps, ..run(speed) });
+            check_speed(&Params {
+                turn_rate_dps,
+                ..run(speed)
+            });
         }
     }
 }
@@ -191,8 +224,21 @@ fn check_speed(params: &Params) {
 
 #[test]
 fn walks_and_runs_end_in_the_pose_they_began_with() {
-    let turning = Params { turn_rate_dps: 40.0, ..walk(1.2) };
-    for params in [walk(1.4), walk(0.7), run(3.5), turning, Params { fps: 30.0, seed: 5, ..run(3.0) }] {
+    let turning = Params {
+        turn_rate_dps: 40.0,
+        ..walk(1.2)
+    };
+    for params in [
+        walk(1.4),
+        walk(0.7),
+        run(3.5),
+        turning,
+        Params {
+            fps: 30.0,
+            seed: 5,
+            ..run(3.0)
+        },
+    ] {
         let made = made(&params);
         let last = made.clip.frames() - 1;
         for joint in 1..made.clip.skeleton().len() {
@@ -206,7 +252,14 @@ fn walks_and_runs_end_in_the_pose_they_began_with() {
 
 #[test]
 fn running_flies_and_walking_does_not() {
-    let up = |params: &Params| made(params).truth.contacts.iter().filter(|feet| !feet[0].any() && !feet[1].any()).count();
+    let up = |params: &Params| {
+        made(params)
+            .truth
+            .contacts
+            .iter()
+            .filter(|feet| !feet[0].any() && !feet[1].any())
+            .count()
+    };
     for speed in [0.4, 1.4, 2.2] {
         assert_eq!(up(&walk(speed)), 0, "{speed}");
     }
@@ -224,7 +277,13 @@ fn running_flies_and_walking_does_not() {
 
 #[test]
 fn a_body_in_flight_falls_as_bodies_fall() {
-    for params in [Params { fps: 120.0, ..run(3.5) }, Params { fps: 120.0, ..Params::new(Action::Jump) }] {
+    for params in [
+        Params { fps: 120.0, ..run(3.5) },
+        Params {
+            fps: 120.0,
+            ..Params::new(Action::Jump)
+        },
+    ] {
         let made = made(&params);
         let (roots, contacts) = (made.clip.root_translations(), &made.truth.contacts);
         let flying = |frame: usize| contacts[frame].iter().all(|foot| !foot.any());
@@ -252,7 +311,14 @@ fn cadence_and_step_length_are_those_of_people() {
         assert!((lowest..highest).contains(&cadence), "{cadence} steps/min at {speed} m/s");
     }
     // A child takes more and shorter steps at the same speed.
-    let (child, adult) = (made(&Params { height_m: 1.1, ..walk(1.0) }).truth, made(&walk(1.0)).truth);
+    let (child, adult) = (
+        made(&Params {
+            height_m: 1.1,
+            ..walk(1.0)
+        })
+        .truth,
+        made(&walk(1.0)).truth,
+    );
     assert!(child.cadence_spm > 1.1 * adult.cadence_spm && child.stride_m < adult.stride_m);
     assert!((adult.stride_m - adult.speed_mps * adult.cycle_secs).abs() < 1e-5);
 }
@@ -307,7 +373,11 @@ fn knees_bend_as_knees_do() {
     // The wave of early stance in walking.
     let walked = made(&walk(1.4));
     let knees = knee_flexions(&walked.clip);
-    let early = knees.iter().zip(&walked.truth.phase).filter(|(_, phase)| (0.08..0.25).contains(*phase)).map(|(knee, _)| knee[0]);
+    let early = knees
+        .iter()
+        .zip(&walked.truth.phase)
+        .filter(|(_, phase)| (0.08..0.25).contains(*phase))
+        .map(|(knee, _)| knee[0]);
     let (_, peak) = least_and_greatest(early);
     assert!((14.0..34.0).contains(&peak), "{peak}°");
     for params in every_action() {
@@ -338,7 +408,10 @@ fn starts_and_stops_stand_with_feet_side_by_side() {
         assert!(made.truth.contacts[frame].iter().all(FootContact::flat));
         let world = made.clip.world_pose(frame);
         let [left, right] = FEET.map(|(foot, _)| world.positions[joint(&made.clip, foot)]);
-        assert!((left.z - right.z).abs() < 5e-3 && (0.1..0.3).contains(&(left.x - right.x)), "{left} {right}");
+        assert!(
+            (left.z - right.z).abs() < 5e-3 && (0.1..0.3).contains(&(left.x - right.x)),
+            "{left} {right}"
+        );
         let hips = world.positions[0];
         assert!((hips.x - 0.5 * (left.x + right.x)).abs() < 0.02, "{hips}");
     }
@@ -360,12 +433,19 @@ fn starts_and_stops_stand_with_feet_side_by_side() {
 #[test]
 fn a_spin_turns_by_the_angle_in_place_and_never_lifts_both_feet() {
     for spin_degrees in [180.0, -180.0, 90.0, -45.0, 360.0] {
-        let made = made(&Params { spin_degrees, duration_secs: 5.0, ..Params::new(Action::Spin) });
+        let made = made(&Params {
+            spin_degrees,
+            duration_secs: 5.0,
+            ..Params::new(Action::Spin)
+        });
         let last = made.clip.frames() - 1;
         let facing = |frame: usize| made.clip.rotations(frame)[0] * Vec3::Z;
         let (from, to) = (facing(0), facing(last));
         let turned = (to.x.atan2(to.z) - from.x.atan2(from.z)).to_degrees();
-        assert!(((turned - spin_degrees + 180.0).rem_euclid(360.0) - 180.0).abs() < 2.0, "{turned} for {spin_degrees}");
+        assert!(
+            ((turned - spin_degrees + 180.0).rem_euclid(360.0) - 180.0).abs() < 2.0,
+            "{turned} for {spin_degrees}"
+        );
         assert!(made.clip.root_translations().iter().all(|root| root.with_y(0.0).length() < 0.2));
         assert!(made.truth.contacts.iter().all(|feet| feet[0].any() || feet[1].any()));
         assert!(made.truth.contacts.iter().any(|feet| !feet[0].any()));
@@ -378,9 +458,17 @@ fn a_jump_leaves_the_ground_and_comes_back_to_it() {
     let heights: Vec<f32> = made.clip.root_translations().iter().map(|root| root.y).collect();
     let standing = heights[0];
     let (low, high) = least_and_greatest(heights.iter().copied());
-    assert!((0.15..0.5).contains(&(standing - low)) && (0.15..0.6).contains(&(high - standing)), "{standing} {low} {high}");
+    assert!(
+        (0.15..0.5).contains(&(standing - low)) && (0.15..0.6).contains(&(high - standing)),
+        "{standing} {low} {high}"
+    );
     assert!((heights[heights.len() - 1] - standing).abs() < 0.01);
-    let both_up = made.truth.contacts.iter().filter(|feet| feet.iter().all(|foot| !foot.any())).count();
+    let both_up = made
+        .truth
+        .contacts
+        .iter()
+        .filter(|feet| feet.iter().all(|foot| !foot.any()))
+        .count();
     assert!((20..45).contains(&both_up), "{both_up} frames");
 }
 
@@ -422,11 +510,38 @@ fn what_cannot_be_made_is_refused_with_the_range() {
     refused(walk(3.0), &["speed", "3 m/s", "0.4", "2.2 m/s"]);
     refused(run(1.0), &["speed", "1.8", "6.5"]);
     refused(walk(f32::NAN), &["speed"]);
-    refused(Params { height_m: 0.5, ..walk(1.4) }, &["height", "1", "2.2 m"]);
-    refused(Params { turn_rate_dps: 150.0, ..walk(1.4) }, &["turn rate", "-120", "120"]);
+    refused(
+        Params {
+            height_m: 0.5,
+            ..walk(1.4)
+        },
+        &["height", "1", "2.2 m"],
+    );
+    refused(
+        Params {
+            turn_rate_dps: 150.0,
+            ..walk(1.4)
+        },
+        &["turn rate", "-120", "120"],
+    );
     refused(Params { fps: 0.0, ..walk(1.4) }, &["frame rate"]);
-    refused(Params { duration_secs: f32::INFINITY, ..walk(1.4) }, &["duration"]);
-    refused(Params { style: Style { lean: -1.0, ..Style::default() }, ..walk(1.4) }, &["lean"]);
+    refused(
+        Params {
+            duration_secs: f32::INFINITY,
+            ..walk(1.4)
+        },
+        &["duration"],
+    );
+    refused(
+        Params {
+            style: Style {
+                lean: -1.0,
+                ..Style::default()
+            },
+            ..walk(1.4)
+        },
+        &["lean"],
+    );
     assert!(humanoid(3.0).is_err());
 }
 
@@ -457,13 +572,30 @@ fn any_params() -> impl Strategy<Value = Params> {
     });
     let action = prop::sample::select(Action::ALL.to_vec());
     let fps = prop::sample::select(vec![24.0f32, 60.0, 120.0]);
-    (action, 0.0f32..=1.0, -120.0f32..=120.0, -360.0f32..=360.0, 1.0f32..=2.2, style, 0u32..9, fps).prop_map(
-        |(action, at, turn_rate_dps, spin_degrees, height_m, style, seed, fps)| {
+    (
+        action,
+        0.0f32..=1.0,
+        -120.0f32..=120.0,
+        -360.0f32..=360.0,
+        1.0f32..=2.2,
+        style,
+        0u32..9,
+        fps,
+    )
+        .prop_map(|(action, at, turn_rate_dps, spin_degrees, height_m, style, seed, fps)| {
             let natural = Params::new(action);
             let speed_mps = Params::speed_range(action).map_or(0.0, |(least, most)| least + at * (most - least));
-            Params { speed_mps, turn_rate_dps, spin_degrees, height_m, style, seed, fps, ..natural }
-        },
-    )
+            Params {
+                speed_mps,
+                turn_rate_dps,
+                spin_degrees,
+                height_m,
+                style,
+                seed,
+                fps,
+                ..natural
+            }
+        })
 }
 
 proptest! {

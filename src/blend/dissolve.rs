@@ -64,7 +64,12 @@ impl Source {
     pub fn with_frames(clip: Arc<Clip>, roles: &Roles, frames: Vec<Planar>) -> Self {
         let motion_root = motion_root(&clip, roles);
         let weights = limb_weights(clip.skeleton());
-        Self { clip, frames, motion_root, weights }
+        Self {
+            clip,
+            frames,
+            motion_root,
+            weights,
+        }
     }
 
     /// The clip.

@@ -1,7 +1,7 @@
 //! Order statistics and means.
 
 /// The value below which the share `p` (0 to 1) of `values` lies, with linear interpolation between neighbours (the "linear" definition that
-/// NumPy uses). `None` for no values; NaN sorts last.
+/// `NumPy` uses). `None` for no values; NaN sorts last.
 #[must_use]
 pub fn percentile(values: &[f32], p: f32) -> Option<f32> {
     let mut sorted = values.to_vec();

@@ -317,7 +317,7 @@ impl StageRenderer {
             self.encode_pane(&mut pass, view, pane);
         }
         // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor would cut.
-        let [width, height] = view.targets.size();
+        let [width, height] = view.targets.size;
         pass.set_scissor_rect(0, 0, width, height);
     }
 

@@ -253,8 +253,9 @@ pub fn resting_point(outcome: &Outcome) -> Vec3 {
     start.with_y(middle_height(&outcome.motion))
 }
 
+/// The height in the middle of the picture: a little below the body's own, because the panes' numbers lie over the lower edge.
 fn middle_height(motion: &Motion) -> f32 {
-    motion.roles.body_height(motion.clip.skeleton()) * 0.5
+    motion.roles.body_height(motion.clip.skeleton()) * 0.4
 }
 
 /// Warm where A plays, cool where B does, the accent between them and where there is no transition.

@@ -246,7 +246,7 @@ parameters! {
     Camera "camera" "Camera" Camera Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";
     CameraYaw "camera_yaw" "Camera direction" Camera number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
     CameraPitch "camera_pitch" "Camera pitch" Camera number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
-    CameraDistance "camera_distance" "Camera distance" Camera logarithmic(0.5, 60.0, 0.05), Start::Number(4.2), "m", "How far away the camera stands.";
+    CameraDistance "camera_distance" "Camera distance" Camera logarithmic(0.5, 60.0, 0.05), Start::Number(4.8), "m", "How far away the camera stands.";
     PanX "pan_x" "Camera shift x" Camera number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "How far the middle of the picture lies beside what the camera follows, along x.";
     PanY "pan_y" "Camera shift y" Camera number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise upwards.";
     PanZ "pan_z" "Camera shift z" Camera number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise along z.";

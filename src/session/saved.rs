@@ -47,7 +47,7 @@ impl From<&Entry> for SavedEntry {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),
                 index: file.index,
-                options: file.options.clone(),
+                options: file.options,
             }),
             Origin::Preset | Origin::Sample(_) | Origin::Made => None,
         };

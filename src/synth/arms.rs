@@ -74,7 +74,15 @@ pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, 
     if let Some(times) = plan.jump {
         let middle = 0.5 * (times.off + times.land);
         let curve = |values: [f64; 7]| {
-            let at = [times.dip, times.bottom - 0.06, times.off, middle, times.land, times.absorbed, times.stood + 0.15];
+            let at = [
+                times.dip,
+                times.bottom - 0.06,
+                times.off,
+                middle,
+                times.land,
+                times.absorbed,
+                times.stood + 0.15,
+            ];
             let mut knots = [(0.0, 0.0); 7];
             for (knot, (at, value)) in knots.iter_mut().zip(at.into_iter().zip(values)) {
                 *knot = (at, degrees(value));

@@ -26,7 +26,11 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
     let feet = feet?;
     let ground = over_the_ground(plan, &feet, posture, params);
     let heights = heights(plan, &feet, &ground, posture, params, body);
-    let positions = ground.iter().zip(&heights).map(|(xz, &y)| Vec3::new(xz.x as f32, y as f32, xz.y as f32)).collect();
+    let positions = ground
+        .iter()
+        .zip(&heights)
+        .map(|(xz, &y)| Vec3::new(xz.x as f32, y as f32, xz.y as f32))
+        .collect();
     Some(Hips { feet, positions })
 }
 

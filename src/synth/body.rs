@@ -61,7 +61,10 @@ impl Body {
         Self {
             thigh: THIGH * height_m,
             shank: SHANK * height_m,
-            hip_in_hips: [at(HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0), at(-HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0)],
+            hip_in_hips: [
+                at(HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0),
+                at(-HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0),
+            ],
             ball_in_foot: at(0.0, BALL_HEIGHT - ANKLE_HEIGHT, BALL_AHEAD),
             tip_in_toes: at(0.0, -0.5 * BALL_HEIGHT, TOES),
             heel_in_foot: at(0.0, -ANKLE_HEIGHT, -HEEL_BEHIND),
@@ -107,24 +110,48 @@ pub fn heel_in_foot(height_m: f32) -> Vec3 {
 /// # Errors
 /// [`SynthError::OutOfRange`] when the height is not between 1.0 and 2.2 m.
 pub fn humanoid(height_m: f32) -> Result<Arc<Skeleton>, SynthError> {
-    super::Params { height_m, ..super::Params::default() }.validate()?;
+    super::Params {
+        height_m,
+        ..super::Params::default()
+    }
+    .validate()?;
     let body = Body::new(height_m);
     let mut joints: Vec<Joint> = Vec::with_capacity(joint::COUNT);
     let mut add = |name: &str, parent: Option<usize>, offset: Vec3, end_site: Option<Vec3>| {
         let rotations = [Channel::ZRotation, Channel::YRotation, Channel::XRotation];
         let positions = [Channel::XPosition, Channel::YPosition, Channel::ZPosition];
-        let channels = if parent.is_none() { [positions, rotations].concat() } else { rotations.to_vec() };
-        joints.push(Joint { name: name.to_owned(), parent, offset: offset * height_m, end_site: end_site.map(|e| e * height_m), channels });
+        let channels = if parent.is_none() {
+            [positions, rotations].concat()
+        } else {
+            rotations.to_vec()
+        };
+        joints.push(Joint {
+            name: name.to_owned(),
+            parent,
+            offset: offset * height_m,
+            end_site: end_site.map(|e| e * height_m),
+            channels,
+        });
     };
     let up = Vec3::Y;
     add("Hips", None, up * (ANKLE_HEIGHT + SHANK + THIGH + HIPS_ABOVE_HIP_JOINTS), None);
     for (side, (name, mirror)) in [("Left", 1.0), ("Right", -1.0)].into_iter().enumerate() {
         let first = joint::UP_LEG[side];
-        add(&format!("{name}UpLeg"), Some(joint::HIPS), Vec3::new(mirror * HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0), None);
+        add(
+            &format!("{name}UpLeg"),
+            Some(joint::HIPS),
+            Vec3::new(mirror * HIP_HALF_WIDTH, -HIPS_ABOVE_HIP_JOINTS, 0.0),
+            None,
+        );
         add(&format!("{name}Leg"), Some(first), up * -THIGH, None);
         add(&format!("{name}Foot"), Some(first + 1), up * -SHANK, None);
         let ball = body.ball_in_foot / height_m;
-        add(&format!("{name}Toe"), Some(first + 2), ball, Some(Vec3::new(0.0, -0.5 * BALL_HEIGHT, TOES)));
+        add(
+            &format!("{name}Toe"),
+            Some(first + 2),
+            ball,
+            Some(Vec3::new(0.0, -0.5 * BALL_HEIGHT, TOES)),
+        );
     }
     add("Spine", Some(joint::HIPS), Vec3::new(0.0, 0.045, -0.004), None);
     add("Spine1", Some(9), Vec3::new(0.0, 0.066, -0.003), None);
@@ -135,8 +162,18 @@ pub fn humanoid(height_m: f32) -> Result<Arc<Skeleton>, SynthError> {
         let first = joint::SHOULDER[side];
         add(&format!("{name}Shoulder"), Some(11), Vec3::new(mirror * 0.024, 0.082, 0.006), None);
         add(&format!("{name}Arm"), Some(first), Vec3::new(mirror * 0.088, 0.005, -0.008), None);
-        add(&format!("{name}ForeArm"), Some(first + 1), Vec3::new(mirror * 0.186, 0.0, 0.0), None);
-        add(&format!("{name}Hand"), Some(first + 2), Vec3::new(mirror * 0.146, 0.0, 0.0), Some(Vec3::new(mirror * 0.100, 0.0, 0.0)));
+        add(
+            &format!("{name}ForeArm"),
+            Some(first + 1),
+            Vec3::new(mirror * 0.186, 0.0, 0.0),
+            None,
+        );
+        add(
+            &format!("{name}Hand"),
+            Some(first + 2),
+            Vec3::new(mirror * 0.146, 0.0, 0.0),
+            Some(Vec3::new(mirror * 0.100, 0.0, 0.0)),
+        );
     }
     Ok(Arc::new(Skeleton::new(joints)?))
 }

@@ -77,7 +77,10 @@ impl Foot {
 fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
     let (y, z) = (f64::from(v.y), f64::from(v.z));
     let (sin, cos) = pitch.sin_cos();
-    (DVec2::new(z * cos + y * sin, y * cos - z * sin), DVec2::new(y * cos - z * sin, -y * sin - z * cos))
+    (
+        DVec2::new(z * cos + y * sin, y * cos - z * sin),
+        DVec2::new(y * cos - z * sin, -y * sin - z * cos),
+    )
 }
 
 fn along(yaw: f64) -> DVec2 {
@@ -98,26 +101,45 @@ fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
     }
     let heel = f64::from(body.heel_in_foot.z);
     let (arm, turn) = pitched(body.ball_in_foot - body.heel_in_foot, pitch);
-    (place(heel + arm.x, arm.y), DVec3::new(forward.x * turn.x, turn.y, forward.y * turn.x))
+    (
+        place(heel + arm.x, arm.y),
+        DVec3::new(forward.x * turn.x, turn.y, forward.y * turn.x),
+    )
 }
 
 impl Plant {
     fn strike_rate(&self) -> f64 {
         let span = self.flat_from - self.from;
-        if span.is_finite() && span > 0.0 { -1.1 * self.strike_pitch / span } else { 0.0 }
+        if span.is_finite() && span > 0.0 {
+            -1.1 * self.strike_pitch / span
+        } else {
+            0.0
+        }
     }
 
     fn release_rate(&self) -> f64 {
         let span = self.to - self.flat_to;
-        if span.is_finite() && span > 0.0 { 1.9 * self.release_pitch / span } else { 0.0 }
+        if span.is_finite() && span > 0.0 {
+            1.9 * self.release_pitch / span
+        } else {
+            0.0
+        }
     }
 
     fn pitch(&self, secs: f64) -> f64 {
         if secs < self.flat_from {
-            let strike = State { value: self.strike_pitch, rate: self.strike_rate(), acceleration: 0.0 };
+            let strike = State {
+                value: self.strike_pitch,
+                rate: self.strike_rate(),
+                acceleration: 0.0,
+            };
             quintic(strike, State::rest(0.0), self.flat_from - self.from, secs - self.from)
         } else if secs > self.flat_to {
-            let release = State { value: self.release_pitch, rate: self.release_rate(), acceleration: 0.0 };
+            let release = State {
+                value: self.release_pitch,
+                rate: self.release_rate(),
+                acceleration: 0.0,
+            };
             quintic(State::rest(0.0), release, self.to - self.flat_to, secs - self.flat_to)
         } else {
             0.0
@@ -145,7 +167,13 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
     let (ball, yaw, pitch, toe_pitch, progress) = match next {
         None => {
             let pitch = plant.pitch(secs.clamp(plant.from, plant.to));
-            (planted_ball(plant, body, pitch).0, plant.yaw, pitch, pitch.min(0.0), plant.progress(secs))
+            (
+                planted_ball(plant, body, pitch).0,
+                plant.yaw,
+                pitch,
+                pitch.min(0.0),
+                plant.progress(secs),
+            )
         }
         Some(next) => swing_at(plant, next, body, secs),
     };
@@ -183,23 +211,45 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let (end, end_turn) = planted_ball(next, body, next.strike_pitch);
     let end_rate = end_turn * next.strike_rate();
     // Over the ground: from rest to the rate of the heel rocker, quicker off than a curve of least jerk.
-    let mut from = State { value: start.with_y(0.0), rate: DVec3::ZERO, acceleration: DVec3::ZERO };
-    let mut to = State { value: end.with_y(0.0), rate: end_rate.with_y(0.0), acceleration: DVec3::ZERO };
+    let mut from = State {
+        value: start.with_y(0.0),
+        rate: DVec3::ZERO,
+        acceleration: DVec3::ZERO,
+    };
+    let mut to = State {
+        value: end.with_y(0.0),
+        rate: end_rate.with_y(0.0),
+        acceleration: DVec3::ZERO,
+    };
     let reversed = (State { rate: -to.rate, ..to }, State { rate: -from.rate, ..from });
-    let (a0, a1) = (cubic_start_acceleration(from, to, span), cubic_start_acceleration(reversed.0, reversed.1, span));
+    let (a0, a1) = (
+        cubic_start_acceleration(from, to, span),
+        cubic_start_acceleration(reversed.0, reversed.1, span),
+    );
     from.acceleration = a0 * swing.eager;
     to.acceleration = a1 * swing.late;
     let bulge = 16.0 * (share * (1.0 - share)).powi(2);
     let ground = quintic(from, to, span, now) + DVec3::new(swing.aside.x, 0.0, swing.aside.y) * bulge;
     let timed = |(share, value): (f64, f64)| (share * span, value);
     let height = Spline::clamped(
-        &[(0.0, start.y), timed((swing.peak.0, start.y + swing.peak.1)), timed((swing.low.0, start.y + swing.low.1)), (span, end.y)],
+        &[
+            (0.0, start.y),
+            timed((swing.peak.0, start.y + swing.peak.1)),
+            timed((swing.low.0, start.y + swing.low.1)),
+            (span, end.y),
+        ],
         swing.spring,
         if swing.spring > 0.0 { -swing.spring } else { end_rate.y },
     );
     let [a, b] = swing.pitch;
     let pitch = Spline::clamped(
-        &[(0.0, plant.release_pitch), timed(a), timed(b), timed((0.88, next.strike_pitch + swing.toes_up)), (span, next.strike_pitch)],
+        &[
+            (0.0, plant.release_pitch),
+            timed(a),
+            timed(b),
+            timed((0.88, next.strike_pitch + swing.toes_up)),
+            (span, next.strike_pitch),
+        ],
         plant.release_rate(),
         next.strike_rate(),
     )

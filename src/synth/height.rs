@@ -123,7 +123,9 @@ fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
     let last = values.len().saturating_sub(1);
     (0..values.len())
         .map(|i| {
-            let sides: f64 = (1..=half).map(|k| weights[k] * (values[i.saturating_sub(k)] + values[(i + k).min(last)])).sum();
+            let sides: f64 = (1..=half)
+                .map(|k| weights[k] * (values[i.saturating_sub(k)] + values[(i + k).min(last)]))
+                .sum();
             (weights[0] * values[i] + sides) / total
         })
         .collect()
@@ -136,8 +138,14 @@ fn kept_below(heights: &mut [f64], ceiling: impl Fn(usize) -> f64, half: usize) 
         return;
     }
     let last = excess.len() - 1;
-    let widened: Vec<f64> =
-        (0..excess.len()).map(|i| excess[i.saturating_sub(half)..=(i + half).min(last)].iter().copied().fold(0.0, f64::max)).collect();
+    let widened: Vec<f64> = (0..excess.len())
+        .map(|i| {
+            excess[i.saturating_sub(half)..=(i + half).min(last)]
+                .iter()
+                .copied()
+                .fold(0.0, f64::max)
+        })
+        .collect();
     for (height, lower) in heights.iter_mut().zip(smoothed(&widened, half)) {
         *height -= lower;
     }
@@ -157,18 +165,22 @@ fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
     let mut level = f64::from(legs.body.hip_height());
     let raw: Vec<f64> = (0..plan.len())
         .map(|step| {
-            level = legs.wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians()).map_or(level, |(height, _)| height);
+            level = legs
+                .wanted(step, |leg| leg.load, |_| STANDING_FLEXION.to_radians())
+                .map_or(level, |(height, _)| height);
             level
         })
         .collect();
     let steps_of = |share: f64| ((share * cycle / plan.dt_secs).round() as usize).max(2);
     let rise = walking_rise(plan.gait.alike_mps) * f64::from(legs.body.scale) * f64::from(params.style.bounce);
-    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 })).into_iter().enumerate())
-        .map(|(step, level)| {
-            let secs = plan.secs(step);
-            level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
-        })
-        .collect();
+    let mut heights: Vec<f64> = (smoothed(&raw, steps_of(if plan.top_speed > 0.0 { 0.5 } else { 0.25 }))
+        .into_iter()
+        .enumerate())
+    .map(|(step, level)| {
+        let secs = plan.secs(step);
+        level - 0.5 * rise * plan.going(secs) * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
+    })
+    .collect();
     // Over a whole step, so that the level gives way and the wave stays.
     kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.25));
     heights
@@ -197,8 +209,9 @@ fn spring_mass(secs: f64, step_secs: f64, contact_secs: f64) -> f64 {
 fn running(plan: &Plan, legs: &Legs) -> Vec<f64> {
     let gait = &plan.gait;
     let (step_secs, contact) = (0.5 * gait.cycle_secs, gait.duty * gait.cycle_secs);
-    let shape: Vec<f64> =
-        (0..plan.len()).map(|step| spring_mass((plan.secs(step) - plan.phase_zero).rem_euclid(step_secs), step_secs, contact)).collect();
+    let shape: Vec<f64> = (0..plan.len())
+        .map(|step| spring_mass((plan.secs(step) - plan.phase_zero).rem_euclid(step_secs), step_secs, contact))
+        .collect();
     // 12° at the strike, about 40° in the middle, 16° at the release (Novacheck 1998, figure 8).
     let flexion = |progress: f64| (14.0 + 27.0 * (std::f64::consts::PI * progress).sin()).to_radians();
     let mut sum = 0.0;
@@ -211,7 +224,11 @@ fn running(plan: &Plan, legs: &Legs) -> Vec<f64> {
         }
         limit = limit.min(legs.ceiling(step) - shape);
     }
-    let level = if total > 0.0 { sum / total } else { f64::from(legs.body.hip_height()) };
+    let level = if total > 0.0 {
+        sum / total
+    } else {
+        f64::from(legs.body.hip_height())
+    };
     let level = level.min(limit);
     shape.into_iter().map(|height| level + height).collect()
 }
@@ -222,7 +239,9 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
     let leg = f64::from(legs.body.leg());
     let step_at = |secs: f64| ((secs / plan.dt_secs).round() as i64 + plan.margin as i64).clamp(0, plan.len() as i64 - 1) as usize;
     let at_flexion = |secs: f64, degrees: f64| {
-        legs.wanted(step_at(secs), |_| 1.0, |_| degrees.to_radians()).map_or(leg, |(height, _)| height).min(legs.ceiling(step_at(secs)))
+        legs.wanted(step_at(secs), |_| 1.0, |_| degrees.to_radians())
+            .map_or(leg, |(height, _)| height)
+            .min(legs.ceiling(step_at(secs)))
     };
     let stand = |secs: f64| at_flexion(secs, 5.0);
     let (before, after) = (stand(0.0), stand(plan.secs(plan.len() - 1)));
@@ -234,12 +253,52 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
     let up = up + (land - off) / air;
     let down = up - g * air;
     let rest = State::rest;
-    let fly = |value: f64, rate: f64| State { value, rate, acceleration: -g };
+    let fly = |value: f64, rate: f64| State {
+        value,
+        rate,
+        acceleration: -g,
+    };
     let pieces = [
-        (times.dip, times.bottom, rest(before), State { value: before - 0.30 * leg, rate: 0.0, acceleration: 9.0 }),
-        (times.bottom, times.off, State { value: before - 0.30 * leg, rate: 0.0, acceleration: 9.0 }, fly(off, up)),
-        (times.land, times.absorbed, fly(land, down), State { value: after - 0.24 * leg, rate: 0.0, acceleration: 7.0 }),
-        (times.absorbed, times.stood, State { value: after - 0.24 * leg, rate: 0.0, acceleration: 7.0 }, rest(after)),
+        (
+            times.dip,
+            times.bottom,
+            rest(before),
+            State {
+                value: before - 0.30 * leg,
+                rate: 0.0,
+                acceleration: 9.0,
+            },
+        ),
+        (
+            times.bottom,
+            times.off,
+            State {
+                value: before - 0.30 * leg,
+                rate: 0.0,
+                acceleration: 9.0,
+            },
+            fly(off, up),
+        ),
+        (
+            times.land,
+            times.absorbed,
+            fly(land, down),
+            State {
+                value: after - 0.24 * leg,
+                rate: 0.0,
+                acceleration: 7.0,
+            },
+        ),
+        (
+            times.absorbed,
+            times.stood,
+            State {
+                value: after - 0.24 * leg,
+                rate: 0.0,
+                acceleration: 7.0,
+            },
+            rest(after),
+        ),
     ];
     let mut heights: Vec<f64> = (0..plan.len())
         .map(|step| {
@@ -249,7 +308,9 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
                 return off + up * t - 0.5 * g * t * t;
             }
             let piece = pieces.iter().find(|piece| secs >= piece.0 && secs < piece.1);
-            piece.map_or(if secs < times.dip { before } else { after }, |&(from, to, a, b)| quintic(a, b, to - from, secs - from))
+            piece.map_or(if secs < times.dip { before } else { after }, |&(from, to, a, b)| {
+                quintic(a, b, to - from, secs - from)
+            })
         })
         .collect();
     let flight = step_at(times.off).saturating_sub(2)..step_at(times.land) + 2;
@@ -258,7 +319,11 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
     kept_below(
         &mut heights,
         |step| {
-            if flight.contains(&step) { f64::INFINITY } else { legs.ceiling(step) }
+            if flight.contains(&step) {
+                f64::INFINITY
+            } else {
+                legs.ceiling(step)
+            }
         },
         half,
     );

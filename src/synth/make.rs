@@ -28,7 +28,11 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
     let body = Body::new(params.height_m);
     let plan = plan(params, &body);
     let posture = Posture::new(&plan, params);
-    let missing = ClipError::Length { what: "footholds", found: 0, expected: 2 };
+    let missing = ClipError::Length {
+        what: "footholds",
+        found: 0,
+        expected: 2,
+    };
     let moved = hips(&plan, &posture, params, &body).ok_or(missing)?;
     let mut rotations = Vec::with_capacity(plan.frames * joint::COUNT);
     let mut roots = Vec::with_capacity(plan.frames);
@@ -60,17 +64,27 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         }
         rotations.extend(local.map(renormalize));
         roots.push(moved.positions[step]);
-        contacts.push([0, 1].map(|side| FootContact { heel: moved.feet[step][side].heel_down, toe: moved.feet[step][side].toe_down }));
+        contacts.push([0, 1].map(|side| FootContact {
+            heel: moved.feet[step][side].heel_down,
+            toe: moved.feet[step][side].toe_down,
+        }));
         phase.push(plan.cycles(secs).rem_euclid(1.0) as f32);
     }
     let clip = Clip::new(name(params), skeleton, f64::from(params.fps), rotations, roots)?;
-    Ok(Synthesized { clip, truth: truth(&plan, params, phase, contacts) })
+    Ok(Synthesized {
+        clip,
+        truth: truth(&plan, params, phase, contacts),
+    })
 }
 
 fn truth(plan: &Plan, params: &Params, phase: Vec<f32>, contacts: Vec<[FootContact; 2]>) -> Truth {
     let strides = matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
     let cycle_secs = plan.gait.cycle_secs;
-    let speed = if Params::speed_range(params.action).is_some() { f64::from(params.speed_mps) } else { 0.0 };
+    let speed = if Params::speed_range(params.action).is_some() {
+        f64::from(params.speed_mps)
+    } else {
+        0.0
+    };
     Truth {
         speed_mps: speed as f32,
         turn_rate_dps: if strides { params.turn_rate_dps } else { 0.0 },

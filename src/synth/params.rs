@@ -44,7 +44,13 @@ pub struct Style {
 
 impl Default for Style {
     fn default() -> Self {
-        Self { bounce: 1.0, arm_swing: 1.0, stance_width: 1.0, energy: 1.0, lean: 1.0 }
+        Self {
+            bounce: 1.0,
+            arm_swing: 1.0,
+            stance_width: 1.0,
+            energy: 1.0,
+            lean: 1.0,
+        }
     }
 }
 
@@ -131,7 +137,17 @@ impl Params {
     pub fn validate(&self) -> Result<(), SynthError> {
         let check = |what, value: f32, min, max, unit| {
             // A NaN lies in no range.
-            if (min..=max).contains(&value) { Ok(()) } else { Err(SynthError::OutOfRange { what, value, min, max, unit }) }
+            if (min..=max).contains(&value) {
+                Ok(())
+            } else {
+                Err(SynthError::OutOfRange {
+                    what,
+                    value,
+                    min,
+                    max,
+                    unit,
+                })
+            }
         };
         if let Some((min, max)) = Self::speed_range(self.action) {
             check("speed", self.speed_mps, min, max, " m/s")?;
@@ -195,7 +211,11 @@ pub struct Preset {
 pub fn presets() -> Vec<Preset> {
     let of = |id, title, action, speed_mps: Option<f32>, turn_rate_dps| {
         let natural = Params::new(action);
-        let params = Params { speed_mps: speed_mps.unwrap_or(natural.speed_mps), turn_rate_dps, ..natural };
+        let params = Params {
+            speed_mps: speed_mps.unwrap_or(natural.speed_mps),
+            turn_rate_dps,
+            ..natural
+        };
         Preset { id, title, params }
     };
     vec![

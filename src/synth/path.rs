@@ -63,7 +63,11 @@ pub(super) struct Path {
 /// The chord of an arc of length `speed × dt` that turns by `yaw_rate × dt`, from heading `yaw`. Exact for constant rates.
 fn arc(yaw: f64, speed: f64, yaw_rate: f64, dt: f64) -> DVec2 {
     let half_turn = 0.5 * yaw_rate * dt;
-    let sinc = if half_turn.abs() < 1e-6 { 1.0 - half_turn * half_turn / 6.0 } else { half_turn.sin() / half_turn };
+    let sinc = if half_turn.abs() < 1e-6 {
+        1.0 - half_turn * half_turn / 6.0
+    } else {
+        half_turn.sin() / half_turn
+    };
     let (sin, cos) = (yaw + half_turn).sin_cos();
     DVec2::new(sin, cos) * (speed * dt * sinc)
 }
@@ -77,15 +81,27 @@ impl Path {
             let time = start_secs + i as f64 * dt_secs;
             let (speed, yaw_rate) = rates(time);
             let thrust = (rates(time + 0.5 * dt_secs).0 - rates(time - 0.5 * dt_secs).0) / dt_secs;
-            here = Place { speed, yaw_rate, thrust, ..here };
+            here = Place {
+                speed,
+                yaw_rate,
+                thrust,
+                ..here
+            };
             places.push(here);
             let (speed, yaw_rate) = rates(time + 0.5 * dt_secs);
             here.position += arc(here.yaw, speed, yaw_rate, dt_secs);
             here.yaw += yaw_rate * dt_secs;
         }
-        let mut path = Self { start_secs, dt_secs, places };
+        let mut path = Self {
+            start_secs,
+            dt_secs,
+            places,
+        };
         let origin = path.at(0.0);
-        let turn = Place { yaw: -origin.yaw, ..Place::default() };
+        let turn = Place {
+            yaw: -origin.yaw,
+            ..Place::default()
+        };
         for place in &mut path.places {
             place.position = turn.to_world(place.position - origin.position);
             place.yaw -= origin.yaw;

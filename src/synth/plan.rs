@@ -72,7 +72,11 @@ impl Plan {
 
     /// How much of a gait is going on, 0 to 1.
     pub(super) fn going(&self, secs: f64) -> f64 {
-        if self.top_speed > 0.0 && self.jump.is_none() { (self.path.at(secs).speed / self.top_speed).clamp(0.0, 1.0) } else { 0.0 }
+        if self.top_speed > 0.0 && self.jump.is_none() {
+            (self.path.at(secs).speed / self.top_speed).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -85,7 +89,11 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     let speed = f64::from(params.speed_mps);
     let asked = (f64::from(params.duration_secs) * fps).round().max(1.0);
     let running = params.action == Action::Run;
-    let mut gait = if running { Gait::run(speed, body, &params.style) } else { Gait::walk(speed.max(0.4), body, &params.style) };
+    let mut gait = if running {
+        Gait::run(speed, body, &params.style)
+    } else {
+        Gait::walk(speed.max(0.4), body, &params.style)
+    };
     if running {
         // Nobody keeps such a curve; a shorter contact keeps the legs from being torn apart by it.
         gait.duty /= 1.0 + 0.6 * ramp(sideways(params), 0.0, 1.2);
@@ -153,7 +161,10 @@ impl Plan {
 fn foothold_at(place: &Place, side: usize, half_width: f64, gait: Gait, params: &Params, body: &Body) -> DVec2 {
     let outward = if side == 0 { half_width } else { -half_width };
     // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
-    let eased = Place { thrust: 0.5 * place.thrust, ..*place };
+    let eased = Place {
+        thrust: 0.5 * place.thrust,
+        ..*place
+    };
     let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
     let behind = f64::from(body.scale) * if gait.running { 0.20 - 0.03 * gait.quick_run() } else { 0.105 };
     place.position + support + place.left() * outward - place.forward() * behind
@@ -170,7 +181,14 @@ impl Plan {
                 let (from, to) = (self.plants[side][index - 1], self.plants[side][index]);
                 let middle = 0.5 * (from.to + to.from);
                 let place = self.path.at(middle);
-                let facing = if spinning { Place { yaw: 0.5 * (from.yaw + to.yaw) - toe_out(side, false), ..place } } else { place };
+                let facing = if spinning {
+                    Place {
+                        yaw: 0.5 * (from.yaw + to.yaw) - toe_out(side, false),
+                        ..place
+                    }
+                } else {
+                    place
+                };
                 let half_width = 0.5 * (from.half_width + to.half_width) + room;
                 let wanted = foothold_at(&facing, side, half_width, self.gait, params, body);
                 let left = facing.left();
@@ -221,7 +239,10 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     Swing {
         peak: (0.27, scale * (0.04 + 0.035 * quick) * (0.6 + 0.4 * energy)),
         low: (0.62, scale * (0.018 + 0.008 * energy + 0.012 * quick)),
-        pitch: [(0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()), (0.58, degrees(4.0))],
+        pitch: [
+            (0.12, degrees(12.0) + degrees(54.0) * share.max(0.2) * quick.clamp(0.6, 1.2).sqrt()),
+            (0.58, degrees(4.0)),
+        ],
         toes_up: degrees(-3.0),
         eager: 1.2,
         late: 0.7,
@@ -246,7 +267,11 @@ fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, bod
         yaw: plan.path.at(middle).yaw + toe_out(side, gait.running),
         strike_pitch: gait.strike_pitch * share,
         release_pitch: gait.release_pitch * (0.35 + 0.65 * share),
-        load_secs: if gait.running { 0.3 * gait.duty * cycle } else { (gait.duty - 0.5) * cycle },
+        load_secs: if gait.running {
+            0.3 * gait.duty * cycle
+        } else {
+            (gait.duty - 0.5) * cycle
+        },
         stances_per_sec: (gait.duty * cycle).recip(),
         swing: swing_of(gait, share, params, body),
     }
@@ -256,10 +281,14 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
     let (speed, yaw_rate) = (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     plan.set_path(|_| (speed, yaw_rate));
     let cycle = plan.gait.cycle_secs;
-    let (first, last) = ((plan.secs(0) / cycle).floor() as i64 - 1, (plan.secs(plan.len()) / cycle).ceil() as i64 + 1);
+    let (first, last) = (
+        (plan.secs(0) / cycle).floor() as i64 - 1,
+        (plan.secs(plan.len()) / cycle).ceil() as i64 + 1,
+    );
     for side in 0..2 {
-        plan.plants[side] =
-            (first..=last).map(|k| regular(plan, side, (k as f64 + 0.5 * side as f64) * cycle, 1.0, params, body)).collect();
+        plan.plants[side] = (first..=last)
+            .map(|k| regular(plan, side, (k as f64 + 0.5 * side as f64) * cycle, 1.0, params, body))
+            .collect();
     }
 }
 
@@ -297,7 +326,11 @@ fn start(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.35 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k > first { plant } else { standing(plant, plan, side, params, body, true) }
+            if k > first {
+                plant
+            } else {
+                standing(plant, plan, side, params, body, true)
+            }
         });
         plan.plants[side] = plants.collect();
     }
@@ -322,7 +355,11 @@ fn stop(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.2 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k < 0 { plant } else { standing(plant, plan, side, params, body, false) }
+            if k < 0 {
+                plant
+            } else {
+                standing(plant, plan, side, params, body, false)
+            }
         });
         plan.plants[side] = plants.collect();
     }

@@ -88,7 +88,11 @@ impl Posture {
             loops: matches!(params.action, Action::Idle | Action::Walk | Action::Run),
             energy: f64::from(params.style.energy),
             lean: f64::from(params.style.lean),
-            quick: if plan.gait.running { plan.gait.alike_mps / 3.5 } else { (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6) },
+            quick: if plan.gait.running {
+                plan.gait.alike_mps / 3.5
+            } else {
+                (plan.gait.alike_mps / 1.4).clamp(0.3, 1.6)
+            },
             size: f64::from(params.height_m) / 1.75,
             person: person(params.seed, 1),
             period_secs: (plan.frames.max(2) - 1) as f64 * plan.dt_secs * plan.substeps as f64,

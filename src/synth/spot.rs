@@ -30,7 +30,11 @@ fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
 pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
     plan.top_speed = 0.0;
     plan.moving = (0.0, 0.0);
-    let angle = if params.action == Action::Spin { f64::from(params.spin_degrees).to_radians() } else { 0.0 };
+    let angle = if params.action == Action::Spin {
+        f64::from(params.spin_degrees).to_radians()
+    } else {
+        0.0
+    };
     if angle.abs() < 1e-3 {
         plan.set_path(|_| (0.0, 0.0));
         plan.plants = [0, 1].map(|side| vec![stand(plan, side, params, body)]);
@@ -54,8 +58,15 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         let off = lift + period * step as f64;
         let on = off + air;
         // A foot is set down where the body will face when it lifts again, less for the first and all of it for the last steps.
-        let share = if step + 2 >= steps { 1.0 } else { ((step as f64 + 1.35) / (steps as f64 - 0.3)).min(1.0) };
-        let facing = super::path::Place { yaw: angle * share, ..plan.path.at(f64::NEG_INFINITY) };
+        let share = if step + 2 >= steps {
+            1.0
+        } else {
+            ((step as f64 + 1.35) / (steps as f64 - 0.3)).min(1.0)
+        };
+        let facing = super::path::Place {
+            yaw: angle * share,
+            ..plan.path.at(f64::NEG_INFINITY)
+        };
         let outward = if side == 0 { wide } else { -wide };
         let swing = Swing {
             peak: (0.35, 0.055 * f64::from(body.scale)),
@@ -77,7 +88,14 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
             (before.flat_to, before.to, before.release_pitch, before.swing) = (off - 0.17, off, 0.42, swing);
         }
         let strike_pitch = 0.10;
-        plants[side].push(Plant { from: on, flat_from: on + 0.09, ankle, yaw: facing.yaw + toe_out(side, false), strike_pitch, ..resting });
+        plants[side].push(Plant {
+            from: on,
+            flat_from: on + 0.09,
+            ankle,
+            yaw: facing.yaw + toe_out(side, false),
+            strike_pitch,
+            ..resting
+        });
     }
     plan.plants = plants;
 }
@@ -98,7 +116,14 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
     let bottom = dip + 0.48 * size;
     let off = bottom + 0.30 * size;
     let land = off + air;
-    let times = JumpTimes { dip, bottom, off, land, absorbed: land + 0.24 * size, stood: land + 0.85 * size };
+    let times = JumpTimes {
+        dip,
+        bottom,
+        off,
+        land,
+        absorbed: land + 0.24 * size,
+        stood: land + 0.85 * size,
+    };
     let speed = f64::from(params.speed_mps);
     plan.set_path(|t| {
         let go = ramp(t, bottom - 0.05, off + 0.02);
@@ -119,8 +144,20 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
             aside: DVec2::ZERO,
             spring: 0.3 * gravity() * air * 0.5,
         };
-        let away = Plant { flat_to: off - 0.2 * size, to: off, release_pitch: OFF_PITCH, swing, ..first };
-        let back = Plant { from: land, flat_from: land + 0.10 * size, strike_pitch: LAND_PITCH, ankle, ..first };
+        let away = Plant {
+            flat_to: off - 0.2 * size,
+            to: off,
+            release_pitch: OFF_PITCH,
+            swing,
+            ..first
+        };
+        let back = Plant {
+            from: land,
+            flat_from: land + 0.10 * size,
+            strike_pitch: LAND_PITCH,
+            ankle,
+            ..first
+        };
         plan.plants[side] = vec![away, back];
     }
 }

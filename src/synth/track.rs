@@ -13,7 +13,11 @@ pub(super) struct State<V> {
 impl<V: Default> State<V> {
     /// At rest at a value.
     pub(super) fn rest(value: V) -> Self {
-        Self { value, rate: V::default(), acceleration: V::default() }
+        Self {
+            value,
+            rate: V::default(),
+            acceleration: V::default(),
+        }
     }
 }
 
@@ -27,7 +31,10 @@ where
     }
     let t = (secs / span_secs).clamp(0.0, 1.0);
     let (v0, v1) = (from.rate * span_secs, to.rate * span_secs);
-    let (a0, a1) = (from.acceleration * (span_secs * span_secs), to.acceleration * (span_secs * span_secs));
+    let (a0, a1) = (
+        from.acceleration * (span_secs * span_secs),
+        to.acceleration * (span_secs * span_secs),
+    );
     let d = to.value - from.value;
     let c3 = d * 10.0 - v0 * 6.0 - v1 * 4.0 - a0 * 1.5 + a1 * 0.5;
     let c4 = v0 * 8.0 + v1 * 7.0 - d * 15.0 + a0 * 1.5 - a1;
@@ -59,7 +66,12 @@ impl Spline {
     /// `knots` are (time, value) in rising order of time; more than ten are cut off.
     pub(super) fn clamped(knots: &[(f64, f64)], start_slope: f64, end_slope: f64) -> Self {
         let count = knots.len().min(MOST_KNOTS);
-        let mut spline = Self { count, at: [0.0; MOST_KNOTS], value: [0.0; MOST_KNOTS], slope: [0.0; MOST_KNOTS] };
+        let mut spline = Self {
+            count,
+            at: [0.0; MOST_KNOTS],
+            value: [0.0; MOST_KNOTS],
+            slope: [0.0; MOST_KNOTS],
+        };
         for (i, &(at, value)) in knots.iter().take(count).enumerate() {
             spline.at[i] = at;
             spline.value[i] = value;
@@ -124,8 +136,16 @@ mod tests {
 
     #[test]
     fn a_quintic_meets_both_ends() {
-        let from = State { value: 1.0, rate: -2.0, acceleration: 3.0 };
-        let to = State { value: 4.0, rate: 0.5, acceleration: -1.0 };
+        let from = State {
+            value: 1.0,
+            rate: -2.0,
+            acceleration: 3.0,
+        };
+        let to = State {
+            value: 4.0,
+            rate: 0.5,
+            acceleration: -1.0,
+        };
         let f = |t: f64| quintic(from, to, 0.8, t);
         let h = 1e-4;
         assert!((f(0.0) - 1.0).abs() < 1e-12 && (f(0.8) - 4.0).abs() < 1e-12);

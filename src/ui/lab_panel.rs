@@ -86,17 +86,19 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         ui,
     );
     compare_ui(Key::BlendWindow, session, out, ui);
-    let place = |key, slot| Detail {
+    // What was found is one thing for both: it is said once, below the second.
+    let automatic = |key| session.params().optional(key).is_none();
+    let place = |key, slot, said_below: bool| Detail {
         max: duration(slot),
-        help: Some(if session.params().optional(key).is_some() {
-            text::BY_HAND.to_owned()
-        } else {
-            found_sentence(session)
+        help: Some(match (automatic(key), said_below) {
+            (false, _) => text::BY_HAND.to_owned(),
+            (true, true) => String::new(),
+            (true, false) => found_sentence(session),
         }),
         ..Detail::default()
     };
-    param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A), session, out, ui);
-    param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B), session, out, ui);
+    param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A, automatic(Key::EnterB)), session, out, ui);
+    param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B, false), session, out, ui);
     ui.label(egui::RichText::new(Key::WeightLaw.param().label).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
@@ -158,9 +160,9 @@ fn folded_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &m
     });
 }
 
-/// What the timeline, the pointer on the stage or the curves' own menu set.
+/// What only the pointer on the stage sets.
 fn is_handled_elsewhere(key: Key) -> bool {
-    matches!(key, Key::Joint | Key::Curve | Key::PanX | Key::PanY | Key::PanZ)
+    matches!(key, Key::PanX | Key::PanY | Key::PanZ)
 }
 
 fn lab_label(session: &Session) -> &'static str {

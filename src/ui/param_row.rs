@@ -5,6 +5,7 @@ use super::out::Out;
 use super::theme::palette_of;
 use eframe::egui::Ui;
 use segue::session::{Command, Key, Kind, Session, Value, decimals_of};
+use segue::skeleton::Role;
 
 /// What a panel knows about a parameter beyond the table.
 #[derive(Clone, Debug, Default)]
@@ -39,8 +40,21 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
                 out.set_once(key, Value::Choice(word));
             }
         }
+        Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => joint_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::Compare => {}
     });
+}
+
+/// A body part to choose. A joint that is named in the link and is no body part keeps its place until another is chosen.
+fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let chosen = session.params().text(key);
+    let mut options: Vec<(&str, &str)> = Role::ALL.iter().map(|role| (role.name(), role.name())).collect();
+    if !options.iter().any(|(name, _)| *name == chosen) {
+        options.insert(0, (chosen, chosen));
+    }
+    if let Some(name) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
+        out.set_once(key, Value::Text(name.to_owned()));
+    }
 }
 
 fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -77,14 +77,26 @@ fn verdicts(panes: &[Pane]) -> Verdicts {
     ranking(panes, "seam_dps")
 }
 
-/// Which panes have the lowest and the highest value; none where they do not differ.
+/// Differences below this are nobody's verdict.
+fn least_difference(unit: &str) -> f64 {
+    match unit {
+        "°/s" => 5.0,
+        "°" => 1.0,
+        "s" => 0.05,
+        _ => 0.5,
+    }
+}
+
+/// Which panes have the lowest and the highest value; none where they hardly differ.
 fn ranking(panes: &[Pane], id: &str) -> Verdicts {
     let values: Vec<(usize, f64)> =
         panes.iter().enumerate().filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?))).collect();
+    let unit = panes.iter().find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id)).map_or("", |metric| metric.unit);
+    let least = least_difference(unit);
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
     let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
     match (best, worst) {
-        (Some(best), Some(worst)) if values.len() > 1 && worst.1 - best.1 > 1e-3 * worst.1.abs().max(1e-3) => {
+        (Some(best), Some(worst)) if worst.1 - best.1 >= least => {
             Verdicts { best: Some(best.0), worst: Some(worst.0) }
         }
         _ => Verdicts::default(),

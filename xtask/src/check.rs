@@ -29,7 +29,7 @@ fn lint(report: &mut Report) {
     report.run("rustfmt", cargo(&["fmt", "--all", "--check"]));
     // Without its tests, whose tools would bring the UI along: this is also the proof that the core needs none.
     report.run("clippy, core alone", clippy(&["--lib", "--no-default-features"]));
-    report.run("clippy, whole app", clippy(&["--workspace", "--all-targets"]));
+    report.run("clippy, whole app", clippy(&["--workspace", "--all-targets", "--features=ui-tests"]));
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--lib"]))
@@ -47,7 +47,9 @@ fn core(report: &mut Report) {
 fn app(report: &mut Report) {
     report.step("tests, whole app", || {
         tools::software_vulkan()?;
-        shell::run(&mut cargo(&["test", "--locked", "--workspace"]))
+        // The library's own tests have run without the app.
+        shell::run(&mut cargo(&["test", "--locked", "--package=segue", "--features=ui-tests", "--bin=segue"]))?;
+        shell::run(&mut cargo(&["test", "--locked", "--package=xtask"]))
     });
 }
 

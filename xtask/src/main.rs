@@ -22,10 +22,13 @@ cargo xtask serve --dist
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core app web browser; all of them unless some are named.
     lint        rustfmt, clippy for the core alone, for the whole app and for the web
-    core        the tests of the motion core, built without any UI
-    app         all native tests: core, app, pictures of the UI, documentation examples
+    core        the tests of the motion core and its documentation examples, built without any UI
+    app         the tests of the app, pictures of the UI among them
     web         the release build that `serve` makes
     browser     that build in Chromium, on WebGL2 and on WebGPU
+
+cargo xtask docs
+    Writes the README's table of parameters anew, from the program's.
 
 cargo xtask help
 ";
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
     let outcome = match args.split_first() {
         Some((&"serve", rest)) => serve(rest),
         Some((&"test", rest)) => check::run(rest),
+        Some((&"docs", _)) => docs(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");
             Ok(())
@@ -49,6 +53,13 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The table is written by the test that holds it to the program: it knows the library, which these commands do not.
+fn docs() -> Result<()> {
+    let mut test = shell::cargo(&["test", "--quiet", "--locked", "--no-default-features", "--test=readme"]);
+    test.env("SEGUE_WRITE_DOCS", "1");
+    shell::run(&mut test)
 }
 
 fn serve(args: &[&str]) -> Result<()> {

@@ -41,17 +41,27 @@ struct Scope {
     at: usize,
 }
 
-/// The channel of a name, or `Some(None)` for a scale channel. Case does not matter.
-fn channel(token: &[u8]) -> Option<Option<Channel>> {
+/// What a channel's name asks for.
+enum ChannelName {
+    /// A channel that moves or turns the joint.
+    Kept(Channel),
+    /// A scale channel: its numbers are read past.
+    Scale,
+}
+
+/// The channel of a name. Case does not matter.
+fn channel_name(token: &[u8]) -> Option<ChannelName> {
     let (axis, kind) = token.split_first()?;
     let axis = b"xyz".iter().position(|a| *a == axis.to_ascii_lowercase())?;
     let is = |names: [&str; 2]| names.iter().any(|n| kind.eq_ignore_ascii_case(n.as_bytes()));
     if is(["position", "translation"]) {
-        Some([Channel::XPosition, Channel::YPosition, Channel::ZPosition].get(axis).copied())
+        let channels = [Channel::XPosition, Channel::YPosition, Channel::ZPosition];
+        channels.get(axis).copied().map(ChannelName::Kept)
     } else if is(["rotation", "rot"]) {
-        Some([Channel::XRotation, Channel::YRotation, Channel::ZRotation].get(axis).copied())
+        let channels = [Channel::XRotation, Channel::YRotation, Channel::ZRotation];
+        channels.get(axis).copied().map(ChannelName::Kept)
     } else if is(["scale", "scaling"]) {
-        Some(None)
+        Some(ChannelName::Scale)
     } else {
         None
     }
@@ -197,15 +207,17 @@ fn channels(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, scope: &Scope, start: u
     let mut named = 0_usize;
     loop {
         let token = lexer.peek();
-        let Some(channel) = channel(token) else { break };
-        let kept = if scope.is_end_site {
-            lexer.tally.add(WarningKind::EndSiteChannels, Some(lexer.at));
-            None
-        } else {
-            if channel.is_none() {
-                lexer.tally.add(WarningKind::ScaleChannels, Some(lexer.at));
+        let Some(name) = channel_name(token) else { break };
+        let kept = match name {
+            _ if scope.is_end_site => {
+                lexer.tally.add(WarningKind::EndSiteChannels, Some(lexer.at));
+                None
             }
-            channel
+            ChannelName::Scale => {
+                lexer.tally.add(WarningKind::ScaleChannels, Some(lexer.at));
+                None
+            }
+            ChannelName::Kept(channel) => Some(channel),
         };
         lexer.at += token.len();
         tree.columns.push(Column {

@@ -100,9 +100,9 @@ fn not_a_number(piece: &[u8]) -> bool {
 
 /// Whether there is exactly one comma and no point, with digits around it: `,5` and `1,` are commas between numbers at least as likely.
 fn has_decimal_comma(piece: &[u8]) -> bool {
-    let commas = piece.iter().filter(|&&b| b == b',').count();
+    let has_one_comma = piece.split(|b| *b == b',').count() == 2;
     let inside = without_sign(piece).first() != Some(&b',') && piece.last() != Some(&b',');
-    commas == 1 && inside && !piece.contains(&b'.')
+    has_one_comma && inside && !piece.contains(&b'.')
 }
 
 /// Whether bytes could go on to a number, but are none yet: `-`, `1e`, `1.5e-`, `.`.
@@ -112,7 +112,7 @@ fn is_cut(piece: &[u8]) -> bool {
         [head @ .., b'e' | b'E'] | [head @ .., b'e' | b'E', b'+' | b'-'] if !head.is_empty() => head,
         _ => body,
     };
-    mantissa.iter().all(|b| b.is_ascii_digit() || *b == b'.') && mantissa.iter().filter(|&&b| b == b'.').count() <= 1
+    mantissa.iter().all(|b| b.is_ascii_digit() || *b == b'.') && mantissa.split(|b| *b == b'.').count() <= 2
 }
 
 #[cfg(test)]

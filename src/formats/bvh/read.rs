@@ -106,7 +106,11 @@ fn assemble(
     tally: &mut Tally,
     first_row_at: usize,
 ) -> Result<Vec<ImportedClip>, Fault> {
-    if motions.iter_mut().fold(false, |any, raw| raw.rest_from_first_frame() || any) {
+    let mut rest_from_first_row = false;
+    for motion in &mut motions {
+        rest_from_first_row |= motion.rest_from_first_frame();
+    }
+    if rest_from_first_row {
         tally.add(WarningKind::RestFromFirstRow, None);
     }
     let t_poses: Vec<bool> = motions.iter().map(first_frame_is_t_pose).collect();

@@ -28,6 +28,7 @@ impl Session {
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
+    #[expect(clippy::needless_pass_by_value, reason = "the library keeps the file: who loads one hands it over")]
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
         let options = ImportOptions::default();
         let imported = match import(name, &bytes, &options) {
@@ -198,7 +199,7 @@ fn file_entries(
             sha256: sha256.to_owned(),
             bytes: Arc::clone(bytes),
             index,
-            options: options.clone(),
+            options: *options,
         }),
         motion: Some(Arc::new(Motion::analyze(clip.clip, roles.cloned()))),
         warnings: warnings.clone(),

@@ -514,7 +514,7 @@ impl Session {
             .ok_or(CommandError::NotPossible("the file has no such character"))?;
         let motion = Arc::new(Motion::analyze(clip.clip, entry.roles_by_hand.clone()));
         let file = SourceFile {
-            options: options.clone(),
+            options: *options,
             ..file.clone()
         };
         self.change_entry(id, |entry| {
