@@ -310,8 +310,9 @@ onBackend("webgl2", "a bundled take is there once set() has resolved", async ({ 
 
 onBackend("webgl2", "where WebGPU promises more than it holds, WebGL 2 draws", async ({ open }) => {
   const prepare = (page) => page.addInitScript(() => {
-    // An adapter that is there until it is used.
-    Object.defineProperty(navigator, "gpu", { value: { requestAdapter: async () => ({}) } });
+    // An adapter that is there when it is looked for, and gone when it is wanted.
+    let asked = 0;
+    GPU.prototype.requestAdapter = async () => (asked++ ? null : {});
   });
   const { page, segue, pixels } = await open("play=off", { prepare });
   assert.equal((await segue("stats")).backend, "webgl2");
