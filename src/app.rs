@@ -98,13 +98,13 @@ struct Told {
     next_notice: u64,
 }
 
-/// When what was done last, milliseconds.
+/// What was done when, in milliseconds of [`platform::now_ms`].
 #[derive(Debug)]
 struct Clock {
-    ticked_at_ms: f64,
+    ticked: f64,
+    frame_began: f64,
     /// How long the input, the panels and the scene of the last frame took.
-    own_ms: f64,
-    frame_began_ms: f64,
+    frame_took: f64,
 }
 
 /// The window that draws at present.
@@ -112,7 +112,8 @@ struct Clock {
 struct Window {
     /// Counted from the app's start.
     generation: u64,
-    backend: String,
+    /// As the API calls it; empty before there is one.
+    backend: &'static str,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
@@ -147,9 +148,9 @@ impl Segue {
             events: Vec::new(),
             told: Told::default(),
             clock: Clock {
-                ticked_at_ms: now_ms,
-                own_ms: 0.0,
-                frame_began_ms: now_ms,
+                ticked: now_ms,
+                frame_took: 0.0,
+                frame_began: now_ms,
             },
             window: Window::default(),
             panels: UiState::default(),
@@ -168,7 +169,7 @@ impl Segue {
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
-        self.window.backend = api::backend_name(state.adapter.get_info().backend).to_owned();
+        self.window.backend = api::backend_name(state.adapter.get_info().backend);
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
         state
@@ -194,8 +195,8 @@ impl Segue {
 
     fn tick(&mut self) -> bool {
         let now_ms = platform::now_ms();
-        let passed = (now_ms - self.clock.ticked_at_ms).max(0.0) / 1e3;
-        self.clock.ticked_at_ms = now_ms;
+        let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
+        self.clock.ticked = now_ms;
         let playing = self.session.params().is_on(Key::Play);
         self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed })
     }
@@ -315,7 +316,7 @@ impl Segue {
 
     /// What happens in every frame, and now and then while the page is hidden. No drawing.
     fn logic(&mut self, ctx: &egui::Context) {
-        self.clock.frame_began_ms = platform::now_ms();
+        self.clock.frame_began = platform::now_ms();
         let more = self.pump();
         let ticked = self.tick();
         if more || ticked {
@@ -335,7 +336,7 @@ impl Segue {
         self.note_frame_time(ui.ctx(), frame);
         self.dress(ui.ctx());
         let before = self.session.revision();
-        let mut frame = self.picture.begin();
+        let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
         for command in out.commands {
@@ -352,7 +353,7 @@ impl Segue {
             ui.ctx().request_repaint();
         }
         self.frames.begin();
-        self.clock.own_ms = platform::now_ms() - self.clock.frame_began_ms;
+        self.clock.frame_took = platform::now_ms() - self.clock.frame_began;
     }
 
     /// Gives the window the theme that the parameters ask for.
@@ -381,7 +382,7 @@ impl Segue {
     /// with the screen's beat; a frame that was computed inside of an input event is counted with what was measured here.
     fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
         let whole_ms = frame.info().cpu_usage.map(|secs| secs * 1e3);
-        let millis = if self.window.within_event { None } else { whole_ms }.unwrap_or(self.clock.own_ms as f32);
+        let millis = if self.window.within_event { None } else { whole_ms }.unwrap_or(self.clock.frame_took as f32);
         if self.frames.count() > 0 {
             self.frames.took(millis);
         }

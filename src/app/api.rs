@@ -5,6 +5,7 @@ use super::frames::FrameTimes;
 use super::link_query;
 use crate::platform;
 use eframe::wgpu::Backend;
+use glam::{Quat, Vec3};
 use segue::formats::bvh;
 use segue::math::Planar;
 use segue::metrics::{Better, Metric};
@@ -83,7 +84,7 @@ pub(crate) struct JobInfo {
 /// What `stats()` answers, but for what only the page knows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Stats {
-    backend: String,
+    backend: &'static str,
     frames: u64,
     frame_ms: FrameTimes,
     jobs: Vec<JobInfo>,
@@ -252,8 +253,8 @@ impl Segue {
         Ok(PoseInfo {
             joints: joints.iter().map(|joint| joint.name.clone()).collect(),
             parents: joints.iter().map(|joint| joint.parent.map_or(-1, |parent| parent as i64)).collect(),
-            positions: world.positions.iter().flat_map(|position| position.to_array()).collect(),
-            rotations: world.rotations.iter().flat_map(|rotation| rotation.to_array()).collect(),
+            positions: world.positions.iter().flat_map(Vec3::to_array).collect(),
+            rotations: world.rotations.iter().flat_map(Quat::to_array).collect(),
             contacts: [Side::Left, Side::Right].map(|side| motion.contacts.planted(side, frame)),
         })
     }
@@ -334,7 +335,7 @@ impl Segue {
     /// How the app is doing.
     pub(crate) fn stats(&self, wasm_bytes: u64) -> Stats {
         Stats {
-            backend: self.window.backend.clone(),
+            backend: self.window.backend,
             frames: self.frames.count(),
             frame_ms: self.frames.times(),
             jobs: self.jobs(),
@@ -451,7 +452,7 @@ mod tests {
         // Bones keep their lengths: a child is as far from its parent as at the start.
         let start = segue.pose("result:1", 0.0).unwrap();
         let bone = |pose: &PoseInfo, joint: usize| {
-            let place = |joint: usize| glam::Vec3::from_slice(&pose.positions[3 * joint..]);
+            let place = |joint: usize| Vec3::from_slice(&pose.positions[3 * joint..]);
             place(joint).distance(place(pose.parents[joint] as usize))
         };
         for joint in 1..joints {

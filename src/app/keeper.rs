@@ -183,15 +183,15 @@ mod tests {
     use super::*;
     use segue::session::{Command, Key, Value};
 
-    fn stored(query: &str) -> Option<Stored> {
+    fn stored(query: &str) -> Stored {
         let saved = Saved {
             query: query.into(),
             ..Session::new().saved()
         };
-        Some(Stored {
+        Stored {
             saved,
             files: StoredFiles::new(),
-        })
+        }
     }
 
     fn keeper(link: &str) -> (Keeper, Session) {
@@ -209,7 +209,7 @@ mod tests {
         let (mut keeper, mut session) = keeper("");
         assert!(!keeper.wait(&mut session, 1100.0) && keeper.is_waiting());
         assert!(
-            !keeper.arrived(&mut session, stored("blend_window=24")),
+            !keeper.arrived(&mut session, Some(stored("blend_window=24"))),
             "the address does not say what is shown"
         );
         assert!(!keeper.is_waiting());
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn a_link_goes_before_stored_parameters() {
         let (mut keeper, mut session) = keeper("blend_window=12");
-        assert!(keeper.arrived(&mut session, stored("blend_window=24")));
+        assert!(keeper.arrived(&mut session, Some(stored("blend_window=24"))));
         assert_eq!(session.query(), "blend_window=12");
     }
 
@@ -234,7 +234,7 @@ mod tests {
             None,
             "nothing is stored over what has not been read yet"
         );
-        keeper.arrived(&mut session, stored("blend_window=24"));
+        keeper.arrived(&mut session, Some(stored("blend_window=24")));
         assert_eq!(session.query(), "blend_window=24");
     }
 
@@ -243,7 +243,7 @@ mod tests {
         let (mut keeper, mut session) = keeper("blend_window=12");
         keeper.wait(&mut session, 1151.0);
         set_window(&mut session, 60.0);
-        keeper.arrived(&mut session, stored("blend_window=24"));
+        keeper.arrived(&mut session, Some(stored("blend_window=24")));
         assert_eq!(session.query(), "blend_window=60");
     }
 

@@ -24,30 +24,46 @@ pub(crate) struct Picture {
 
 /// The place in a frame that the picture is put into once the panels are through.
 #[derive(Default)]
-pub(crate) struct Place(Option<(Rect, Vec<(usize, Rect)>, Painter, ShapeIdx)>);
+pub(crate) struct Place(Option<Reserved>);
+
+struct Reserved {
+    stage: Rect,
+    /// The panes that are shown: index in the session, and place.
+    panes: Vec<(usize, Rect)>,
+    painter: Painter,
+    index: ShapeIdx,
+}
 
 impl Place {
     /// Keeps a place behind everything that the panels draw from here on.
     pub(crate) fn reserve(&mut self, stage: Rect, panes: &[(usize, Rect)], ui: &Ui) {
         let painter = ui.painter().clone();
         let index = painter.add(Shape::Noop);
-        self.0 = Some((stage, panes.to_vec(), painter, index));
+        self.0 = Some(Reserved {
+            stage,
+            panes: panes.to_vec(),
+            painter,
+            index,
+        });
     }
 }
 
 impl Picture {
-    /// A frame begins.
-    pub(crate) fn begin(&self) -> Place {
-        Place::default()
-    }
-
     /// Draws the session's present state into the place that was kept.
     pub(crate) fn finish(&mut self, place: Place, session: &Session, palette: &Palette, look: Look, ui: &Ui) {
         let now_ms = now_ms();
         let dt_secs = ((now_ms - self.drawn_at_ms) / 1e3).clamp(0.0, LONGEST_STEP_SECS) as f32;
         self.drawn_at_ms = now_ms;
-        self.place = place.0.as_ref().map(|(stage, ..)| *stage);
-        let Some((rect, panes, painter, index)) = place.0 else { return };
+        self.place = place.0.as_ref().map(|reserved| reserved.stage);
+        let Some(Reserved {
+            stage: rect,
+            panes,
+            painter,
+            index,
+        }) = place.0
+        else {
+            return;
+        };
         let scale = ui.ctx().pixels_per_point();
         let size = render::stage_pixels(ui.ctx(), rect);
         let shown: Vec<(usize, Viewport)> = panes

@@ -79,6 +79,7 @@ impl SegueHandle {
     }
 
     /// This version of Segue.
+    #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn version(&self) -> String {
         env!("CARGO_PKG_VERSION").to_owned()
     }
@@ -135,6 +136,7 @@ impl SegueHandle {
     }
 
     /// The table of parameters.
+    #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn keys(&self) -> Result<JsValue, JsValue> {
         to_js(&api::keys())
     }
@@ -257,7 +259,8 @@ impl SegueHandle {
                 }],
             );
         });
-        self.run_on(fresh, Backends::GL).await.map_err(|_| reason)
+        let both_reasons = |second: JsValue| error(format!("WebGPU: {}. WebGL 2: {}", super::words_of(&reason), super::words_of(&second)));
+        self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
     }
 
     async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
