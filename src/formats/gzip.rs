@@ -5,11 +5,14 @@ use std::io::Read as _;
 /// No bundled take unpacks to more. A damaged file must not fill the memory.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Unpacks a gzip file.
+/// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have unpacked them on the way.
 ///
 /// # Errors
 /// [`ImportError`] when it is damaged or unpacks to more than 64 MiB.
 pub fn unpack_gzip(name: &str, packed: &[u8]) -> Result<Vec<u8>, ImportError> {
+    if !packed.starts_with(&[0x1f, 0x8b]) {
+        return Ok(packed.to_vec());
+    }
     let mut bytes = Vec::new();
     let unpacked = GzDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut bytes);
     match unpacked {
@@ -31,6 +34,7 @@ mod tests {
         encoder.write_all(b"HIERARCHY").unwrap();
         let packed = encoder.finish().unwrap();
         assert_eq!(unpack_gzip("a.gz", &packed).unwrap(), b"HIERARCHY");
+        assert_eq!(unpack_gzip("a.gz", b"HIERARCHY").unwrap(), b"HIERARCHY");
         let cut = unpack_gzip("a.gz", &packed[..packed.len() - 4]).unwrap_err();
         assert!(cut.to_string().starts_with("a.gz:1:1: found "), "{cut}");
     }

@@ -1,4 +1,4 @@
-use super::library::{Sample, SourceFile};
+use super::library::Sample;
 use super::params::{Key, Value, ValueError};
 use super::recipe::Slot;
 use crate::formats::{ImportError, ImportOptions};
@@ -67,6 +67,4 @@ pub enum Request {
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load`].
     Fetch(String),
-    /// A file is no longer needed in storage.
-    Forget(SourceFile),
 }

@@ -5,43 +5,51 @@ use super::out::{Action, Out};
 use super::state::{Renaming, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Key as Keyboard, RectAlign, RichText, TextEdit, Ui};
+use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Key as Keyboard, RectAlign, RichText, TextEdit, Ui};
 use segue::clip::UpAxis;
 use segue::formats::ImportOptions;
 use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot};
 use segue::skeleton::Role;
 
-/// The whole panel.
+/// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let frame = Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
+    Panel::bottom("drop files here").frame(frame).show_separator_line(false).show(ui, |ui| drop_ui(session, state, out, ui));
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| library_list_ui(session, state, out, ui));
+}
+
+/// The clips: first what the user brought and made, then what is built in.
+pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(text::LIBRARY, ui);
     ui.spacing_mut().item_spacing.y = 1.0;
-    for entry in session.library().entries() {
+    let entries = session.library().entries();
+    let is_built_in = |entry: &Entry| matches!(entry.origin, Origin::Preset);
+    let ordered = entries.iter().filter(|entry| !is_built_in(entry)).chain(entries.iter().filter(|entry| is_built_in(entry)));
+    for entry in ordered {
         // A take that nobody asked for yet is behind "samples".
         if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {
             continue;
         }
         ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui));
     }
-    ui.add_space(space::M);
-    let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
-    let pressed = kit::drop_zone_ui(text::DROP_HERE, &[text::OPEN_FILES, text::SAMPLES], hot, ui);
-    if pressed == Some(0) {
-        out.actions.push(Action::OpenFiles);
-    }
-    let samples_id = ui.scope_id().with("samples");
-    let mut samples_open = ui.data(|data| data.get_temp::<bool>(samples_id)).unwrap_or_default();
-    if pressed == Some(1) {
-        samples_open = !samples_open;
-        ui.data_mut(|data| data.insert_temp(samples_id, samples_open));
-    }
-    if samples_open {
+}
+
+/// Where files are dropped or asked for, and the bundled takes.
+pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if state.samples_open {
         samples_ui(session, out, ui);
+        ui.add_space(space::S);
+    }
+    let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
+    match kit::drop_zone_ui(text::DROP_HERE, &[text::OPEN_FILES, text::SAMPLES], hot, ui) {
+        Some(0) => out.actions.push(Action::OpenFiles),
+        Some(_) => state.samples_open = !state.samples_open,
+        None => {}
     }
 }
 
 fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.add_space(space::S);
     for sample in Session::samples() {
         let item = MenuItem {
             text: sample.label,
@@ -72,9 +80,10 @@ fn free_slot(session: &Session) -> Slot {
 
 fn part_of(session: &Session, entry: &Entry) -> Part {
     let holds = |slot| session.slot(slot).is_some_and(|held| held.id == entry.id);
-    if holds(Slot::A) {
+    let lab = session.params().text(Key::Lab);
+    if holds(Slot::A) && lab != "make" {
         Part::A
-    } else if holds(Slot::B) && session.params().text(Key::Lab) == "blend" {
+    } else if holds(Slot::B) && lab == "blend" {
         Part::B
     } else {
         Part::None

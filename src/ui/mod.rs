@@ -84,9 +84,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
             .frame(side(ui))
             .resizable(false)
             .show(ui, |ui| {
-                ScrollArea::vertical()
-                    .auto_shrink(false)
-                    .show(ui, |ui| library_panel::library_panel_ui(session, state, out, ui));
+                library_panel::library_panel_ui(session, state, out, ui);
             });
     }
     Panel::right("lab")
@@ -135,7 +133,8 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         .show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 if state.library_open {
-                    library_panel::library_panel_ui(session, state, out, ui);
+                    library_panel::drop_ui(session, state, out, ui);
+                    library_panel::library_list_ui(session, state, out, ui);
                     ui.add_space(space::M);
                     if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
                         state.library_open = false;

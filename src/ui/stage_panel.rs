@@ -43,13 +43,19 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         pane_switch_ui(panes.len(), stage, state, ui);
     }
     camera_buttons_ui(session, stage, state, out, ui);
-    if state.hint && session.compare().is_some() && layout != Layout::Phone {
+    if state.hint && is_welcome(session) && layout != Layout::Phone {
         let above_numbers = stage.with_max_y(numbers_top - space::S);
         kit::caption_ui(text::WELCOME_HINT, above_numbers, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
         }
     }
+}
+
+/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and run.
+fn is_welcome(session: &Session) -> bool {
+    let shown = |key, id| session.params().text(key) == id;
+    shown(Key::Lab, "blend") && shown(Key::A, "walk") && shown(Key::B, "run") && session.compare().is_some_and(|c| c.key == Key::BlendWindow)
 }
 
 fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {

@@ -40,6 +40,8 @@ pub(crate) struct Renaming {
 pub(crate) struct UiState {
     /// The drawer with the library is open, where it is one.
     pub(crate) library_open: bool,
+    /// The list of bundled takes is open.
+    pub(crate) samples_open: bool,
     /// The list of shortcuts is open.
     pub(crate) help_open: bool,
     /// The pane that a phone shows.
@@ -58,6 +60,7 @@ impl Default for UiState {
     fn default() -> Self {
         Self {
             library_open: false,
+            samples_open: false,
             help_open: false,
             shown_pane: 0,
             renaming: None,

@@ -78,7 +78,8 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
             .find(params.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     });
-    let tracks = tracks(outcome, &names);
+    let made = params.text(Key::Lab) == "make";
+    let tracks = if made { vec![whole_track(Part::Result, params.text(Key::Gait), outcome)] } else { tracks(outcome, &names) };
     let curves = Curves {
         title: label_of(quantity),
         unit,
@@ -125,18 +126,15 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
     let _ = session;
 }
 
+/// One clip that is all there is.
+fn whole_track<'a>(part: Part, name: &'a str, outcome: &Outcome) -> Track<'a> {
+    Track { part, label: "", name, start: 0.0, end: outcome.duration_secs(), fade_in: 0.0, fade_out: 0.0 }
+}
+
 fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
     let duration = outcome.duration_secs();
     let Some(transition) = outcome.transition else {
-        return vec![Track {
-            part: Part::A,
-            label: "",
-            name: &names[0],
-            start: 0.0,
-            end: duration,
-            fade_in: 0.0,
-            fade_out: 0.0,
-        }];
+        return vec![whole_track(Part::A, &names[0], outcome)];
     };
     let fade = transition.end_secs - transition.start_secs;
     let track = |part, name, start, end, fade_in, fade_out| Track {
