@@ -259,7 +259,13 @@ impl SegueHandle {
                 }],
             );
         });
-        let both_reasons = |second: JsValue| error(format!("WebGPU: {}. WebGL 2: {}", super::words_of(&reason), super::words_of(&second)));
+        let both_reasons = |second: JsValue| {
+            error(format!(
+                "WebGPU: {}. WebGL 2: {}",
+                super::words_of(&reason),
+                super::words_of(&second)
+            ))
+        };
         self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
     }
 
