@@ -305,8 +305,6 @@ impl Segue {
                     }
                 }
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
-                // Storage keeps what the library names, and nothing else.
-                Request::Forget(_) => {}
             }
         }
         let wanted = self.session.params().text(Key::Src);
