@@ -1,0 +1,93 @@
+// What several tests need: motion files made on the spot, waiting for a state, and looking at pictures.
+
+import { setTimeout as pause } from "node:timers/promises";
+
+/** Asks until the answer is true, or `what` has not come to be. Software rendering is slow, so no test counts on a time. */
+export async function until(what, ask, limitMs = 30_000) {
+  const end = Date.now() + limitMs;
+  for (;;) {
+    const answer = await ask();
+    if (answer) return answer;
+    if (Date.now() > end) throw new Error(`not within ${limitMs / 1000} s: ${what}`);
+    await pause(60);
+  }
+}
+
+// A body of 31 joints: [name, parent, offset in centimetres].
+const BODY = [
+  ["Hips", -1, [0, 0, 0]],
+  ...side("Left", 1), ...side("Right", -1),
+  ["LowerBack", 0, [0, 6, 0]], ["Spine", 11, [0, 11, 0]], ["Spine1", 12, [0, 11, 0]], ["Neck", 13, [0, 11, 0]], ["Neck1", 14, [0, 5, 0]], ["Head", 15, [0, 6, 0]],
+  ...arm("Left", 1, 17), ...arm("Right", -1, 24),
+];
+
+function side(name, x) {
+  const first = name === "Left" ? 1 : 6;
+  return [
+    [`${name}HipJoint`, 0, [0, 0, 0]], [`${name}UpLeg`, first, [9 * x, -4, 0]], [`${name}Leg`, first + 1, [0, -42, 0]],
+    [`${name}Foot`, first + 2, [0, -42, 0]], [`${name}ToeBase`, first + 3, [0, -6, 13]],
+  ];
+}
+
+function arm(name, x, first) {
+  return [
+    [`${name}Shoulder`, 13, [0, 6, 0]], [`${name}Arm`, first, [17 * x, 0, 0]], [`${name}ForeArm`, first + 1, [29 * x, 0, 0]],
+    [`${name}Hand`, first + 2, [23 * x, 0, 0]], [`${name}FingerBase`, first + 3, [7 * x, 0, 0]],
+    [`${name}HandIndex1`, first + 4, [5 * x, 0, 0]], [`${name}Thumb`, first + 3, [3 * x, 0, 4]],
+  ];
+}
+
+/** A BVH file: somebody strides along, `hertz` steps a second, swinging legs and arms by `swing` degrees. */
+export function striding({ frames = 180, hertz = 1, swing = 30, fps = 60 } = {}) {
+  const childrenOf = (parent) => BODY.flatMap(([, of], index) => (of === parent ? [index] : []));
+  const order = [];
+  const joint = (index, indent) => {
+    order.push(index);
+    const [name, parent, offset] = BODY[index];
+    const children = childrenOf(index);
+    return [
+      `${indent}${parent < 0 ? "ROOT" : "JOINT"} ${name}`, `${indent}{`, `${indent}  OFFSET ${offset.join(" ")}`,
+      `${indent}  CHANNELS ${parent < 0 ? "6 Xposition Yposition Zposition" : "3"} Zrotation Yrotation Xrotation`,
+      ...(children.length ? children.flatMap((child) => joint(child, `${indent}  `)) : [`${indent}  End Site`, `${indent}  {`, `${indent}    OFFSET 0 0 3`, `${indent}  }`]),
+      `${indent}}`,
+    ];
+  };
+  const hierarchy = joint(0, "");
+  const rows = Array.from({ length: frames }, (_, frame) => {
+    const phase = (2 * Math.PI * hertz * frame) / fps;
+    const row = [0, 92 + 2 * Math.cos(2 * phase), (120 * hertz * frame) / fps];
+    for (const index of order) row.push(...turn(BODY[index][0], phase, swing));
+    return row.map((value) => value.toFixed(3)).join(" ");
+  });
+  return Buffer.from(["HIERARCHY", ...hierarchy, "MOTION", `Frames: ${frames}`, `Frame Time: ${(1 / fps).toFixed(7)}`, ...rows, ""].join("\n"));
+}
+
+/** The Z, Y, X rotation of a joint, degrees. */
+function turn(name, phase, swing) {
+  const forward = name.startsWith("Left") ? Math.sin(phase) : -Math.sin(phase);
+  if (name.endsWith("UpLeg")) return [0, 0, -swing * forward];
+  if (name.endsWith("Leg")) return [0, 0, swing * (1 - forward)];
+  if (name.endsWith("ForeArm")) return [0, 0, -0.5 * swing];
+  if (name.endsWith("Arm")) return [name.startsWith("Left") ? -75 : 75, 0, swing * forward];
+  return [0, 3 * Math.sin(phase), 0];
+}
+
+/** How far two answers of `pose()` lie apart where they lie farthest apart, metres. */
+export function apart(one, other) {
+  return one.positions.reduce((most, value, index) => Math.max(most, Math.abs(value - other.positions[index])), 0);
+}
+
+/** Counts the pixels of a rectangle that `test(red, green, blue)` takes. */
+export function count(picture, [left, top, right, bottom], test) {
+  let found = 0;
+  for (let y = Math.round(top); y < bottom; y++) {
+    for (let x = Math.round(left); x < right; x++) if (test(...picture.at(x, y))) found++;
+  }
+  return found;
+}
+
+/** The grey of the character: bright enough to be no background, and without a hue. The orange, blue and green of the lines have one. */
+export const isClay = (red, green, blue) => Math.min(red, green, blue) > 70 && Math.max(red, green, blue) - Math.min(red, green, blue) < 40;
+
+/** The stage in a window of 960 points or wider, and between the words at its top and the numbers at its bottom. */
+export const stageOf = ({ width, height }) => [232, 48 + 40, width - 288, height - 214 - 60];

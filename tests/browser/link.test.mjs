@@ -1,0 +1,79 @@
+// The link: every parameter into the address and back, and what is done with an address that is wrong.
+
+import assert from "node:assert/strict";
+import { onBackend, onBothBackends } from "./harness.mjs";
+import { striding, until } from "./help.mjs";
+
+const SMALL = { viewport: [960, 640] };
+
+/** What cannot be chosen by its type alone: ids, texts, and numbers that lie within the clips. */
+const CHOSEN = {
+  a: "idle", b: "jump", leave_a: 0.35, enter_b: 0.25, gait: "run", gait_speed: 3.15, make_seconds: 5.5, lab: "make",
+  joint: "left hand & 100 % = #1+2", follow_joint: "Kopf, rechts/\"ü\"", in: 0.25, out: 3.75, t: 1.234, play: false,
+  compare: "blend_window:60,20", src: "/one.bvh?x=1&y=2 /two.bvh",
+};
+
+/** A value of this row that is not its default, two thirds up its range and on its step. */
+function otherThanDefault({ key, type, min, max, step, choices, default: usual }) {
+  if (key in CHOSEN) return CHOSEN[key];
+  if (type === "switch") return !usual;
+  if (type === "choice") return choices.find((choice) => choice !== usual);
+  const value = Number((Math.round((min + (max - min) * 0.66) / step) * step).toFixed(6));
+  return value === usual ? value + step : value;
+}
+
+const serveFiles = (page) => page.route(({ pathname }) => /^\/(one|two)\.bvh$/.test(pathname), (route) => route.fulfill({ body: striding({ frames: 30 }) }));
+
+// Fails for every key that url() leaves out, escapes wrongly, or that a link does not bring back.
+onBothBackends("every key survives its link", async ({ open }) => {
+  const { segue } = await open("", { ...SMALL, prepare: serveFiles });
+  const keys = await segue("keys");
+  const wanted = Object.fromEntries(keys.map((row) => [row.key, otherThanDefault(row)]));
+  for (const { key, default: usual } of keys) assert.notDeepEqual(wanted[key], usual, `${key} is not left at its default`);
+  await segue("set", wanted);
+  assert.deepEqual(await segue("params"), wanted);
+
+  const url = new URL(await segue("url"));
+  assert.deepEqual([...url.searchParams.keys()], keys.map(({ key }) => key), "each key once, in the order of the table");
+  const again = await open(url.search.slice(1), { ...SMALL, prepare: serveFiles });
+  await again.segue("set", {});
+  assert.deepEqual(await again.segue("params"), wanted);
+  assert.equal(new URL(await again.segue("url")).search, url.search);
+});
+
+onBothBackends("defaults are no part of a link, and the address follows", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&blend_window=24", SMALL);
+  assert.equal(new URL(await segue("url")).search, "?blend_window=24");
+  await segue("set", { blend_window: 30, weight_law: "linear" });
+  assert.equal(new URL(await segue("url")).search, "?weight_law=linear");
+  await until("the address follows", () => page.url().endsWith("?weight_law=linear"));
+  await segue("set", { weight_law: "smooth" });
+  assert.equal(new URL(await segue("url")).search, "?lab=blend", "never empty: that would be a first visit");
+  await segue("set", { weight_law: "smoother" });
+  await until("the address follows again", () => page.url().endsWith("?weight_law=smoother"));
+});
+
+// Fails when one bad part of a link spoils the rest of it, and when nobody is told. The notice can be seen and not asked for.
+onBothBackends("what is wrong in a link is told, and the rest is used", async ({ open }) => {
+  const query = "blend_window=24&align=off&play=off";
+  const right = await open(query, SMALL);
+  const wrong = await open(`colour=red&weight_law=steep&ghosts=99&${query}`, SMALL);
+  assert.deepEqual(await wrong.segue("params"), await right.segue("params"));
+  assert.equal((await wrong.segue("params")).blend_window, 24);
+  for (const { segue } of [right, wrong]) await segue("set", {});
+  const differing = async () => {
+    const [one, other] = [await right.pixels(), await wrong.pixels()];
+    let found = 0;
+    for (let i = 0; i < one.data.length; i += 3) if (Math.abs(one.data[i] - other.data[i]) > 16) found++;
+    return found;
+  };
+  await until("a notice stands on the page", async () => (await differing()) > 1000);
+});
+
+onBackend("webgl2", "the way back in the browser's history is followed", async ({ open }) => {
+  const { page, segue } = await open("blend_window=24&play=off", SMALL);
+  await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off"));
+  await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off&x"));
+  await page.goBack();
+  await until("the link of the step before is used", async () => (await segue("params")).blend_window === 48);
+});

@@ -1,0 +1,118 @@
+// Files on their way in: dropped, broken, and still there after a reload.
+
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import process from "node:process";
+import { fileURLToPath } from "node:url";
+import { onBothBackends } from "./harness.mjs";
+import { apart, striding, until } from "./help.mjs";
+
+const SMALL = { viewport: [960, 640] };
+/** Clips that were loaded from files, in the order in which they came. */
+const loaded = async (segue) => (await segue("clips")).filter((clip) => clip.sha256);
+
+// Fails when the drop does not reach the app, when a clip goes to another slot, and when the result is not made of what was dropped.
+onBothBackends("what is dropped becomes A, then B, and plays", async ({ open }) => {
+  const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
+  await dropFile("slow.bvh", striding({ hertz: 0.8, swing: 20 }));
+  const [slow] = await until("the first file is in the library", async () => (await loaded(segue)).length === 1 && loaded(segue));
+  assert.deepEqual([slow.format, slow.joints, slow.frames, Math.round(slow.fps)], ["bvh", 31, 180, 60]);
+  assert.equal((await segue("params")).a, slow.id);
+
+  await dropFile("fast.bvh", striding({ hertz: 1.5, swing: 45, frames: 150 }));
+  const fast = await until("the second file is in the library", async () => (await loaded(segue)).find((clip) => clip.id !== slow.id));
+  const params = await until("both are in their slots", async () => {
+    const params = await segue("params");
+    return params.b === fast.id && params;
+  });
+  assert.equal(params.a, slow.id);
+  assert.notEqual(fast.sha256, slow.sha256);
+
+  await until("the result is of these two", async () => {
+    const pose = await segue("pose", "result", 0.2).catch(() => undefined);
+    return pose && apart(pose, await segue("pose", slow.id, 0.2)) < 1e-3;
+  });
+  assert.ok(apart(await segue("pose", "result", 0.2), await segue("pose", "result", 0.6)) > 0.05, "it moves");
+  await segue("play");
+  const before = await segue("time");
+  await until("the playhead moves", async () => (await segue("time")) !== before);
+});
+
+const SHARED = [process.env.SEGUE_SHARED, fileURLToPath(new URL("../../../shared/data", import.meta.url)), fileURLToPath(new URL("../../../../shared/data", import.meta.url))]
+  .find((folder) => folder && existsSync(`${folder}/cmu/run.bvh`));
+
+onBothBackends("takes from two studios, dropped", async ({ open, t }) => {
+  if (!SHARED) return t.skip("the takes are not here");
+  const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
+  for (const [index, path] of ["cmu/run.bvh", "games105/walkF.bvh"].entries()) {
+    await dropFile(path.split("/")[1], readFileSync(`${SHARED}/${path}`));
+    await until(`${path} is in the library`, async () => (await loaded(segue)).length === index + 1);
+  }
+  const clips = await loaded(segue);
+  for (const { name, height } of clips) assert.ok(height > 1.2 && height < 2.2, `${name} is ${height} m tall`);
+  const params = await segue("params");
+  assert.deepEqual([params.a, params.b], clips.map((clip) => clip.id));
+  await until("there is a result", async () => segue("pose", "result", 0).then(() => true, () => false));
+});
+
+// Fails when a broken file changes anything, when it is refused without saying where, and when it takes the app along.
+onBothBackends("a broken file is refused with its place, and nothing changes", async ({ open }) => {
+  const { segue, load } = await open("lab=blend&play=off", SMALL);
+  await segue("set", {}); // resolves when the clips that Segue makes itself are made
+  const before = await segue("clips");
+  const good = striding({ frames: 4 }).toString();
+  const random = Buffer.from(Array.from({ length: 4096 }, (_, index) => (index * 7919 + (index >> 3) * 104_729) % 256));
+  const broken = [
+    ["cut.bvh", good.slice(0, 300), /cut\.bvh:\d+:\d+: found .+, expected /],
+    ["word.bvh", good.replace("OFFSET 9 -4 0", "OFFSET 9 banana 0"), /word\.bvh:\d+:\d+: found .*banana.*, expected /],
+    ["endless.bvh", good.replace("Frames: 4", "Frames: 4000000000"), /endless\.bvh:\d+:\d+: found .+, expected /],
+    ["negative.bvh", good.replace("Frames: 4", "Frames: -4"), /negative\.bvh:\d+:\d+: found .+, expected /],
+    ["random.bvh", random, /random\.bvh:\d+:\d+: found .+, expected /],
+    ["empty.bvh", "", /empty\.bvh:\d+:\d+: found .+, expected /],
+    ["picture.png", random, /picture\.png/],
+  ];
+  for (const [name, content, reason] of broken) {
+    await assert.rejects(load(name, Buffer.from(content)), reason, name);
+    assert.deepEqual(await segue("clips"), before, `${name} changes nothing`);
+  }
+  const { clips } = await load("good.bvh", Buffer.from(good));
+  assert.equal(clips[0].frames, 4);
+  assert.equal((await segue("clips")).length, before.length + 1, "the app goes on");
+});
+
+onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
+  const { page, segue, dropFile } = await open("lab=blend&play=off", SMALL);
+  await page.evaluate(() => {
+    window.errors = [];
+    window.segue.on("error", ({ message }) => window.errors.push(message));
+  });
+  await segue("set", {});
+  const before = await segue("clips");
+  await dropFile("torn.bvh", Buffer.from("HIERARCHY\nROOT Hips\n{\n  OFFSET a b c\n"));
+  const [message] = await until("an error is told", () => page.evaluate(() => window.errors.length && window.errors));
+  assert.match(message, /torn\.bvh:4:\d+: found .*a.*, expected /);
+  assert.deepEqual(await segue("clips"), before);
+});
+
+// Fails when the library, the parameters or the bytes of the files do not come back from where the browser keeps them.
+onBothBackends("a reload brings the work back", async ({ open }) => {
+  const { page, segue, load, ready } = await open("", SMALL);
+  const { clips } = await load("mine.bvh", striding({ frames: 90 }));
+  await segue("set", { lab: "blend", compare: "", a: clips[0].id, blend_window: 17, weight_law: "linear", play: false, t: 0.4 });
+  const [params, library, pose] = [await segue("params"), await segue("clips"), await segue("pose", "result", 0.4)];
+  await until("the work is stored", () => page.evaluate(async () => {
+    const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
+    const all = (name) => new Promise((resolve) => { database.transaction(name).objectStore(name).getAll().onsuccess = (event) => resolve(event.target.result); });
+    const [[work], files] = [await all("work"), await all("files")];
+    database.close();
+    return files.length === 1 && JSON.stringify(work).includes("blend_window=17");
+  }));
+  // Without the link, so that all of it comes out of storage.
+  await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
+  await ready();
+  await until("the clip is back", async () => (await segue("clips")).length === library.length);
+  assert.deepEqual(await segue("clips"), library);
+  assert.deepEqual(await segue("params"), params);
+  await until("the result is back", () => segue("pose", "result", 0.4).then(() => true, () => false));
+  assert.ok(apart(await segue("pose", "result", 0.4), pose) < 1e-6, "the same result as before");
+});
