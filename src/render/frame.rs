@@ -172,7 +172,8 @@ impl Frame {
             };
             let plain = quality == Quality::Plain;
             let is_fine = |limb: &Limb| {
-                !plain && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+                !plain
+                    && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
             };
             let start = self.limbs.len() as u32;
             self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
@@ -183,7 +184,10 @@ impl Frame {
                 start..start
             } else if plain {
                 self.limbs[start as usize..].sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
-                let low = self.limbs[start as usize..].iter().take_while(|limb| lowest(limb) < PLAIN_SHADOW_HEIGHT_M).count();
+                let low = self.limbs[start as usize..]
+                    .iter()
+                    .take_while(|limb| lowest(limb) < PLAIN_SHADOW_HEIGHT_M)
+                    .count();
                 start..start + low as u32
             } else {
                 start..self.limbs.len() as u32

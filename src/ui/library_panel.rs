@@ -5,7 +5,7 @@ use super::out::{Action, Out};
 use super::state::{Renaming, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Key as Keyboard, RectAlign, RichText, TextEdit, Ui};
+use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RectAlign, RichText, ScrollArea, TextEdit, Ui};
 use segue::clip::UpAxis;
 use segue::formats::ImportOptions;
 use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot};
@@ -13,9 +13,17 @@ use segue::skeleton::Role;
 
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let frame = Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
-    Panel::bottom("drop files here").frame(frame).show_separator_line(false).show(ui, |ui| drop_ui(session, state, out, ui));
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| library_list_ui(session, state, out, ui));
+    let frame = Frame::new().inner_margin(Margin {
+        top: space::S as i8,
+        ..Margin::ZERO
+    });
+    Panel::bottom("drop files here")
+        .frame(frame)
+        .show_separator_line(false)
+        .show(ui, |ui| drop_ui(session, state, out, ui));
+    ScrollArea::vertical()
+        .auto_shrink(false)
+        .show(ui, |ui| library_list_ui(session, state, out, ui));
 }
 
 /// The clips: first what the user brought and made, then what is built in.
@@ -24,7 +32,10 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
     ui.spacing_mut().item_spacing.y = 1.0;
     let entries = session.library().entries();
     let is_built_in = |entry: &Entry| matches!(entry.origin, Origin::Preset);
-    let ordered = entries.iter().filter(|entry| !is_built_in(entry)).chain(entries.iter().filter(|entry| is_built_in(entry)));
+    let ordered = entries
+        .iter()
+        .filter(|entry| !is_built_in(entry))
+        .chain(entries.iter().filter(|entry| is_built_in(entry)));
     for entry in ordered {
         // A take that nobody asked for yet is behind "samples".
         if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {

@@ -55,7 +55,10 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
 /// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and run.
 fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
-    shown(Key::Lab, "blend") && shown(Key::A, "walk") && shown(Key::B, "run") && session.compare().is_some_and(|c| c.key == Key::BlendWindow)
+    shown(Key::Lab, "blend")
+        && shown(Key::A, "walk")
+        && shown(Key::B, "run")
+        && session.compare().is_some_and(|c| c.key == Key::BlendWindow)
 }
 
 fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {

@@ -79,7 +79,11 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
             .map_or_else(String::new, |entry| entry.name.clone())
     });
     let made = params.text(Key::Lab) == "make";
-    let tracks = if made { vec![whole_track(Part::Result, params.text(Key::Gait), outcome)] } else { tracks(outcome, &names) };
+    let tracks = if made {
+        vec![whole_track(Part::Result, params.text(Key::Gait), outcome)]
+    } else {
+        tracks(outcome, &names)
+    };
     let curves = Curves {
         title: label_of(quantity),
         unit,
@@ -128,7 +132,15 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
 
 /// One clip that is all there is.
 fn whole_track<'a>(part: Part, name: &'a str, outcome: &Outcome) -> Track<'a> {
-    Track { part, label: "", name, start: 0.0, end: outcome.duration_secs(), fade_in: 0.0, fade_out: 0.0 }
+    Track {
+        part,
+        label: "",
+        name,
+        start: 0.0,
+        end: outcome.duration_secs(),
+        fade_in: 0.0,
+        fade_out: 0.0,
+    }
 }
 
 fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
