@@ -1,5 +1,7 @@
 //! What must hold for any clip and any bytes: a clip comes back from its own file, and no file brings the reader down.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
+
 mod formats_common;
 
 use formats_common::chain;

@@ -1,4 +1,6 @@
 //! What the tests of file formats share.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 #![allow(dead_code, reason = "every test binary uses a part of it")]
 #![allow(unreachable_pub, reason = "a module of several test binaries")]
 

@@ -124,7 +124,7 @@ fn what_is_usual_in_the_clip_is_no_seam() {
     // A joint that turns at a steady 300° per second: no jump. The same joint that stops dead: 300° per second.
     let turning = |stop: usize| {
         edited(&still(200), |frame, pose, _| {
-            pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32)
+            pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32);
         })
     };
     let a = profile(&turning(1000));
@@ -140,7 +140,7 @@ fn what_is_usual_in_the_clip_is_no_seam() {
 fn a_spin_is_counted_beyond_what_the_sources_turn() {
     let spun = |clip: &Clip, degrees: f32| {
         edited(clip, |frame, pose, _| {
-            pose[0] = Quat::from_rotation_y(degrees.to_radians() * ramp(frame, 30..60)) * pose[0]
+            pose[0] = Quat::from_rotation_y(degrees.to_radians() * ramp(frame, 30..60)) * pose[0];
         })
     };
     let a = profile(&still(90));
@@ -186,7 +186,7 @@ fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
     near(back.skate_cm, 5.0, 1e-3);
     // Only one foot: the leg swings, the other stands.
     let leg = edited(&still(120), |frame, pose, _| {
-        pose[7] = Quat::from_rotation_x(-0.2 * ramp(frame, 50..60))
+        pose[7] = Quat::from_rotation_x(-0.2 * ramp(frame, 50..60));
     });
     let metrics = measure(&leg, 45..65, 45, &a, &a);
     // The foot's points turn about the hip joint; the ankle, 0.85 m below it, moves least over the ground.

@@ -1,0 +1,354 @@
+//! The arrows between the folders of `src` go one way, and what is unfinished does not pass. Read from the text of the sources, so that a
+//! slip is told by its line.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The folders of the library, each with those that its code may name beside itself.
+const LIBRARY: [(&str, &str); 14] = [
+    ("math", ""),
+    ("skeleton", "math"),
+    ("clip", "math skeleton"),
+    ("formats", "math skeleton clip"),
+    ("synth", "math skeleton clip"),
+    ("registration", "math skeleton clip"),
+    ("transition", "math skeleton clip"),
+    ("blend", "math skeleton clip registration"),
+    ("metrics", "math skeleton clip blend"),
+    ("graph", MOTION),
+    ("path", MOTION),
+    ("matching", MOTION),
+    ("session", ALL_MOTION),
+    ("scene", ALL_MOTION_AND_SESSION),
+];
+
+/// The folders of the app. The platform holds the handle by which the page drives the app, so these two know each other.
+const APP: [(&str, &str); 5] = [
+    ("render", LIBRARY_WITHOUT_SESSION),
+    ("ui", WHOLE_LIBRARY),
+    ("platform", WHOLE_LIBRARY_AND_APP),
+    ("app", EVERYTHING),
+    ("main", "app platform render ui"),
+];
+
+const MOTION: &str = "math skeleton clip formats synth registration transition blend metrics";
+const ALL_MOTION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching";
+const ALL_MOTION_AND_SESSION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching session";
+const LIBRARY_WITHOUT_SESSION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching scene";
+const WHOLE_LIBRARY: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching session scene";
+const WHOLE_LIBRARY_AND_APP: &str =
+    "math skeleton clip formats synth registration transition blend metrics graph path matching session scene app";
+const EVERYTHING: &str =
+    "math skeleton clip formats synth registration transition blend metrics graph path matching session scene render ui platform";
+
+/// What the library never names: screens, the browser, files, clock and threads.
+const OUTSIDE: [&str; 13] = [
+    "egui",
+    "eframe",
+    "egui_plot",
+    "wgpu",
+    "web_sys",
+    "js_sys",
+    "wasm_bindgen",
+    "std::fs",
+    "std::env",
+    "std::net",
+    "std::thread",
+    "std::time::Instant",
+    "std::time::SystemTime",
+];
+
+/// Marks of what is unfinished; in halves, so that this file does not hold them.
+const UNFINISHED: [&str; 4] = [
+    concat!("#[ign", "ore"),
+    concat!("to", "do!"),
+    concat!("unimple", "mented!"),
+    concat!("FIX", "ME"),
+];
+
+#[test]
+fn arrows_go_one_way() {
+    let sources = sources("src");
+    let tests = test_modules(&sources);
+    let mut slips = Vec::new();
+    for (path, text) in sources.iter().filter(|(path, _)| !is_test_file(path, &tests)) {
+        slips.extend(violations(path, text));
+    }
+    assert!(sources.len() > 100, "only {} sources found", sources.len());
+    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+}
+
+#[test]
+fn nothing_is_left_unfinished() {
+    let sources: Vec<_> = ["src", "tests", "benches", "xtask/src"].into_iter().flat_map(sources).collect();
+    let tests = test_modules(&sources);
+    let mut slips = Vec::new();
+    for (path, text) in &sources {
+        slips.extend(unfinished(path, text));
+        if path.starts_with("src") && !is_test_file(path, &tests) {
+            slips.extend(unwraps(path, text));
+        }
+    }
+    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+}
+
+#[test]
+fn a_violation_is_seen() {
+    let found = |path: &str, text: &str| violations(Path::new(path), text);
+    assert_eq!(found("src/clip/storage.rs", "use crate::math::quat;\nuse super::Clip;\n"), [""; 0]);
+    assert_eq!(
+        found("src/clip/storage.rs", "\nuse crate::session::Session;\n"),
+        ["src/clip/storage.rs:2: `clip` names `session`"]
+    );
+    assert_eq!(
+        found("src/math/quat.rs", "fn f() { crate::clip::g(); }"),
+        ["src/math/quat.rs:1: `math` names `clip`"]
+    );
+    assert_eq!(
+        found("src/blend/mod.rs", "use crate::{\n    clip::{Clip, graph},\n    path,\n};"),
+        ["src/blend/mod.rs:1: `blend` names `path`"]
+    );
+    assert_eq!(
+        found("src/scene/rig.rs", "use super::super::ui;"),
+        ["src/scene/rig.rs:1: `super` leaves `scene`"]
+    );
+    assert_eq!(
+        found("src/render/frame.rs", "use segue::session::Session;"),
+        ["src/render/frame.rs:1: `render` names `session`"]
+    );
+    assert_eq!(
+        found("src/scene/rig.rs", "use egui::Ui;"),
+        ["src/scene/rig.rs:1: `scene` names `egui`"]
+    );
+    assert_eq!(found("src/attic/old.rs", ""), ["src/attic/old.rs:1: `attic` has no row here"]);
+    // Comments and tests may name what they like, but what comes after the tests is code again.
+    let tested = "// crate::ui\n#[cfg(test)]\nmod tests {\n    use crate::ui;\n}\nuse crate::app;\n";
+    assert_eq!(found("src/scene/rig.rs", tested), ["src/scene/rig.rs:6: `scene` names `app`"]);
+
+    let code = "fn f() {\n    g().unwrap();\n}\n#[cfg(test)]\nmod tests {\n    fn f() {\n        g().unwrap();\n    }\n}\n";
+    assert_eq!(unwraps(Path::new("src/a.rs"), code), ["src/a.rs:2: `unwrap` outside of tests"]);
+    for mark in UNFINISHED {
+        assert_eq!(
+            unfinished(Path::new("src/a.rs"), &format!("\n{mark}")),
+            [format!("src/a.rs:2: `{mark}`")]
+        );
+    }
+
+    let parent = (
+        PathBuf::from("src/skeleton/mod.rs"),
+        "#[cfg(test)]\npub(crate) mod fixtures;\nmod tree;\n".to_owned(),
+    );
+    let tests = test_modules(&[parent]);
+    assert!(is_test_file(Path::new("src/skeleton/fixtures/rigs.rs"), &tests));
+    assert!(!is_test_file(Path::new("src/skeleton/tree.rs"), &tests));
+}
+
+/// The Rust files below a folder of the repository, by their paths in it.
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut open = vec![root.join(folder)];
+    let mut found = Vec::new();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = fs::read_to_string(&path).expect("a source is text");
+                found.push((path.strip_prefix(root).expect("below the root").to_owned(), text));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The modules of a path in `src`, outermost first: `src/a/b.rs` and `src/a/b/mod.rs` are both `a`, `b`.
+fn modules(path: &Path) -> Vec<String> {
+    let mut names: Vec<String> = path
+        .with_extension("")
+        .iter()
+        .skip(1)
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    if names
+        .last()
+        .is_some_and(|name| name == "mod" || (names.len() == 1 && name == "lib"))
+    {
+        names.pop();
+    }
+    names
+}
+
+/// The modules in files of their own that are compiled for tests only.
+fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
+    let mut found = BTreeSet::new();
+    for (path, text) in sources {
+        let mut for_tests = false;
+        let mut file = None;
+        for line in text.lines().map(str::trim) {
+            if is_for_tests(line) {
+                for_tests = true;
+            } else if let (true, Some(name)) = (
+                for_tests,
+                line.strip_prefix("#[path = \"").and_then(|rest| rest.strip_suffix(".rs\"]")),
+            ) {
+                file = Some(name);
+            } else if !line.starts_with("#[") {
+                let name = line
+                    .strip_suffix(';')
+                    .and_then(|item| item.rsplit_once("mod "))
+                    .map(|(_, name)| name);
+                if let (true, Some(name)) = (for_tests, name) {
+                    let mut module = modules(path);
+                    if file.is_some() && !path.ends_with("mod.rs") {
+                        module.pop();
+                    }
+                    module.push(file.unwrap_or(name).to_owned());
+                    found.insert(module);
+                }
+                (for_tests, file) = (false, None);
+            }
+        }
+    }
+    found
+}
+
+fn is_test_file(path: &Path, tests: &BTreeSet<Vec<String>>) -> bool {
+    let modules = modules(path);
+    tests.iter().any(|test| modules.starts_with(test))
+}
+
+fn is_for_tests(line: &str) -> bool {
+    line.starts_with("#[cfg(test)]") || line.starts_with("#[cfg(all(test,")
+}
+
+/// The text without comments and without items for tests; its lines stay where they are.
+fn code(text: &str) -> String {
+    let mut code = String::new();
+    // The line that ends the item for tests, once that is open.
+    let mut end: Option<String> = None;
+    let mut for_tests = false;
+    for line in text.lines() {
+        let item = line.trim_start();
+        if let Some(last) = &end {
+            if line == last {
+                end = None;
+            }
+        } else if is_for_tests(item) {
+            for_tests = true;
+        } else if for_tests {
+            if !item.starts_with("#[") {
+                for_tests = false;
+                let opens = line.ends_with('{');
+                end = opens.then(|| format!("{}}}", &line[..line.len() - item.len()]));
+            }
+        } else {
+            code.push_str(line.split("//").next().unwrap_or_default());
+        }
+        code.push('\n');
+    }
+    code
+}
+
+/// Where `word` stands in `code` as a whole word.
+fn places<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(word).map(|(at, _)| at).filter(move |at| {
+        let before = code[..*at].chars().next_back();
+        let after = code[at + word.len()..].chars().next();
+        !before.is_some_and(is_name) && !after.is_some_and(is_name)
+    })
+}
+
+/// The first names of a path that goes on with `rest`: one name, or those of a group.
+fn heads(rest: &str) -> Vec<&str> {
+    let name = |text: &'_ str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    let Some(group) = rest.strip_prefix('{') else {
+        return vec![&rest[..name(rest)]];
+    };
+    let mut depth = 0;
+    let mut names = Vec::new();
+    let mut start = Some(0);
+    for (at, c) in group.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => start = Some(at + 1),
+            c if depth == 0 && start.is_some() && !c.is_whitespace() => {
+                names.push(&group[at..at + name(&group[at..])]);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+/// What one source names against the arrows, a sentence each.
+fn violations(path: &Path, text: &str) -> Vec<String> {
+    let code = code(text);
+    let modules = modules(path);
+    let mut found = Vec::new();
+    let line = |at: usize| code[..at].matches('\n').count() + 1;
+    let mut tell = |at: usize, what: String| found.push((at, format!("{}:{}: {what}", path.display(), line(at))));
+    if let Some(own) = modules.first() {
+        let in_library = LIBRARY.iter().any(|(name, _)| name == own);
+        let row = LIBRARY.iter().chain(&APP).find(|(name, _)| name == own);
+        if row.is_none() {
+            tell(0, format!("`{own}` has no row here"));
+        }
+        let allowed = row.map_or("", |(_, allowed)| allowed);
+        for root in ["crate", "segue"] {
+            for at in places(&code, root) {
+                let Some(rest) = code[at + root.len()..].strip_prefix("::") else {
+                    continue;
+                };
+                for name in heads(rest) {
+                    if name != own && !allowed.split(' ').any(|other| other == name) {
+                        tell(at, format!("`{own}` names `{name}`"));
+                    }
+                }
+            }
+        }
+        for at in places(&code, "super") {
+            let chain = code[at..].split("::").take_while(|part| *part == "super").count();
+            if !code[..at].ends_with("super::") && chain >= modules.len() && own != "main" {
+                tell(at, format!("`super` leaves `{own}`"));
+            }
+        }
+        for outside in OUTSIDE.iter().filter(|_| in_library) {
+            for at in places(&code, outside) {
+                tell(at, format!("`{own}` names `{outside}`"));
+            }
+        }
+    } else {
+        for outside in OUTSIDE {
+            for at in places(&code, outside) {
+                tell(at, format!("the library names `{outside}`"));
+            }
+        }
+    }
+    found.sort();
+    found.into_iter().map(|(_, slip)| slip).collect()
+}
+
+fn unwraps(path: &Path, text: &str) -> Vec<String> {
+    let code = code(text);
+    let lines = code.lines().enumerate().filter(|(_, line)| line.contains(".unwrap()"));
+    lines
+        .map(|(index, _)| format!("{}:{}: `unwrap` outside of tests", path.display(), index + 1))
+        .collect()
+}
+
+fn unfinished(path: &Path, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        for mark in UNFINISHED.iter().filter(|mark| line.contains(**mark)) {
+            found.push(format!("{}:{}: `{mark}`", path.display(), index + 1));
+        }
+    }
+    found
+}
