@@ -21,9 +21,8 @@ console.table(rows);
 process.exit();
 
 async function measure(backend) {
-  const cold = await openSegue(backend, "compare=blend_window:30,15,10", { viewport });
-  // `segueReady` settles with the first frame, and the clock of the page begins with the navigation.
-  const firstFrame = await cold.page.evaluate(() => window.segueReady.then(() => performance.now()));
+  const cold = await openSegue(backend, "compare=blend_window:30,15,10", { viewport, prepare: noteFirstFrame });
+  const firstFrame = await cold.page.evaluate(() => window.firstFrame);
   const warm = await reopened(cold);
   const start = await cold.segue("stats");
   await cold.page.waitForTimeout(1000 * Number(values.seconds));
@@ -67,5 +66,12 @@ async function measure(backend) {
 async function reopened({ page, ready }) {
   await page.reload({ waitUntil: "commit" });
   await ready();
-  return page.evaluate(() => window.segueReady.then(() => performance.now()));
+  return page.evaluate(() => window.firstFrame);
+}
+
+/** `segueReady` settles with the first frame, and the clock of the page begins with the navigation. */
+function noteFirstFrame(page) {
+  return page.addInitScript(() => document.addEventListener("DOMContentLoaded", () => {
+    window.segueReady?.then(() => { window.firstFrame = performance.now(); });
+  }));
 }
