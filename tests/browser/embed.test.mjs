@@ -68,7 +68,7 @@ onBothBackends("the link of an embedded state is one that answers", async ({ ope
     const frame = document.createElement("iframe");
     frame.src = `/${search}`;
     document.body.append(frame);
-    setTimeout(resolve, 20_000, `nothing came of ${search}`);
+    setTimeout(resolve, 12_000, `nothing came of ${search}`);
   }), search);
   assert.equal(told, "ready");
 });

@@ -90,4 +90,4 @@ export function count(picture, [left, top, right, bottom], test) {
 export const isClay = (red, green, blue) => Math.min(red, green, blue) > 70 && Math.max(red, green, blue) - Math.min(red, green, blue) < 40;
 
 /** The stage in a window of 960 points or wider, and between the words at its top and the numbers at its bottom. */
-export const stageOf = ({ width, height }) => [232, 48 + 40, width - 288, height - 214 - 60];
+export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - 214 - 60];

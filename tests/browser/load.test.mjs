@@ -65,8 +65,6 @@ onBothBackends("a broken file is refused with its place, and nothing changes", a
   const broken = [
     ["cut.bvh", good.slice(0, 300), /cut\.bvh:\d+:\d+: found .+, expected /],
     ["word.bvh", good.replace("OFFSET 9 -4 0", "OFFSET 9 banana 0"), /word\.bvh:\d+:\d+: found .*banana.*, expected /],
-    ["endless.bvh", good.replace("Frames: 4", "Frames: 4000000000"), /endless\.bvh:\d+:\d+: found .+, expected /],
-    ["negative.bvh", good.replace("Frames: 4", "Frames: -4"), /negative\.bvh:\d+:\d+: found .+, expected /],
     ["random.bvh", random, /random\.bvh:\d+:\d+: found .+, expected /],
     ["empty.bvh", "", /empty\.bvh:\d+:\d+: found .+, expected /],
     ["picture.png", random, /picture\.png/],
@@ -78,6 +76,11 @@ onBothBackends("a broken file is refused with its place, and nothing changes", a
   const { clips } = await load("good.bvh", Buffer.from(good));
   assert.equal(clips[0].frames, 4);
   assert.equal((await segue("clips")).length, before.length + 1, "the app goes on");
+  // A header that promises too much reserves no memory for it: what is there is read, and the rest is said.
+  const endless = await load("endless.bvh", Buffer.from(good.replace("Frames: 4", "Frames: 4000000000")));
+  assert.equal(endless.clips[0].frames, 4);
+  assert.match(endless.warnings.join(), /4000000000/);
+  assert.ok((await segue("stats")).wasm_bytes < 200e6);
 });
 
 onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
@@ -99,6 +102,7 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
   const { clips } = await load("mine.bvh", striding({ frames: 90 }));
   await segue("set", { lab: "blend", compare: "", a: clips[0].id, blend_window: 17, weight_law: "linear", play: false, t: 0.4 });
+  await segue("set", {});
   const [params, library, pose] = [await segue("params"), await segue("clips"), await segue("pose", "result", 0.4)];
   await until("the work is stored", () => page.evaluate(async () => {
     const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
@@ -110,7 +114,7 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   // Without the link, so that all of it comes out of storage.
   await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
   await ready();
-  await until("the clip is back", async () => (await segue("clips")).length === library.length);
+  await segue("set", {});
   assert.deepEqual(await segue("clips"), library);
   assert.deepEqual(await segue("params"), params);
   await until("the result is back", () => segue("pose", "result", 0.4).then(() => true, () => false));

@@ -12,7 +12,7 @@ const isWhite = (...rgb) => Math.min(...rgb) > 225;
 
 /** The first slider of the right panel: where its filled part begins, where its handle is, where its track ends. */
 function firstSlider(picture) {
-  const [left, right] = [picture.width - 288 + 16, picture.width - 16];
+  const [left, right] = [picture.width - 288 + 20, picture.width - 16]; // past the rounded end
   for (let y = 60; y < picture.height - 214; y++) {
     let x = left;
     while (x < right && isAccent(...picture.at(x, y))) x++;
@@ -107,10 +107,10 @@ onBothBackends("a phone shows one pane, and all of the page", async ({ open }) =
   await segue("set", {});
   const size = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight, document.getElementById("segue").clientWidth]);
   assert.deepEqual(size, [width, height, width]);
-  const stage = [0, 48 + 40, width - 50, 48 + (height - 48) / 2 - 60];
+  const stage = [0, 48 + 40, width - 100, 48 + (height - 48) / 2 - 100]; // between title, buttons and numbers
   const picture = await until("the character is drawn", async () => {
     const picture = await pixels();
-    return count(picture, stage, isClay) > 1500 && picture;
+    return count(picture, stage, isClay) > 3000 && picture;
   });
   // One character: clay in one run of columns only.
   const columns = Array.from({ length: stage[2] }, (_, x) => count(picture, [x, stage[1], x + 1, stage[3]], isClay) > 3);
