@@ -143,7 +143,7 @@ fn measuring(c: &mut Criterion) {
             ground_m: 0.0,
         };
         c.bench_function(&format!("metrics, {window} frames"), |bench| {
-            bench.iter(|| TransitionMetrics::measure(black_box(&subject)))
+            bench.iter(|| TransitionMetrics::measure(black_box(&subject)));
         });
     }
     c.bench_function("metrics, profile (once per clip)", |bench| {

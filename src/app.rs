@@ -336,6 +336,7 @@ impl Segue {
         let before = self.session.revision();
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
+        self.panels.fetching = self.downloads.under_way().collect();
         let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
         for command in out.commands {
             self.obey(command);
@@ -360,6 +361,7 @@ impl Segue {
         let theme = ui::theme(&self.session, system_dark);
         if self.window.theme != Some(theme) {
             theme.install(ctx);
+            ui::kit::ENGLISH.install(ctx);
             self.window.theme = Some(theme);
         }
     }
@@ -368,6 +370,12 @@ impl Segue {
     fn act(&mut self, action: &Action, ctx: &egui::Context) {
         match action {
             Action::OpenFiles => platform::open_files(&self.inbox),
+            Action::StopFetching(name) => {
+                let sources = self.session.params().text(Key::Src).split_whitespace();
+                let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
+                let rest = segue::session::Value::Text(rest.join(" "));
+                self.obey(Command::Set(vec![(Key::Src, rest)]));
+            }
             Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
             Action::SaveBvh(which) => match self.export(which, "bvh") {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),

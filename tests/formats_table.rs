@@ -1,5 +1,7 @@
 //! What real BVH files do, one test for each kind of oddity, on files of our own.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
+
 mod formats_common;
 
 use formats_common::{CHAIN, chain, one, read, row};
@@ -177,9 +179,9 @@ fn names_are_kept_as_written() {
 fn each_root_is_one_character() {
     let second =
         "ROOT Other\n{\n OFFSET 100 80 0\n CHANNELS 2 Yposition Yrotation\n JOINT Tip\n {\n OFFSET 0 85 0\n CHANNELS 1 Xrotation\n }\n}\n";
-    let rows: String = (0..4)
+    let rows = [0, 1, 2, 3]
         .map(|frame| format!("{} {} {} 30\n", row(frame), 80 + frame, 10 * frame))
-        .collect();
+        .concat();
     let imported = read(format!("{CHAIN}{second}MOTION\nFrames: 4\nFrame Time: 0.01\n{rows}")).unwrap();
     assert_eq!(imported.warnings, []);
     let [first, other] = &imported.clips[..] else {

@@ -6,6 +6,7 @@
 
 mod callback;
 mod frame;
+#[cfg(test)]
 mod image;
 mod mesh;
 mod pipelines;
@@ -15,5 +16,8 @@ mod targets;
 mod tests;
 
 pub(crate) use callback::{install, paint_callback, stage_pixels};
-pub(crate) use image::{Image, ImageError, render_to_image};
-pub(crate) use renderer::{Quality, StageRenderer};
+#[cfg(test)]
+use image::{Image, render_to_image};
+#[cfg(test)]
+use renderer::Quality;
+pub(crate) use renderer::StageRenderer;

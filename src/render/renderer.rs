@@ -180,6 +180,7 @@ impl StageRenderer {
     }
 
     /// Chooses the light; by default that of the machine.
+    #[cfg(test)]
     pub(crate) fn set_quality(&mut self, quality: Quality) {
         self.quality = quality;
     }
@@ -190,6 +191,7 @@ impl StageRenderer {
     }
 
     /// Forgets a stage and gives its memory back.
+    #[cfg(test)]
     pub(super) fn forget(&mut self, id: u64) {
         self.views.retain(|(key, _)| *key != id);
     }

@@ -8,6 +8,7 @@ pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth2
 pub(super) struct Targets {
     pub(super) size: [u32; 2],
     /// The finished picture.
+    #[cfg(test)]
     pub(super) color: wgpu::Texture,
     pub(super) color_view: wgpu::TextureView,
     /// Several samples per pixel; `None` where the machine has but one.
@@ -56,6 +57,7 @@ impl Targets {
         });
         Self {
             size,
+            #[cfg(test)]
             color,
             color_view,
             samples,

@@ -5,7 +5,7 @@ use super::out::{Action, Out};
 use super::state::{Renaming, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RectAlign, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue::clip::UpAxis;
 use segue::formats::ImportOptions;
 use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot};
@@ -47,6 +47,12 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
 
 /// Where files are dropped or asked for, and the bundled takes.
 pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    for (name, done) in &state.fetching {
+        let detail = done.map_or_else(String::new, |done| format!("{:.0} %", done * 100.0));
+        if kit::progress_row_ui(name, done.map(|done| done as f32), &detail, ui) {
+            out.actions.push(Action::StopFetching(name.clone()));
+        }
+    }
     if state.samples_open {
         samples_ui(session, out, ui);
         ui.add_space(space::S);
@@ -120,12 +126,12 @@ fn facts(entry: &Entry) -> String {
 
 fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(renaming) = state.renaming.as_mut().filter(|renaming| renaming.id == entry.id) {
-        let response = ui.add(TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
-        response.request_focus();
-        if ui.input(|input| input.key_pressed(Keyboard::Enter)) || response.clicked_elsewhere() {
+        let field = kit::text_field_ui(text::RENAME, &entry.name, &mut renaming.name, ui);
+        field.response.request_focus();
+        if field.committed {
             out.commands.push(Command::Rename(entry.id.clone(), renaming.name.clone()));
-            state.renaming = None;
-        } else if ui.input(|input| input.key_pressed(Keyboard::Escape)) {
+        }
+        if field.committed || ui.input(|input| input.key_pressed(Keyboard::Escape)) {
             state.renaming = None;
         }
         return;
@@ -155,7 +161,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
             state.renaming = Some(Renaming {
                 id: entry.id.clone(),
                 name: entry.name.clone(),
-            })
+            });
         }
         Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
         None if response.clicked || response.badge_clicked => {
@@ -245,19 +251,14 @@ fn units_ui(entry: &Entry, motion: &Motion, options: &ImportOptions, out: &mut O
     if let Some(index) = kit::choice_row_ui(text::UNIT, now, &names, ui) {
         let options = ImportOptions {
             metres_per_unit: Some(UNITS[index].1),
-            ..options.clone()
+            ..*options
         };
         out.commands.push(Command::Reimport(entry.id.clone(), options));
     }
     let axes = [(UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
     if let Some(up) = kit::choice_row_ui(text::UP_AXIS, provenance.up, &axes, ui) {
-        out.commands.push(Command::Reimport(
-            entry.id.clone(),
-            ImportOptions {
-                up: Some(up),
-                ..options.clone()
-            },
-        ));
+        out.commands
+            .push(Command::Reimport(entry.id.clone(), ImportOptions { up: Some(up), ..*options }));
     }
 }
 

@@ -9,6 +9,8 @@ pub(crate) enum Action {
     OpenFiles,
     /// Put the address of this state into the clipboard.
     CopyLink,
+    /// Stop fetching a file, by its name.
+    StopFetching(String),
     /// Save a motion as a BVH file: a clip's id, or `result`.
     SaveBvh(String),
 }

@@ -68,7 +68,7 @@ fn drop_ui(ui: &Ui) {
     let screen = ui.ctx().content_rect();
     let painter = ui
         .ctx()
-        .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop")));
+        .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
     painter.rect_filled(screen, 0.0, palette.ground.gamma_multiply(0.7));
     painter.rect_stroke(
         screen.shrink(space::M),

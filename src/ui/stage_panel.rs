@@ -5,7 +5,7 @@ use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Align2, Pos2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::math::Planar;
 use segue::scene::{Camera, Lens, resting_point};
 use segue::session::{Key, Kind, Outcome, Pane, Session, Value, format_number};
@@ -316,7 +316,7 @@ fn camera_input(session: &Session, response: &Response, out: &mut Out, ui: &Ui) 
 
 /// How far the pointer, or two fingers, moved, and whether that moves the camera instead of turning it.
 fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
-    if let Some(touch) = ui.input(|input| input.multi_touch())
+    if let Some(touch) = ui.input(eframe::egui::InputState::multi_touch)
         && response.rect.contains(touch.center_pos)
     {
         return (touch.translation_delta, true);
@@ -396,7 +396,7 @@ mod tests {
 
     #[test]
     fn columns_fill_the_stage_without_gaps() {
-        let stage = Rect::from_min_size(Pos2::new(10.0, 5.0), vec2(1000.0, 400.0));
+        let stage = Rect::from_min_size(pos2(10.0, 5.0), vec2(1000.0, 400.0));
         let panes: Vec<Rect> = columns(stage, 3).collect();
         assert_eq!(panes[0].left(), 10.0);
         assert_eq!(panes[2].right(), 1010.0);

@@ -37,6 +37,7 @@ pub(crate) struct Renaming {
 
 /// The state of the interface.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a thing of its own that is open or not")]
 pub(crate) struct UiState {
     /// The drawer with the library is open, where it is one.
     pub(crate) library_open: bool,
@@ -54,6 +55,8 @@ pub(crate) struct UiState {
     pub(crate) hint: bool,
     /// Where the stage was drawn, points.
     pub(crate) stage: Rect,
+    /// Files on their way, with how much of each is there, 0 to 1, where that is known.
+    pub(crate) fetching: Vec<(String, Option<f64>)>,
 }
 
 impl Default for UiState {
@@ -67,6 +70,7 @@ impl Default for UiState {
             details: None,
             hint: true,
             stage: Rect::NOTHING,
+            fetching: Vec::new(),
         }
     }
 }

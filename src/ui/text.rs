@@ -28,7 +28,6 @@ pub(crate) const EXPORT_RESULT: &str = "Save the result as BVH";
 pub(crate) const USE_AS_A: &str = "Use as A";
 pub(crate) const USE_AS_B: &str = "Use as B";
 pub(crate) const LOADING: &str = "loading…";
-pub(crate) const NOT_LOADED: &str = "bundled · loads when used";
 pub(crate) const FRAME_ALL: &str = "Frame everything";
 pub(crate) const TOP_VIEW: &str = "From above";
 pub(crate) const FOLLOW: &str = "Camera follows";
@@ -46,7 +45,6 @@ pub(crate) const FOUND: &str = "Found automatically";
 pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find the best match again.";
 pub(crate) const SMOOTHEST: &str = "smoothest";
 pub(crate) const ROUGHEST: &str = "roughest";
-pub(crate) const CREDIT: &str = "Motion capture: mocap.cs.cmu.edu";
 pub(crate) const WELCOME_HINT: &str =
     "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";

@@ -11,7 +11,7 @@ use eframe::egui::{
 };
 use std::sync::Arc;
 
-pub(crate) use palette::{Palette, StageColors, StagePalette, linear_rgb};
+pub(crate) use palette::Palette;
 
 /// Distances, in points. Everything sits on multiples of four.
 pub(crate) mod space {

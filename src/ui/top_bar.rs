@@ -48,7 +48,7 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
 /// From right to left: the link, the theme, and what the width leaves room for; the rest is in a menu.
 fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let link = if layout == Layout::Phone { text::LINK } else { text::COPY_LINK };
-    if kit::button_ui(Button::new(link).primary(), ui).clicked() {
+    if kit::button_ui(Button::new(link).primary().icon(Icon::Link), ui).clicked() {
         out.actions.push(Action::CopyLink);
     }
     if layout == Layout::Phone {

@@ -15,8 +15,6 @@ pub(crate) enum Tone {
     Secondary,
     /// Without a ground until the pointer is on it.
     Quiet,
-    /// As quiet, for what cannot be taken back easily.
-    Danger,
 }
 
 /// A button: an icon, a word, or both.
@@ -29,7 +27,6 @@ pub(crate) struct Button<'a> {
     tone: Tone,
     selected: bool,
     hint: &'a str,
-    min_width: f32,
 }
 
 impl<'a> Button<'a> {
@@ -43,7 +40,6 @@ impl<'a> Button<'a> {
             tone: Tone::Secondary,
             selected: false,
             hint: "",
-            min_width: 0.0,
         }
     }
 
@@ -68,12 +64,6 @@ impl<'a> Button<'a> {
     /// Without a ground until the pointer is on it.
     pub(crate) fn quiet(mut self) -> Self {
         self.tone = Tone::Quiet;
-        self
-    }
-
-    /// Of this loudness.
-    pub(crate) fn tone(mut self, tone: Tone) -> Self {
-        self.tone = tone;
         self
     }
 
@@ -107,12 +97,6 @@ impl<'a> Button<'a> {
         self
     }
 
-    /// At least this wide.
-    pub(crate) fn min_width(mut self, min_width: f32) -> Self {
-        self.min_width = min_width;
-        self
-    }
-
     fn colors(self, hovered: bool, down: bool, p: &Palette) -> (Color32, Color32, Color32) {
         let raised = if down || self.selected {
             p.pressed
@@ -135,8 +119,7 @@ impl<'a> Button<'a> {
             Tone::Secondary => (raised, if hovered { p.line_strong } else { p.line }, p.text),
             Tone::Quiet if self.selected => (p.pressed, Color32::TRANSPARENT, p.text),
             Tone::Quiet if hovered || down => (raised, Color32::TRANSPARENT, p.text),
-            Tone::Danger if hovered || down => (p.bad_wash, Color32::TRANSPARENT, p.bad),
-            Tone::Quiet | Tone::Danger => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
+            Tone::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT, p.muted),
         }
     }
 }
@@ -169,7 +152,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     } else {
         space::M
     };
-    let size = vec2((content + 2.0 * padding).max(HIT).max(button.min_width), height);
+    let size = vec2((content + 2.0 * padding).max(HIT), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
 

@@ -3,7 +3,7 @@
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, Vec2, vec2};
 
 /// What a coloured word means. The colour never says it alone: the word does too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,15 +84,6 @@ impl Part {
             Self::None => "·",
         }
     }
-}
-
-/// A word on a round coloured ground: `smoothest`.
-pub(crate) fn chip_ui(text: &str, mood: Mood, ui: &mut Ui) -> Response {
-    let size = chip_size(text, ui);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    paint_chip(text, mood, rect.right_center(), ui);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
-    response
 }
 
 /// How large a chip is.

@@ -1,5 +1,6 @@
 //! The kit laid out as a whole lab, to be looked at: with `SEGUE_GALLERY` set to a folder, the pictures are written there.
 
+use super::timeline::Moment;
 use super::*;
 use crate::ui::theme::{Palette, Theme, Type, palette_of, space, theme_of};
 use eframe::egui::{
@@ -272,7 +273,7 @@ fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     ui.horizontal(|ui| {
         button_ui(Button::new("Swap").icon(Icon::Swap), ui);
         button_ui(Button::new("Reset").quiet().icon(Icon::Undo), ui);
-        button_ui(Button::icon_only(Icon::Trash, "Remove").tone(Tone::Danger), ui);
+        button_ui(Button::icon_only(Icon::Trash, "Remove").quiet(), ui);
     });
 }
 

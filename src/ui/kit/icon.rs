@@ -1,6 +1,6 @@
 //! Signs, drawn as strokes: no icon font has to be downloaded, and they take the colour of what they stand in.
 
-use eframe::egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
 use std::f32::consts::{PI, TAU};
 
 /// A sign of the interface.
@@ -48,20 +48,14 @@ pub(crate) enum Icon {
     Info,
     /// Opens downward.
     ChevronDown,
-    /// Opens to the side.
-    ChevronRight,
     /// To a file.
     Download,
     /// What is this?
     Help,
-    /// To be seen.
-    Eye,
     /// Files.
     Folder,
     /// Exchange two.
     Swap,
-    /// Look for.
-    Search,
     /// Settings.
     Sliders,
 }
@@ -182,7 +176,6 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.disc(8.0, 5.0, 0.9);
         }
         Icon::ChevronDown => pen.stroke(&[(4.0, 6.2), (8.0, 10.2), (12.0, 6.2)]),
-        Icon::ChevronRight => pen.stroke(&[(6.2, 4.0), (10.2, 8.0), (6.2, 12.0)]),
         Icon::Download => {
             pen.stroke(&[(8.0, 2.5), (8.0, 10.0)]);
             pen.stroke(&[(4.8, 7.0), (8.0, 10.2), (11.2, 7.0)]);
@@ -196,28 +189,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.stroke(&hook);
             pen.disc(8.0, 12.7, 0.95);
         }
-        Icon::Eye => {
-            let upper = (0..=16_u8).map(|i| {
-                let t = f32::from(i) / 16.0;
-                (1.8 + 12.4 * t, 8.0 - 4.4 * (PI * t).sin())
-            });
-            let lower = (1..16_u8).map(|i| {
-                let t = f32::from(i) / 16.0;
-                (14.2 - 12.4 * t, 8.0 + 4.4 * (PI * t).sin())
-            });
-            pen.closed(&upper.chain(lower).collect::<Vec<_>>());
-            pen.circle(8.0, 8.0, 1.9);
-        }
         Icon::Folder => pen.closed(&[(2.2, 12.8), (2.2, 3.6), (6.4, 3.6), (7.8, 5.4), (13.8, 5.4), (13.8, 12.8)]),
         Icon::Swap => {
             pen.stroke(&[(2.5, 5.2), (13.0, 5.2)]);
             pen.stroke(&[(10.4, 2.6), (13.2, 5.2), (10.4, 7.8)]);
             pen.stroke(&[(13.5, 10.8), (3.0, 10.8)]);
             pen.stroke(&[(5.6, 8.2), (2.8, 10.8), (5.6, 13.4)]);
-        }
-        Icon::Search => {
-            pen.circle(7.0, 7.0, 4.2);
-            pen.stroke(&[(10.2, 10.2), (13.6, 13.6)]);
         }
         Icon::Sliders => {
             for (y, knob) in [(5.0, 10.5), (11.0, 5.5)] {
@@ -227,15 +204,6 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             }
         }
     }
-}
-
-/// A sign by itself, `size` points wide. Not pressed and not read aloud; what it means stands beside it.
-pub(crate) fn icon_ui(icon: Icon, size: f32, color: Color32, ui: &mut Ui) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::hover());
-    if ui.is_rect_visible(rect) {
-        paint_icon(icon, rect, color, ui.painter());
-    }
-    response
 }
 
 /// The mark of Segue: one line that leaves warm and arrives cool.

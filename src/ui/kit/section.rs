@@ -2,7 +2,7 @@
 
 use super::paint::{Run, full_width, line_of, put};
 use crate::ui::theme::{Type, palette_of, theme_of};
-use eframe::egui::{Align2, Rect, Stroke, Ui};
+use eframe::egui::{Align2, Rect, Ui};
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at its right end.
 pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
@@ -11,11 +11,4 @@ pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
     let galley = line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
     rect
-}
-
-/// A hairline across everything the panel has, its margins included, and no space of its own.
-pub(crate) fn hairline_ui(ui: &mut Ui) {
-    let y = ui.cursor().top();
-    let stroke = Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
-    ui.painter().hline(ui.clip_rect().x_range(), y, stroke);
 }

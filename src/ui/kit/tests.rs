@@ -1,5 +1,6 @@
 //! What the widgets do when they are pressed, dragged, typed into and read aloud.
 
+use super::notice::notice_ui;
 use super::*;
 use crate::ui::theme::Theme;
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Ui, accesskit::Toggled, pos2, vec2};

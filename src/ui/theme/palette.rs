@@ -1,6 +1,6 @@
 //! Every colour of the app, by role, once for dark and once for light.
 
-use eframe::egui::{Color32, Rgba};
+use eframe::egui::Color32;
 
 /// The colours of one theme, named for what they say.
 ///
@@ -72,7 +72,7 @@ pub(crate) struct Palette {
     pub(crate) stage: StagePalette,
 }
 
-/// The colours of the stage, as the interface writes them (sRGB). [`Palette::stage_linear`] has them ready for the GPU.
+/// The colours of the stage, as the interface writes them (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StagePalette {
     /// The background at the top of a pane.
@@ -91,64 +91,6 @@ pub(crate) struct StagePalette {
     pub(crate) clay_outline: Color32,
     /// How dark the body's shadow makes the ground, 0..=1.
     pub(crate) shadow_alpha: f32,
-}
-
-/// The stage's colours as linear RGB, 0..=1, for shaders that write to an sRGB target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StageColors {
-    /// The background at the top of a pane.
-    pub(crate) sky: [f32; 3],
-    /// The background where it is lightest, behind the body.
-    pub(crate) horizon: [f32; 3],
-    /// The ground plane near the body.
-    pub(crate) ground: [f32; 3],
-    /// Fine lines of the grid.
-    pub(crate) grid: [f32; 3],
-    /// Every fifth line of the grid.
-    pub(crate) grid_major: [f32; 3],
-    /// The body.
-    pub(crate) clay: [f32; 3],
-    /// The line around each limb.
-    pub(crate) clay_outline: [f32; 3],
-    /// The first clip's ghost and path.
-    pub(crate) a: [f32; 3],
-    /// The second clip's ghost and path.
-    pub(crate) b: [f32; 3],
-    /// The result's path, and the ring of a planted foot.
-    pub(crate) result: [f32; 3],
-    /// The ring of a foot that slides.
-    pub(crate) bad: [f32; 3],
-    /// How much of a ghost's colour covers what is behind it.
-    pub(crate) ghost_alpha: f32,
-    /// How dark the body's shadow makes the ground.
-    pub(crate) shadow_alpha: f32,
-}
-
-impl Palette {
-    /// The stage's colours as linear RGB.
-    pub(crate) fn stage_linear(&self) -> StageColors {
-        StageColors {
-            sky: linear_rgb(self.stage.sky),
-            horizon: linear_rgb(self.stage.horizon),
-            ground: linear_rgb(self.stage.ground),
-            grid: linear_rgb(self.stage.grid),
-            grid_major: linear_rgb(self.stage.grid_major),
-            clay: linear_rgb(self.stage.clay),
-            clay_outline: linear_rgb(self.stage.clay_outline),
-            a: linear_rgb(self.a),
-            b: linear_rgb(self.b),
-            result: linear_rgb(self.accent),
-            bad: linear_rgb(self.bad),
-            ghost_alpha: self.ghost_alpha,
-            shadow_alpha: self.stage.shadow_alpha,
-        }
-    }
-}
-
-/// An opaque colour as linear RGB, 0..=1.
-pub(crate) fn linear_rgb(color: Color32) -> [f32; 3] {
-    let rgba = Rgba::from(color);
-    [rgba.r(), rgba.g(), rgba.b()]
 }
 
 /// `0xrrggbb`
@@ -355,8 +297,6 @@ mod tests {
     fn a_is_warm_and_b_is_cool() {
         for (_, p) in themes() {
             assert!(p.a.r() > p.a.b() && p.b.b() > p.b.r());
-            let linear = p.stage_linear();
-            assert!(linear.a[0] > linear.a[2] && linear.b[2] > linear.b[0]);
         }
     }
 }

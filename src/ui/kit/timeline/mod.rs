@@ -235,18 +235,10 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     events
 }
 
-/// How high [`timeline_ui`] is with so many tracks and curves of the given height (0: none). It gives its curves all height it is
-/// given; this is for panels that want to be as high as it needs.
-pub(crate) fn timeline_height(tracks: usize, curves: f32, ui: &Ui) -> f32 {
-    let heights = Heights::of(ui);
-    heights.head + tracks as f32 * heights.pitch + curves + heights.ruler
-}
-
 struct Heights {
     head: f32,
     bar: f32,
     pitch: f32,
-    ruler: f32,
 }
 
 impl Heights {
@@ -257,7 +249,6 @@ impl Heights {
             head: (10.0 * scale).round(),
             bar,
             pitch: bar + space::S,
-            ruler: RULER * scale,
         }
     }
 }
