@@ -143,7 +143,8 @@ pub(crate) fn keys() -> Vec<KeyInfo> {
 
 impl Segue {
     /// Every clip of the library.
-    pub(crate) fn clips(&self) -> Vec<ClipInfo> {
+    pub(crate) fn clips(&mut self) -> Vec<ClipInfo> {
+        self.session.make_all();
         self.session.clip_infos()
     }
 

@@ -9,7 +9,9 @@
 
 const EVENTS = ["change", "error", "progress"];
 
-const embedded = window.parent !== window && new URLSearchParams(window.location.search).get("embed") === "1";
+// The words that the app reads as "on".
+const ON = ["on", "1", "true", "yes"];
+const embedded = window.parent !== window && ON.includes(new URLSearchParams(window.location.search).get("embed"));
 if (embedded) window.addEventListener("message", receive);
 
 function receive({ source, origin, data }) {

@@ -116,7 +116,7 @@ impl SegueHandle {
 
     /// Every clip of the library.
     pub fn clips(&self) -> Result<JsValue, JsValue> {
-        to_js(&self.borrow()?.clips())
+        to_js(&self.borrow_mut()?.clips())
     }
 
     /// Every parameter's value by its key.

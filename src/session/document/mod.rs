@@ -553,7 +553,12 @@ impl Session {
         self.set_unchecked(Key::Time, Value::Number(to));
     }
 
-    /// Everything that the API tells of the clips.
+    /// Makes what is built in and was not needed yet: about 2 ms a clip.
+    pub fn make_all(&mut self) {
+        while self.make_next() {}
+    }
+
+    /// Everything that the API tells of the clips. What was not made or loaded yet has no frames.
     #[must_use]
     pub fn clip_infos(&self) -> Vec<ClipInfo> {
         self.library.entries().iter().map(|entry| clip_info(entry)).collect()

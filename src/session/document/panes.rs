@@ -3,7 +3,7 @@
 use super::Session;
 use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
-use crate::session::library::{Origin, split_reference};
+use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Group, Key, Params, Value};
 use crate::session::recipe::{BlendInputs, Outcome, made_id, made_motion, made_params, preset_motion};
@@ -49,16 +49,14 @@ impl Session {
             }
             return true;
         }
-        // Presets are made ahead, one a slice, so that the library can tell what they are.
-        let next = self
-            .library
-            .entries()
-            .iter()
-            .find(|entry| entry.motion.is_none() && matches!(entry.origin, Origin::Preset | Origin::Made));
-        let Some(id) = next.map(|entry| entry.id.clone()) else {
-            return false;
-        };
-        self.motion_of(&id).is_ok()
+        self.make_next()
+    }
+
+    /// Makes one built-in clip that was not needed yet, so that the library can tell what it is. `false` when all are made.
+    pub(super) fn make_next(&mut self) -> bool {
+        let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && matches!(entry.origin, Origin::Preset | Origin::Made);
+        let next = self.library.entries().iter().find(unmade).map(|entry| entry.id.clone());
+        next.is_some_and(|id| self.motion_of(&id).is_ok())
     }
 
     /// What is under way, by name, with its progress from 0 to 1.
