@@ -63,13 +63,14 @@ fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
 
 fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
+    let height = ui.available_height();
     let frame = panel_frame(ui, space::L, space::S);
     Panel::top("top bar")
         .exact_size(48.0 * scale)
         .frame(frame)
         .show(ui, |ui| top_bar::top_bar_ui(session, layout, state, out, ui));
     Panel::bottom("timeline")
-        .exact_size(214.0 * scale)
+        .exact_size((214.0 * scale).min(0.31 * height).round())
         .frame(panel_frame(ui, space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {

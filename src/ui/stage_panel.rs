@@ -43,7 +43,8 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         pane_switch_ui(panes.len(), stage, state, ui);
     }
     camera_buttons_ui(session, stage, state, out, ui);
-    if state.hint && is_welcome(session) && layout != Layout::Phone {
+    let roomy = stage.height() > 420.0 * theme_of(ui).scale();
+    if state.hint && roomy && is_welcome(session) && layout != Layout::Phone {
         let above_numbers = stage.with_max_y(numbers_top - space::S);
         kit::caption_ui(text::WELCOME_HINT, above_numbers, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
@@ -162,8 +163,14 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         return rect.bottom();
     };
     let panes = session.panes();
+    let room = if rect.width() < 280.0 * theme.scale() {
+        4
+    } else {
+        text::METRICS.len()
+    };
     let shown = text::METRICS
         .iter()
+        .take(room)
         .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {

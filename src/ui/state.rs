@@ -18,7 +18,8 @@ impl Layout {
     pub(crate) fn of(width: f32, scale: f32) -> Self {
         if width < 640.0 * scale {
             Self::Phone
-        } else if width < 960.0 * scale {
+        } else if width < 960.0 * scale * scale {
+            // Larger type also makes every panel wider, so that it takes its toll twice.
             Self::Tablet
         } else {
             Self::Desk

@@ -74,12 +74,12 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("wheel, pinch", "zoom"),
 ];
 
-/// The artefact numbers under a pane, by id, with the short names that fit there.
+/// The artefact numbers under a pane, by id, with the short names that fit there. The first four are what a narrow pane has room for.
 pub(crate) const METRICS: &[(&str, &str)] = &[
-    ("seam_deg", "jump"),
     ("seam_dps", "seam °/s"),
     ("skate_cm", "skate cm"),
-    ("penetration_cm", "sunk cm"),
     ("lag_s", "lag s"),
     ("spin_deg", "spin"),
+    ("seam_deg", "jump"),
+    ("penetration_cm", "sunk cm"),
 ];
