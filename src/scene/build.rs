@@ -177,18 +177,9 @@ impl Director {
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
         );
-        let from_above = params.text(Key::Camera) == "top";
         let goal = Camera {
             target: followed.unwrap_or_else(|| resting_point(outcome)) + pan,
-            yaw: params.number(Key::CameraYaw).to_radians() as f32,
-            pitch: if from_above {
-                std::f32::consts::FRAC_PI_2
-            } else {
-                params.number(Key::CameraPitch).to_radians() as f32
-            },
-            distance: params.number(Key::CameraDistance) as f32,
-            lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
-            ..Camera::default()
+            ..camera_of(params)
         };
         let Some(rig) = self.rigs.get_mut(index) else { return };
         let first = *rig == CameraRig::default();
@@ -220,6 +211,23 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
         world.apply(world_from_clip);
     }
     Some(world)
+}
+
+/// The camera that the parameters describe, wherever what it follows may be.
+#[must_use]
+pub fn camera_of(params: &Params) -> Camera {
+    let from_above = params.text(Key::Camera) == "top";
+    Camera {
+        yaw: params.number(Key::CameraYaw).to_radians() as f32,
+        pitch: if from_above {
+            std::f32::consts::FRAC_PI_2
+        } else {
+            params.number(Key::CameraPitch).to_radians() as f32
+        },
+        distance: params.number(Key::CameraDistance) as f32,
+        lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
+        ..Camera::default()
+    }
 }
 
 /// The point that the camera stays with; `None` when it follows nothing.

@@ -14,7 +14,7 @@ mod stage;
 
 pub use body::Body;
 pub use bounds::Bounds;
-pub use build::{Colors, Director, pose_at, resting_point};
+pub use build::{Colors, Director, camera_of, pose_at, resting_point};
 pub use camera::{Camera, Lens, Ray};
 pub use rig::CameraRig;
 pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Stage, Stroke, Viewport, rgb, with_alpha};

@@ -7,7 +7,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::math::Planar;
-use segue::scene::{Camera, Lens, resting_point};
+use segue::scene::{camera_of, resting_point};
 use segue::session::{Key, Kind, Outcome, Pane, Session, Value, format_number};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
@@ -336,26 +336,9 @@ fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
     }
 }
 
-/// The camera that the parameters describe, without what it follows.
-fn camera_of(session: &Session) -> Camera {
-    let params = session.params();
-    let from_above = params.text(Key::Camera) == "top";
-    Camera {
-        yaw: params.number(Key::CameraYaw).to_radians() as f32,
-        pitch: if from_above {
-            std::f32::consts::FRAC_PI_2
-        } else {
-            params.number(Key::CameraPitch).to_radians() as f32
-        },
-        distance: params.number(Key::CameraDistance) as f32,
-        lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
-        ..Camera::default()
-    }
-}
-
 fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     let params = session.params();
-    let mut camera = camera_of(session);
+    let mut camera = camera_of(session.params());
     let before = camera.target;
     camera.pan(glam_vec2(drag), stage.height());
     let moved = camera.target - before;
@@ -382,7 +365,7 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
-    let mut camera = camera_of(session);
+    let mut camera = camera_of(session.params());
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
     let pan = camera.target - resting_point(first);
