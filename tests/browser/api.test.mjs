@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
-import { apart, count, isClay, until } from "./help.mjs";
+import { apart, count, isClay, timelineOf, until } from "./help.mjs";
 import { decodePng } from "./png.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -83,7 +83,7 @@ onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
     return btoa(Array.from(new Uint8Array(await blob.arrayBuffer()), (byte) => String.fromCharCode(byte)).join(""));
   });
   const picture = decodePng(Buffer.from(base64, "base64"));
-  assert.equal(picture.height, 640 - 48 - 214, "between bar and timeline");
+  assert.equal(picture.height, 640 - 48 - timelineOf(640), "between bar and timeline");
   assert.ok(picture.width > 400 && picture.width < 960 - 200 - 288, `${picture.width} points wide: between the panels`);
   assert.ok(count(picture, [0, 40, picture.width, picture.height - 60], isClay) > 2000, "the character is in it");
 });

@@ -89,5 +89,8 @@ export function count(picture, [left, top, right, bottom], test) {
 /** The grey of the character: bright enough to be no background, and without a hue. The orange, blue and green of the lines have one. */
 export const isClay = (red, green, blue) => Math.min(red, green, blue) > 70 && Math.max(red, green, blue) - Math.min(red, green, blue) < 40;
 
+/** The height of the panel with the timeline: it gives way in low windows. */
+export const timelineOf = (height) => Math.min(214, Math.round(0.31 * height));
+
 /** The stage in a window of 960 points or wider, and between the words at its top and the numbers at its bottom. */
-export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - 214 - 60];
+export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - timelineOf(height) - 60];
