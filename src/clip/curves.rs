@@ -2,7 +2,7 @@
 
 use super::Clip;
 use crate::math::quat;
-use crate::skeleton::WorldPose;
+use glam::{Quat, Vec3};
 
 /// What of a joint is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +23,7 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
     if joint >= clip.skeleton().len() {
         return Vec::new();
     }
-    let mut world = WorldPose::default();
-    let track: Vec<_> = (0..clip.frames())
-        .map(|frame| {
-            clip.world_pose_into(frame, &mut world);
-            (world.positions[joint], world.rotations[joint])
-        })
-        .collect();
+    let track = joint_track(clip, joint);
     let last = track.len().saturating_sub(1);
     (0..track.len())
         .map(|frame| {
@@ -42,4 +36,68 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
             }
         })
         .collect()
+}
+
+/// Where one joint is in the world, and how it is turned, in every frame: kinematics of its own chain alone, because plots follow a slider.
+fn joint_track(clip: &Clip, joint: usize) -> Vec<(Vec3, Quat)> {
+    let skeleton = clip.skeleton();
+    let mut chain: Vec<usize> = std::iter::successors(Some(joint), |&j| skeleton.parent(j)).collect();
+    chain.reverse();
+    let links: Vec<_> = chain
+        .iter()
+        .skip(1)
+        .map(|&j| {
+            (
+                j,
+                skeleton.joints()[j].offset,
+                clip.translations().iter().find(|track| track.joint == j),
+            )
+        })
+        .collect();
+    (0..clip.frames())
+        .map(|frame| {
+            let rotations = clip.rotations(frame);
+            let start = (clip.root_translations()[frame], rotations[0]);
+            links.iter().fold(start, |(position, rotation), &(j, offset, moved)| {
+                let translation = moved.map_or(offset, |track| track.values[frame]);
+                (position + rotation * translation, rotation * rotations[j])
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::JointTranslations;
+    use crate::synth::{Action, Params, synthesize};
+
+    #[test]
+    fn the_chain_alone_gives_what_the_whole_body_gives() {
+        let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
+        let values = (0..clip.frames()).map(|frame| Vec3::new(0.1, 0.2, 0.001 * frame as f32)).collect();
+        let clip = clip.with_translations(vec![JointTranslations { joint: 2, values }]).unwrap();
+        for joint in 0..clip.skeleton().len() {
+            let track = joint_track(&clip, joint);
+            for frame in (0..clip.frames()).step_by(7) {
+                let world = clip.world_pose(frame);
+                assert_eq!(
+                    track[frame],
+                    (world.positions[joint], world.rotations[joint]),
+                    "joint {joint}, frame {frame}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn rates_are_per_second_and_a_joint_that_is_not_there_has_no_curve() {
+        let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+        let heights = joint_curve(&clip, 0, CurveKind::Height);
+        let speeds = joint_curve(&clip, 0, CurveKind::Speed);
+        assert_eq!(heights[3], clip.root_translations()[3].y);
+        let mean = speeds.iter().sum::<f32>() / speeds.len() as f32;
+        assert!((mean - 1.4).abs() < 0.1, "{mean}");
+        assert!(joint_curve(&clip, 999, CurveKind::Speed).is_empty());
+    }
 }

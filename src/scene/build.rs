@@ -65,8 +65,11 @@ impl Director {
             pane.clear();
             pane.viewport = viewport;
             if let Some(outcome) = session.panes().get(index).and_then(|pane| pane.outcome.as_deref()) {
-                self.draw(outcome, params, now, &look, colors, pane);
-                self.aim(index, outcome, params, now, dt_secs, pane);
+                let Some(world) = pose_at(&outcome.motion, now, &Planar::IDENTITY) else {
+                    continue;
+                };
+                self.draw(outcome, &world, params, now, &look, colors, pane);
+                self.aim(index, outcome, &world, params, now, dt_secs, pane);
             }
         }
         Arc::make_mut(&mut self.stage).panes = panes;
@@ -98,21 +101,20 @@ impl Director {
         body
     }
 
-    fn draw(&mut self, outcome: &Outcome, params: &Params, now: f64, look: &Look, colors: &Colors, pane: &mut Pane) {
+    /// `world` is the result's pose now.
+    #[expect(clippy::too_many_arguments, reason = "what is drawn, when, how it looks and where it goes")]
+    fn draw(&mut self, outcome: &Outcome, world: &WorldPose, params: &Params, now: f64, look: &Look, colors: &Colors, pane: &mut Pane) {
         let motion = &outcome.motion;
-        let Some(world) = pose_at(motion, now, &Planar::IDENTITY) else {
-            return;
-        };
         let body = self.body(motion);
         let shape = params.text(Key::Look);
         if shape != "bones" {
-            pane.add_body(&body, &world, look.clay);
+            pane.add_body(&body, world, look.clay);
         }
         if shape != "body" {
-            add_bones(motion.clip.skeleton(), &world, colors.result, pane);
+            add_bones(motion.clip.skeleton(), world, colors.result, pane);
         }
         if params.is_on(Key::Axes) {
-            add_axes(&world, colors, pane);
+            add_axes(world, colors, pane);
         }
         if params.is_on(Key::Sources) {
             self.draw_sources(outcome, now, colors, pane);
@@ -140,7 +142,7 @@ impl Director {
             add_joint_trail(motion, joint, now, colors.result, pane);
         }
         if params.is_on(Key::Contacts) {
-            add_contacts(motion, now, &world, colors, pane);
+            add_contacts(motion, now, world, colors, pane);
         }
     }
 
@@ -170,8 +172,9 @@ impl Director {
     }
 
     /// Brings the pane's camera to where the parameters want it, after the followed joint.
-    fn aim(&mut self, index: usize, outcome: &Outcome, params: &Params, now: f64, dt_secs: f32, pane: &mut Pane) {
-        let followed = followed_point(outcome, params, now);
+    #[expect(clippy::too_many_arguments, reason = "what is looked at, when, and through which camera")]
+    fn aim(&mut self, index: usize, outcome: &Outcome, world: &WorldPose, params: &Params, now: f64, dt_secs: f32, pane: &mut Pane) {
+        let followed = followed_point(outcome, world, params, now);
         let pan = Vec3::new(
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
@@ -231,7 +234,7 @@ pub fn camera_of(params: &Params) -> Camera {
 }
 
 /// The point that the camera stays with; `None` when it follows nothing.
-fn followed_point(outcome: &Outcome, params: &Params, now: f64) -> Option<Vec3> {
+fn followed_point(outcome: &Outcome, result: &WorldPose, params: &Params, now: f64) -> Option<Vec3> {
     let wanted = match params.text(Key::Follow) {
         "off" => return None,
         "a" => Some(Slot::A),
@@ -239,10 +242,14 @@ fn followed_point(outcome: &Outcome, params: &Params, now: f64) -> Option<Vec3> 
         _ => None,
     };
     let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
-    let (motion, at, place) = source.map_or((&outcome.motion, now, Planar::IDENTITY), |source| {
-        (&source.motion, now - source.starts_at_secs, source.world_from_clip)
-    });
-    let world = pose_at(motion, at, &place)?;
+    let source_pose;
+    let (motion, world) = match source {
+        None => (&outcome.motion, result),
+        Some(source) => {
+            source_pose = pose_at(&source.motion, now - source.starts_at_secs, &source.world_from_clip)?;
+            (&source.motion, &source_pose)
+        }
+    };
     let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
     let point = *world.positions.get(joint)?;
     let hips = motion.roles.get(Role::Hips).unwrap_or(0);
@@ -331,6 +338,10 @@ fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 fn add_contacts(motion: &Motion, now: f64, world: &WorldPose, colors: &Colors, pane: &mut Pane) {
     let frame = session::frame_at(motion, now);
     let dt = motion.clip.dt_secs();
+    if !Side::BOTH.iter().any(|&side| motion.contacts.planted(side, frame)) {
+        return;
+    }
+    let earlier = pose_at(motion, now - f64::from(dt), &Planar::IDENTITY);
     for side in Side::BOTH {
         if !motion.contacts.planted(side, frame) {
             continue;
@@ -340,8 +351,10 @@ fn add_contacts(motion: &Motion, now: f64, world: &WorldPose, colors: &Colors, p
         let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else {
             continue;
         };
-        let earlier = pose_at(motion, now - f64::from(dt), &Planar::IDENTITY);
-        let before = earlier.and_then(|world| world.positions.get(joint).copied()).unwrap_or(toe);
+        let before = earlier
+            .as_ref()
+            .and_then(|world| world.positions.get(joint).copied())
+            .unwrap_or(toe);
         let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;
         let middle = toe.lerp(ankle, 0.35).with_y(0.0);
         pane.add_contact(middle, if slides { colors.bad } else { colors.result });

@@ -104,11 +104,11 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         curves: (layout != Layout::Phone).then_some(curves),
     };
     for event in kit::timeline_ui(&timeline, ui) {
-        timeline_event(event, session, outcome, out);
+        timeline_event(event, outcome, out);
     }
 }
 
-fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
+fn timeline_event(event: TimelineEvent, outcome: &Outcome, out: &mut Out) {
     let fps = outcome.motion.clip.fps();
     match event {
         TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
@@ -127,7 +127,6 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         TimelineEvent::ScrubEnded | TimelineEvent::EditStarted => {}
         TimelineEvent::EditEnded => out.commands.push(Command::Settle),
     }
-    let _ = session;
 }
 
 /// One clip that is all there is.
