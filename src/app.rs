@@ -11,7 +11,7 @@ mod picture;
 
 pub(crate) use address_bar::link_query;
 
-use crate::platform::{self, Inbox, Incoming, Storage};
+use crate::platform::{self, Inbox, Incoming, LargeFile, ReadNews, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
@@ -21,8 +21,10 @@ use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
 use segue::scene::Look;
+use segue::session::reading::{Content, LARGE_BYTES};
 use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -79,6 +81,10 @@ pub(crate) struct Segue {
     keeper: Keeper,
     address: AddressBar,
     downloads: Downloads,
+    reader: Reader,
+    vault: Vault,
+    /// What the tasks gave that the page's API began.
+    read: BTreeMap<u64, Option<Result<api::LoadedClips, String>>>,
     /// The bundled takes that are under way, by id.
     samples: Vec<&'static str>,
     frames: Frames,
@@ -140,6 +146,9 @@ impl Segue {
         Self {
             session: Session::new(),
             keeper: Keeper::new(storage, link, now_ms),
+            reader: Reader::new(&inbox),
+            vault: Vault::default(),
+            read: BTreeMap::new(),
             inbox,
             address: AddressBar::default(),
             downloads: Downloads::default(),
@@ -207,7 +216,7 @@ impl Segue {
             self.receive(incoming);
         }
         let now_ms = platform::now_ms();
-        if self.keeper.wait(&mut self.session, now_ms) {
+        if self.keeper.wait(&mut self.session, &mut self.vault, now_ms) {
             self.address.is_right(&self.session);
         }
         if self.keeper.is_waiting() {
@@ -223,9 +232,10 @@ impl Segue {
         more
     }
 
-    /// Whether something is under way that changes what is shown.
+    /// Whether something is under way that soon changes what is shown. A large file that is read elsewhere takes its time.
     pub(crate) fn is_busy(&self) -> bool {
-        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || !self.session.jobs().is_empty()
+        let soon = self.session.jobs().iter().any(|job| job.task.is_none());
+        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || soon
     }
 
     /// Whether what is stored is still waited for.
@@ -237,6 +247,10 @@ impl Segue {
     fn receive(&mut self, incoming: Incoming) {
         match incoming {
             Incoming::File { name, bytes } => self.load(&name, bytes),
+            Incoming::Large { name, file } => {
+                self.begin_reading(&name, file);
+            }
+            Incoming::Reading { task, news } => self.hear_of_reading(task, news),
             Incoming::Copied => self.session.say(Level::Info, ui::LINK_COPIED),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
@@ -262,7 +276,10 @@ impl Segue {
                 }
             }
             Incoming::Stored(stored) => {
-                if self.keeper.arrived(&mut self.session, stored.map(|stored| *stored)) {
+                if self
+                    .keeper
+                    .arrived(&mut self.session, &mut self.vault, stored.map(|stored| *stored))
+                {
                     self.address.is_right(&self.session);
                 }
             }
@@ -281,8 +298,41 @@ impl Segue {
         }
     }
 
+    /// Has a large file read elsewhere. Returns the task's number.
+    pub(crate) fn begin_reading(&mut self, name: &str, file: LargeFile) -> u64 {
+        let size = file.len();
+        let key = self.vault.take(file);
+        self.session.begin_reading(name, Content::Outside(key), size)
+    }
+
+    fn hear_of_reading(&mut self, task: u64, news: ReadNews) {
+        let report = match news {
+            ReadNews::Progress(done) => return self.session.progress_reading(task, done),
+            ReadNews::Done(report) => report,
+        };
+        let key = self.session.reading_key(task).map(str::to_owned);
+        if let (Some(key), Ok(report)) = (&key, &report) {
+            match report.files.as_slice() {
+                [file] if file.result.is_ok() && file.unpacked.is_none() => self.vault.name(key, &file.sha256),
+                _ => self.vault.drop_file(key),
+            }
+        }
+        let Some(result) = self.session.finish_reading(task, report) else {
+            return;
+        };
+        let result = result.map(|loaded| self.loaded_clips(loaded));
+        if let Some(place) = self.read.get_mut(&task) {
+            *place = Some(result);
+        }
+    }
+
     /// Loads a file. What is wrong with it stands in a notice.
     fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>) {
+        let size = bytes.len() as u64;
+        if size > LARGE_BYTES {
+            self.session.begin_reading(name, Content::Here(bytes), size);
+            return;
+        }
         if let Err(error) = self.session.load(name, bytes) {
             log::info!("{name} was not loaded: {error}");
         }
@@ -305,6 +355,15 @@ impl Segue {
                     }
                 }
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
+                Request::Read(task) => {
+                    if let Some(bytes) = self.vault.bytes_of(&task.content) {
+                        self.reader.start(task, bytes);
+                    } else {
+                        let gone = Err("it is not here any more, drop it again".to_owned());
+                        self.session.finish_reading(task.id, gone);
+                    }
+                }
+                Request::StopReading(task) => self.reader.stop(task),
             }
         }
         let wanted = self.session.params().text(Key::Src);
@@ -409,7 +468,7 @@ impl Segue {
         let dragging = ctx.input(|input| input.pointer.any_down());
         let waits = [
             self.address.tend(&self.session, dragging, now_ms),
-            self.keeper.tend(&self.session, now_ms),
+            self.keeper.tend(&self.session, &self.vault, now_ms),
             self.session.notices().next_change_secs().map(|secs| secs * 1e3),
         ];
         if let Some(wait) = waits.into_iter().flatten().min_by(f64::total_cmp) {
@@ -422,7 +481,7 @@ impl Segue {
 
     /// Stores the work at once: the page may be about to go.
     pub(crate) fn save_now(&mut self) {
-        self.keeper.save_now(&self.session);
+        self.keeper.save_now(&self.session, &self.vault);
     }
 
     /// What there is to tell listeners since the last call.
@@ -438,10 +497,10 @@ impl Segue {
                 }
             }
         }
-        for (name, progress) in self.session.jobs() {
+        for job in self.session.jobs() {
             events.push(Event::Progress {
-                name: name.to_owned(),
-                progress: Some(f64::from(progress)),
+                name: job.name,
+                progress: Some(job.progress),
             });
         }
         if self.session.revision() != self.told.revision && !self.keeper.is_waiting() {

@@ -3,14 +3,14 @@
 use super::Segue;
 use super::frames::FrameTimes;
 use super::link_query;
-use crate::platform;
+use crate::platform::{self, LargeFile};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
 use segue::formats::bvh;
 use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
-use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Motion, PARAMS, Pane, Param, Value, frame_at};
+use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, PARAMS, Pane, Param, Value, frame_at};
 use segue::skeleton::Side;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -185,11 +185,32 @@ impl Segue {
     pub(crate) fn load_file(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedClips, String> {
         self.pump();
         let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
+        Ok(self.loaded_clips(loaded))
+    }
+
+    pub(super) fn loaded_clips(&mut self, loaded: Loaded) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
-        Ok(LoadedClips {
+        LoadedClips {
             clips,
             warnings: loaded.warnings,
-        })
+        }
+    }
+
+    /// Has a large file read elsewhere and keeps what comes of it. Returns the task's number.
+    pub(crate) fn load_large(&mut self, name: &str, file: LargeFile) -> u64 {
+        let task = self.begin_reading(name, file);
+        self.read.insert(task, None);
+        task
+    }
+
+    /// Whether that file is still being read.
+    pub(crate) fn is_reading(&self, task: u64) -> bool {
+        self.session.jobs().iter().any(|job| job.task == Some(task))
+    }
+
+    /// What [`Self::load_large`] gave; `None` when it was stopped.
+    pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, String>> {
+        self.read.remove(&task).flatten()
     }
 
     /// The link that restores this state.
@@ -320,11 +341,7 @@ impl Segue {
 
     /// What is under way.
     fn jobs(&self) -> Vec<JobInfo> {
-        let computed = self
-            .session
-            .jobs()
-            .into_iter()
-            .map(|(name, progress)| (name.to_owned(), Some(f64::from(progress))));
+        let computed = self.session.jobs().into_iter().map(|job| (job.name, Some(job.progress)));
         let samples = self.samples.iter().map(|id| ((*id).to_owned(), None));
         computed
             .chain(self.downloads.under_way())

@@ -1,8 +1,7 @@
 //! Keeps the work: brings it back at the start, and stores it soon after it has changed.
 
-use crate::platform::{Storage, Stored, StoredFiles, Work};
+use crate::platform::{Storage, Stored, StoredFiles, Vault, Work};
 use segue::session::{Origin, Saved, Session};
-use std::sync::Arc;
 
 /// The page does not wait longer than this for what is stored, milliseconds.
 const PATIENCE_MS: f64 = 150.0;
@@ -69,12 +68,12 @@ impl Keeper {
     }
 
     /// Begins without what is stored when it takes too long. Says whether the session has begun just now.
-    pub(crate) fn wait(&mut self, session: &mut Session, now_ms: f64) -> bool {
+    pub(crate) fn wait(&mut self, session: &mut Session, vault: &mut Vault, now_ms: f64) -> bool {
         let Phase::Waiting { since_ms } = self.phase else { return false };
         if self.storage.is_some() && now_ms - since_ms < PATIENCE_MS {
             return false;
         }
-        self.open(session, None);
+        self.open(session, vault, None);
         self.phase = if self.storage.is_some() {
             Phase::Late { begun: Mark::of(session) }
         } else {
@@ -84,11 +83,11 @@ impl Keeper {
     }
 
     /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
-    pub(crate) fn arrived(&mut self, session: &mut Session, stored: Option<Stored>) -> bool {
+    pub(crate) fn arrived(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) -> bool {
         let nothing = stored.is_none();
         match std::mem::replace(&mut self.phase, Phase::Ready) {
             Phase::Waiting { .. } => {
-                self.open(session, stored);
+                self.open(session, vault, stored);
                 return nothing || !self.link.is_empty();
             }
             Phase::Late { begun } => {
@@ -99,7 +98,7 @@ impl Keeper {
                 } else if let Some(stored) = stored {
                     // Parameters that were touched meanwhile stay as they are.
                     let query = (now.query != begun.query || !self.link.is_empty()).then_some(now.query);
-                    session.restore(&stored.saved, |key| stored.files.get(key).cloned(), query.as_deref());
+                    session.restore(&stored.saved, |key| vault.restore(&stored.files, key), query.as_deref());
                 }
                 self.mark(session);
             }
@@ -108,10 +107,10 @@ impl Keeper {
         false
     }
 
-    fn open(&mut self, session: &mut Session, stored: Option<Stored>) {
+    fn open(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) {
         let link = (!self.link.is_empty()).then_some(self.link.as_str());
         match stored {
-            Some(stored) => session.restore(&stored.saved, |key| stored.files.get(key).cloned(), link),
+            Some(stored) => session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link),
             // Without a link there is nothing to bring about: a new session shows what a first visitor sees.
             None if link.is_some() => session.restore(&Saved::default(), |_| None, link),
             None => {}
@@ -126,7 +125,7 @@ impl Keeper {
     }
 
     /// Stores the work when it has been quiet for a while. Returns in how many milliseconds to ask again.
-    pub(crate) fn tend(&mut self, session: &Session, now_ms: f64) -> Option<f64> {
+    pub(crate) fn tend(&mut self, session: &Session, vault: &Vault, now_ms: f64) -> Option<f64> {
         if !matches!(self.phase, Phase::Ready) || self.storage.is_none() {
             return None;
         }
@@ -142,12 +141,12 @@ impl Keeper {
         if wait > 0.0 {
             return Some(wait);
         }
-        self.save_now(session);
+        self.save_now(session, vault);
         None
     }
 
     /// Stores the work at once, if there is anything new in it.
-    pub(crate) fn save_now(&mut self, session: &Session) {
+    pub(crate) fn save_now(&mut self, session: &Session, vault: &Vault) {
         let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else {
             return;
         };
@@ -159,7 +158,7 @@ impl Keeper {
         match serde_json::to_string(&session.saved()) {
             Ok(record) => storage.save(Work {
                 record,
-                files: files_of(session),
+                files: files_of(session, vault),
             }),
             Err(error) => log::error!("the work cannot be written down: {error}"),
         }
@@ -168,11 +167,11 @@ impl Keeper {
     }
 }
 
-fn files_of(session: &Session) -> StoredFiles {
+fn files_of(session: &Session, vault: &Vault) -> StoredFiles {
     let origins = session.library().entries().iter().map(|entry| &entry.origin);
     origins
         .filter_map(|origin| match origin {
-            Origin::File(file) => Some((file.sha256.clone(), Arc::clone(&file.bytes))),
+            Origin::File(file) => Some((file.sha256.clone(), vault.bytes_of(&file.content)?)),
             Origin::Preset | Origin::Sample(_) | Origin::Made => None,
         })
         .collect()
@@ -207,9 +206,9 @@ mod tests {
     #[test]
     fn what_is_stored_comes_before_the_first_frame() {
         let (mut keeper, mut session) = keeper("");
-        assert!(!keeper.wait(&mut session, 1100.0) && keeper.is_waiting());
+        assert!(!keeper.wait(&mut session, &mut Vault::default(), 1100.0) && keeper.is_waiting());
         assert!(
-            !keeper.arrived(&mut session, Some(stored("blend_window=24"))),
+            !keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24"))),
             "the address does not say what is shown"
         );
         assert!(!keeper.is_waiting());
@@ -219,7 +218,7 @@ mod tests {
     #[test]
     fn a_link_goes_before_stored_parameters() {
         let (mut keeper, mut session) = keeper("blend_window=12");
-        assert!(keeper.arrived(&mut session, Some(stored("blend_window=24"))));
+        assert!(keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24"))));
         assert_eq!(session.query(), "blend_window=12");
     }
 
@@ -227,37 +226,37 @@ mod tests {
     fn a_slow_storage_does_not_hold_the_page_up() {
         let (mut keeper, mut session) = keeper("");
         let welcome = session.query();
-        assert!(keeper.wait(&mut session, 1151.0) && !keeper.is_waiting());
+        assert!(keeper.wait(&mut session, &mut Vault::default(), 1151.0) && !keeper.is_waiting());
         assert_eq!(session.query(), welcome);
         assert_eq!(
-            keeper.tend(&session, 9000.0),
+            keeper.tend(&session, &Vault::default(), 9000.0),
             None,
             "nothing is stored over what has not been read yet"
         );
-        keeper.arrived(&mut session, Some(stored("blend_window=24")));
+        keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
         assert_eq!(session.query(), "blend_window=24");
     }
 
     #[test]
     fn what_was_touched_meanwhile_stays() {
         let (mut keeper, mut session) = keeper("blend_window=12");
-        keeper.wait(&mut session, 1151.0);
+        keeper.wait(&mut session, &mut Vault::default(), 1151.0);
         set_window(&mut session, 60.0);
-        keeper.arrived(&mut session, Some(stored("blend_window=24")));
+        keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
         assert_eq!(session.query(), "blend_window=60");
     }
 
     #[test]
     fn work_is_stored_once_it_is_quiet() {
         let (mut keeper, mut session) = keeper("");
-        keeper.arrived(&mut session, None);
-        assert_eq!(keeper.tend(&session, 2000.0), None);
+        keeper.arrived(&mut session, &mut Vault::default(), None);
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2000.0), None);
         set_window(&mut session, 60.0);
-        assert_eq!(keeper.tend(&session, 2100.0), Some(QUIET_MS));
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2100.0), Some(QUIET_MS));
         set_window(&mut session, 61.0);
-        assert_eq!(keeper.tend(&session, 2500.0), Some(QUIET_MS));
-        assert_eq!(keeper.tend(&session, 2600.0), Some(QUIET_MS - 100.0));
-        assert_eq!(keeper.tend(&session, 2500.0 + QUIET_MS), None);
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2500.0), Some(QUIET_MS));
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2600.0), Some(QUIET_MS - 100.0));
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2500.0 + QUIET_MS), None);
         assert_eq!(keeper.stored, Mark::of(&session));
     }
 }

@@ -91,6 +91,12 @@ impl Contacts {
         Self { planted }
     }
 
+    /// Contacts that are known already: for the left and the right foot whether it is planted, one flag per frame.
+    #[must_use]
+    pub fn from_flags(planted: [Vec<bool>; 2]) -> Self {
+        Self { planted }
+    }
+
     /// The contacts of a result that plays `outgoing` up to frame `leave`, then `window` overlapped frames, then `incoming`, which is entered at its
     /// frame `enter`. In the window the first half of the frames has the contacts of the outgoing clip, the second those of the incoming one: the
     /// clip that has the greater weight.

@@ -1,4 +1,4 @@
-use super::Stored;
+use super::{LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue::session::Sample;
 use std::collections::VecDeque;
@@ -14,6 +14,20 @@ pub(crate) enum Incoming {
         name: String,
         /// Its bytes.
         bytes: Arc<[u8]>,
+    },
+    /// A large file that was opened or dropped.
+    Large {
+        /// Its name.
+        name: String,
+        /// Where it is.
+        file: LargeFile,
+    },
+    /// News of a file that is read elsewhere.
+    Reading {
+        /// The task's number.
+        task: u64,
+        /// What is new.
+        news: ReadNews,
     },
     /// Something outside did not work.
     Failed {

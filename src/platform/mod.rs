@@ -5,6 +5,7 @@
 mod address;
 #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "some things happen to a page only"))]
 mod inbox;
+mod vault;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
@@ -17,16 +18,36 @@ pub(crate) use native::*;
 pub(crate) use web::*;
 
 pub(crate) use inbox::{Inbox, Incoming};
+pub(crate) use vault::Vault;
 
 use segue::session::Saved;
+use segue::session::reading::ReadReport;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The largest file that is read. A motion file of that size holds many hours; more would only fill the memory.
-pub(crate) const MAX_FILE_BYTES: u64 = 100 * 1024 * 1024;
+/// The largest file that is read. A motion file of that size holds days; more would only fill the memory.
+pub(crate) const MAX_FILE_BYTES: u64 = 512 * 1024 * 1024;
+
+/// The bytes of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum FileBytes {
+    /// Here.
+    Here(Arc<[u8]>),
+    /// A large file: where the platform has it.
+    Large(LargeFile),
+}
 
 /// The files of stored work, by the SHA-256 of their bytes in hexadecimal.
-pub(crate) type StoredFiles = BTreeMap<String, Arc<[u8]>>;
+pub(crate) type StoredFiles = BTreeMap<String, FileBytes>;
+
+/// What a thread or worker that reads a file tells.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ReadNews {
+    /// So many bytes are read.
+    Progress(u64),
+    /// It is done, or cannot be done.
+    Done(Result<ReadReport, String>),
+}
 
 /// Work that was stored on an earlier visit.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,5 +1,6 @@
 use super::library::Sample;
 use super::params::{Key, Value, ValueError};
+use super::reading::ReadTask;
 use super::recipe::Slot;
 use crate::formats::{ImportError, ImportOptions};
 use crate::skeleton::Role;
@@ -41,6 +42,8 @@ pub enum Command {
     Redo,
     /// Takes a message away.
     Dismiss(u64),
+    /// Gives up reading a file, by the number of its task.
+    StopReading(u64),
 }
 
 /// Why a command could not be carried out. Nothing is changed then.
@@ -67,4 +70,8 @@ pub enum Request {
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load`].
     Fetch(String),
+    /// A file that takes too long to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
+    Read(ReadTask),
+    /// Nobody waits for this task any longer.
+    StopReading(u64),
 }

@@ -1,6 +1,7 @@
 //! The clips that there are: built in, dropped, or made here.
 
 use super::motion::Motion;
+use super::reading::{About, Companion, Content, LARGE_BYTES};
 use crate::formats::ImportOptions;
 use crate::skeleton::Roles;
 use std::sync::Arc;
@@ -26,11 +27,23 @@ pub struct SourceFile {
     /// SHA-256 of its bytes, lower-case hexadecimal.
     pub sha256: String,
     /// Its bytes.
-    pub bytes: Arc<[u8]>,
+    pub content: Content,
+    /// How many there are.
+    pub size: u64,
+    /// The skeleton file that it was read with.
+    pub companion: Option<Companion>,
     /// Which of the clips in the file this is, from 0.
     pub index: usize,
     /// What the user says about unit, up axis and frame rate.
     pub options: ImportOptions,
+}
+
+impl SourceFile {
+    /// Whether it takes too long to be read between two frames.
+    #[must_use]
+    pub fn is_large(&self) -> bool {
+        self.size > LARGE_BYTES || matches!(self.content, Content::Outside(_))
+    }
 }
 
 /// A bundled take.
@@ -57,15 +70,30 @@ pub struct Entry {
     pub name: String,
     /// Where it comes from.
     pub origin: Origin,
-    /// The motion; `None` for a sample that was not loaded yet and a preset that was not needed yet.
+    /// The motion; `None` for a sample that was not loaded yet, a preset that was not needed yet, and a file that is being read.
     pub motion: Option<Arc<Motion>>,
+    /// How its file was read; `None` for what comes from no file, and until it is read.
+    pub about: Option<About>,
     /// What was odd in the file, one sentence each.
     pub warnings: Vec<String>,
-    /// Whether the roles were corrected by hand.
+    /// The roles, where they were corrected by hand.
     pub roles_by_hand: Option<Roles>,
 }
 
 impl Entry {
+    /// An entry that nothing is known of yet but where it comes from.
+    pub(super) fn new(id: impl Into<String>, name: impl Into<String>, origin: Origin) -> Self {
+        Self {
+            id: id.into(),
+            name: name.into(),
+            origin,
+            motion: None,
+            about: None,
+            warnings: Vec::new(),
+            roles_by_hand: None,
+        }
+    }
+
     /// The format in the API.
     #[must_use]
     pub fn format(&self) -> &'static str {
@@ -183,7 +211,9 @@ mod tests {
         let file = SourceFile {
             name: name.into(),
             sha256: sha256.into(),
-            bytes: Arc::from([]),
+            content: Content::Here(Arc::from([])),
+            size: 0,
+            companion: None,
             index: 0,
             options: ImportOptions::default(),
         };
@@ -192,6 +222,7 @@ mod tests {
             name: name.into(),
             origin: Origin::File(file),
             motion: None,
+            about: None,
             warnings: vec![],
             roles_by_hand: None,
         }

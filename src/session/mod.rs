@@ -11,6 +11,7 @@ pub mod link;
 mod motion;
 mod notice;
 mod params;
+pub mod reading;
 mod recipe;
 mod saved;
 pub mod transport;
@@ -18,7 +19,7 @@ mod undo;
 
 pub use command::{Command, CommandError, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{ClipInfo, Loaded, Pane, Session};
+pub use document::{ClipInfo, Job, Loaded, Pane, Session};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
 pub use motion::{Motion, frame_at, joint_of};
 pub use notice::{Level, Notice, Notices};

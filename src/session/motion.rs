@@ -4,7 +4,7 @@ use crate::skeleton::{Role, Roles};
 use std::sync::Arc;
 
 /// A clip with what is derived from it once and used everywhere.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// The clip.
     pub clip: Arc<Clip>,

@@ -1,6 +1,7 @@
 //! What is stored of the work, so that it survives a reload. The files' bytes are stored beside it, by their SHA-256.
 
 use super::library::{Entry, Origin};
+use super::reading::Companion;
 use crate::formats::ImportOptions;
 use crate::skeleton::Roles;
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,12 @@ pub struct SavedFile {
     pub name: String,
     /// SHA-256 of its bytes, hexadecimal: where they are stored.
     pub sha256: String,
+    /// How many bytes it has.
+    #[serde(default)]
+    pub size: u64,
+    /// The skeleton file that it is read with.
+    #[serde(default)]
+    pub companion: Option<Companion>,
     /// Which of the clips in it.
     pub index: usize,
     /// How to read it.
@@ -46,6 +53,8 @@ impl From<&Entry> for SavedEntry {
             Origin::File(file) => Some(SavedFile {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),
+                size: file.size,
+                companion: file.companion.clone(),
                 index: file.index,
                 options: file.options,
             }),

@@ -13,7 +13,7 @@ pub enum Channel {
 }
 
 /// A joint: the end of the bone from its parent, and the pivot of everything below it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Joint {
     /// The name, as written in the file. Names need not be unique: joints are keyed by index.
     pub name: String,

@@ -132,7 +132,7 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// How the place was found, with its distance where that is known.
 fn found_sentence(session: &Session) -> String {
-    if session.jobs().iter().any(|(name, _)| *name == "matching") {
+    if session.jobs().iter().any(|job| job.task.is_none()) {
         return format!("{}…", text::MATCHING);
     }
     match session.main_outcome().and_then(|outcome| outcome.transition) {

@@ -53,6 +53,14 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
             out.actions.push(Action::StopFetching(name.clone()));
         }
     }
+    for job in session.jobs() {
+        let (Some(task), Some(size)) = (job.task, job.size) else { continue };
+        let megabytes = size as f64 / 1e6;
+        let detail = format!("{:.0} of {megabytes:.0} MB", job.progress * megabytes);
+        if kit::progress_row_ui(&job.name, Some(job.progress as f32), &detail, ui) {
+            out.commands.push(Command::StopReading(task));
+        }
+    }
     if state.samples_open {
         samples_ui(session, out, ui);
         ui.add_space(space::S);

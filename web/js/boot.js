@@ -1,7 +1,7 @@
 // Starts the app: downloads and compiles the WebAssembly, hands it the canvas, and settles `window.segueReady`.
 //
 // What this expects of the app (the wasm-bindgen module): a class `SegueHandle` with
-//   static start(canvas) -> Promise<SegueHandle>   the app runs on this canvas
+//   static start(canvas, newReader) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker for files
 //   firstFrame() -> Promise                        its first frame is on screen
 //   restart(canvas) -> Promise                     the graphics context was lost: go on, on this fresh canvas
 //   hasPanicked(), panicSummary()                  callable at any time, also in the middle of another call
@@ -32,13 +32,13 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("Neither WebGPU nor WebGL2 is available");
   }
 
-  let bindings;
+  let bindings, compiled;
   try {
     const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
-    const response = download(wasmUrl);
+    // Compiled here and not by the bindings: the worker that reads files runs the same code.
+    compiled = await WebAssembly.compileStreaming(download(wasmUrl));
     bindings = await module;
-    await bindings.default({ module_or_path: response });
-    await response; // a download that failed must not pass for anything else
+    await bindings.default({ module_or_path: compiled });
   } catch (reason) {
     showDownloadFailed(String(reason?.message ?? reason));
     throw new Error(`Segue could not be downloaded: ${reason?.message ?? reason}`, { cause: reason });
@@ -52,7 +52,7 @@ async function start(jsUrl, wasmUrl) {
 
   const life = new Life();
   try {
-    life.handle = await Promise.race([SegueHandle.start(canvas()), life.trapped]);
+    life.handle = await Promise.race([SegueHandle.start(canvas(), () => newReader(jsUrl, compiled)), life.trapped]);
     life.watch();
     await Promise.race([life.handle.firstFrame(), life.trapped]);
   } catch (reason) {
@@ -72,6 +72,13 @@ async function start(jsUrl, wasmUrl) {
   window.segue = api;
   answerParent(api);
   return api;
+}
+
+/** A worker that reads files; see reader.js. */
+function newReader(jsUrl, module) {
+  const worker = new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
+  worker.postMessage({ jsUrl: String(new URL(jsUrl, document.baseURI)), module });
+  return worker;
 }
 
 /** Fetches the module and moves the bar as its bytes arrive. */

@@ -1,7 +1,9 @@
 //! Files of the user: into the window and out of it. Reading and asking happen on threads of their own, so that the picture goes on.
 
+use super::LargeFile;
 use crate::platform::{Inbox, Incoming, last_part, too_large};
 use eframe::egui::DroppedFileHandle;
+use segue::session::reading::LARGE_BYTES;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -65,6 +67,10 @@ fn read_path(path: &Path, inbox: &Inbox) {
         }
     };
     inbox.push(match bytes {
+        Ok(bytes) if bytes.len() as u64 > LARGE_BYTES => Incoming::Large {
+            name,
+            file: LargeFile::new(Arc::from(bytes)),
+        },
         Ok(bytes) => Incoming::File {
             name,
             bytes: Arc::from(bytes),

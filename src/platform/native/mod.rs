@@ -1,9 +1,11 @@
 //! The desktop window.
 
 mod files;
+mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
+pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};

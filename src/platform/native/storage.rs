@@ -1,6 +1,8 @@
 //! The work in a folder of the user's: one record, and the files' bytes by their SHA-256.
 
-use crate::platform::{Inbox, Incoming, Stored, StoredFiles, Work};
+use super::LargeFile;
+use crate::platform::{FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
+use segue::session::reading::LARGE_BYTES;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -99,7 +101,14 @@ fn read(folder: &Path) -> Option<Stored> {
     let mut files = StoredFiles::new();
     for entry in fs::read_dir(folder.join(FILES)).ok().into_iter().flatten().flatten() {
         if let (Some(key), Ok(bytes)) = (entry.file_name().to_str(), fs::read(entry.path())) {
-            files.insert(key.to_owned(), Arc::from(bytes));
+            let bytes: Arc<[u8]> = Arc::from(bytes);
+            let large = bytes.len() as u64 > LARGE_BYTES;
+            let bytes = if large {
+                FileBytes::Large(LargeFile::new(bytes))
+            } else {
+                FileBytes::Here(bytes)
+            };
+            files.insert(key.to_owned(), bytes);
         }
     }
     Some(Stored { saved, files })
@@ -111,7 +120,10 @@ fn write(folder: &Path, work: &Work) -> io::Result<()> {
     for (key, bytes) in &work.files {
         let path = files.join(key);
         if !path.exists() {
-            write_whole(&path, bytes)?;
+            match bytes {
+                FileBytes::Here(bytes) => write_whole(&path, bytes)?,
+                FileBytes::Large(file) => write_whole(&path, file.bytes())?,
+            }
         }
     }
     write_whole(&folder.join(RECORD), work.record.as_bytes())?;
@@ -150,7 +162,10 @@ mod tests {
         };
         Work {
             record: serde_json::to_string(&saved).unwrap(),
-            files: files.iter().map(|&key| (key.to_owned(), Arc::from(key.as_bytes()))).collect(),
+            files: files
+                .iter()
+                .map(|&key| (key.to_owned(), FileBytes::Here(Arc::from(key.as_bytes()))))
+                .collect(),
         }
     }
 
@@ -169,7 +184,7 @@ mod tests {
         let stored = stored_of(&inbox).unwrap();
         assert_eq!(stored.saved.query, "t=2");
         assert_eq!(stored.files.keys().collect::<Vec<_>>(), ["bb", "cc"]);
-        assert_eq!(&*stored.files["cc"], b"cc");
+        assert_eq!(stored.files["cc"], FileBytes::Here(Arc::from(&b"cc"[..])));
         drop(storage);
         fs::remove_dir_all(&folder).unwrap();
     }

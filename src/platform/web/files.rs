@@ -1,10 +1,12 @@
 //! Files of the user: into the page and out of it.
 
 use super::page::{document, listen, window};
+use super::reader::LargeFile;
 use super::words_of;
 use crate::platform::{Inbox, Incoming, too_large};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
+use segue::session::reading::LARGE_BYTES;
 use std::path::Path;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -50,6 +52,11 @@ async fn read(files: Vec<File>, inbox: Inbox) {
             inbox.push(Incoming::Failed { reason });
             continue;
         }
+        if file.size() as u64 > LARGE_BYTES {
+            let file = LargeFile::new(file.into());
+            inbox.push(Incoming::Large { name, file });
+            continue;
+        }
         let bytes = file.array_buffer().await.map(|buffer| Uint8Array::new(&buffer).to_vec());
         deliver(name, bytes.map_err(|error| words_of(&error)), &inbox);
     }
@@ -85,7 +92,13 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
                 inbox.push(Incoming::Failed { reason });
                 continue;
             }
-            deliver(name, file.bytes_async().await, &inbox);
+            match file.web_file().filter(|file| file.size() as u64 > LARGE_BYTES) {
+                Some(file) => {
+                    let file = LargeFile::new(file.clone().into());
+                    inbox.push(Incoming::Large { name, file });
+                }
+                None => deliver(name, file.bytes_async().await, &inbox),
+            }
         }
     });
 }

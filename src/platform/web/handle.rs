@@ -1,13 +1,15 @@
 //! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
 
 use super::page::{listen, next_frame, sleep, wanted_backend, watch_hiding};
+use super::reader::{LargeFile, workers_are_made_by};
 use super::snapshot::snapshot;
 use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
-use js_sys::{Error, Function};
+use js_sys::{Error, Function, Uint8Array};
+use segue::session::reading::LARGE_BYTES;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use std::cell::RefCell;
@@ -42,8 +44,9 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 
 #[wasm_bindgen]
 impl SegueHandle {
-    /// Starts the app on a canvas.
-    pub async fn start(canvas: HtmlCanvasElement) -> Result<SegueHandle, JsValue> {
+    /// Starts the app on a canvas. `new_reader` makes the worker that reads large files.
+    pub async fn start(canvas: HtmlCanvasElement, new_reader: Function) -> Result<SegueHandle, JsValue> {
+        workers_are_made_by(new_reader);
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
@@ -105,9 +108,25 @@ impl SegueHandle {
     }
 
     /// Reads a file, as if it were dropped on the page.
-    pub async fn load(&self, name: String, bytes: Vec<u8>) -> Result<JsValue, JsValue> {
+    pub async fn load(&self, name: String, bytes: Uint8Array) -> Result<JsValue, JsValue> {
         self.opened().await?;
-        let loaded = self.borrow_mut()?.load_file(&name, Arc::from(bytes));
+        if u64::from(bytes.length()) > LARGE_BYTES {
+            let file = LargeFile::of_bytes(&bytes).ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
+            let task = self.borrow_mut()?.load_large(&name, file);
+            self.changed();
+            while self.borrow()?.is_reading(task) {
+                sleep(10).await;
+                // While the page is hidden no frame comes to do it.
+                self.borrow_mut()?.pump();
+            }
+            self.settled().await?;
+            return match self.borrow_mut()?.read_result(task) {
+                Some(Ok(loaded)) => to_js(&loaded),
+                Some(Err(reason)) => Err(error(reason)),
+                None => Err(error(format!("{name}: reading it was stopped"))),
+            };
+        }
+        let loaded = self.borrow_mut()?.load_file(&name, Arc::from(bytes.to_vec()));
         self.changed();
         let loaded = loaded.map_err(error)?;
         self.settled().await?;

@@ -4,6 +4,7 @@ mod fetch;
 mod files;
 mod handle;
 mod page;
+mod reader;
 mod snapshot;
 mod storage;
 
@@ -11,6 +12,7 @@ pub(crate) use super::address::file_name_of;
 pub(crate) use fetch::{Fetch, fetch, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};
 pub(crate) use page::{full_link, location_query, now_ms, replace_query, watch_navigation};
+pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;
 
 use wasm_bindgen::{JsCast as _, JsValue};

@@ -1,6 +1,7 @@
 //! The work in the browser's IndexedDB: one record, and the files' bytes by their SHA-256.
 
-use crate::platform::{Inbox, Incoming, Stored, StoredFiles, Work};
+use super::reader::LargeFile;
+use crate::platform::{FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
 use idb::{Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, TransactionMode, TransactionResult};
 use js_sys::Uint8Array;
 use std::cell::RefCell;
@@ -9,6 +10,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
+use web_sys::Blob;
 
 const DATABASE: &str = "segue";
 const VERSION: u32 = 1;
@@ -66,7 +68,7 @@ impl Storage {
         let record = record.await?.and_then(|record| record.as_string());
         let (keys, values) = (keys.await?, values.await?);
         let files: StoredFiles = (keys.iter().zip(values))
-            .filter_map(|(key, value)| Some((key.as_string()?, Arc::from(value.dyn_into::<Uint8Array>().ok()?.to_vec()))))
+            .filter_map(|(key, value)| Some((key.as_string()?, file_bytes(value)?)))
             .collect();
         {
             let mut state = self.state.borrow_mut();
@@ -123,7 +125,13 @@ impl Storage {
             transaction
                 .object_store(WORK)?
                 .put(&JsValue::from(&work.record), Some(&JsValue::from(LATEST)))?;
-            let put = |key: &String, bytes: &Arc<[u8]>| files.put(&Uint8Array::from(&bytes[..]), Some(&JsValue::from(key)));
+            let put = |key: &String, bytes: &FileBytes| {
+                let value: JsValue = match bytes {
+                    FileBytes::Here(bytes) => Uint8Array::from(&bytes[..]).into(),
+                    FileBytes::Large(file) => file.blob().into(),
+                };
+                files.put(&value, Some(&JsValue::from(key)))
+            };
             for (key, bytes) in work.files.iter().filter(|(key, _)| !known.contains(*key)) {
                 put(key, bytes)?;
             }
@@ -145,7 +153,7 @@ impl Storage {
                 Ok(())
             }
             other => {
-                let megabytes = work.files.values().map(|bytes| bytes.len()).sum::<usize>() as f64 / 1e6;
+                let megabytes = work.files.values().map(FileBytes::len).sum::<u64>() as f64 / 1e6;
                 let name = watched.error().map(|error| error.name()).unwrap_or_default();
                 Err(if name == "QuotaExceededError" || format!("{other:?}").contains("Quota") {
                     format!(
@@ -158,6 +166,14 @@ impl Storage {
                 })
             }
         }
+    }
+}
+
+/// A stored file: small ones as their bytes, large ones as the browser's handle.
+fn file_bytes(value: JsValue) -> Option<FileBytes> {
+    match value.dyn_into::<Uint8Array>() {
+        Ok(bytes) => Some(FileBytes::Here(Arc::from(bytes.to_vec()))),
+        Err(value) => Some(FileBytes::Large(LargeFile::new(value.dyn_into::<Blob>().ok()?))),
     }
 }
 

@@ -1,20 +1,21 @@
 //! Files into the library, and the work back from storage.
 
-use super::{Session, slot_key};
-use crate::formats::{self, ImportError, ImportOptions, Imported, import};
+use super::{Job, Session, slot_key};
+use crate::formats::{self, ImportError, ImportOptions, import};
+use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id};
 use crate::session::motion::Motion;
 use crate::session::notice::Level;
 use crate::session::params::{Key, Value};
+use crate::session::reading::{Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use crate::session::recipe::{Slot, made_params};
-use crate::session::saved::{Saved, SavedEntry};
+use crate::session::saved::{Saved, SavedEntry, SavedFile};
 use crate::session::undo::History;
-use crate::skeleton::Roles;
-use sha2::{Digest as _, Sha256};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What a file gave.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
     /// The ids of its clips.
     pub ids: Vec<String>,
@@ -22,52 +23,238 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
+/// A file that is being read elsewhere.
+#[derive(Debug)]
+pub(super) struct Reading {
+    task: ReadTask,
+    done: u64,
+    /// Whether its clips are in the library already, and only want their motion.
+    again: bool,
+}
+
 impl Session {
     /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and the first ones take the places of
-    /// built-in clips in A and B.
+    /// built-in clips in A and B. It is read at once; files above [`LARGE_BYTES`] are better given to [`Session::begin_reading`].
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
-    #[expect(clippy::needless_pass_by_value, reason = "the library keeps the file: who loads one hands it over")]
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
-        let options = ImportOptions::default();
-        let imported = match import(name, &bytes, &options) {
-            Ok(imported) => imported,
-            Err(error) => {
-                self.say(Level::Error, error.to_string());
-                return Err(error);
+        let setup = ReadSetup::default();
+        let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
+        self.admit(report, &Content::Here(bytes), &setup)
+    }
+
+    /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as by [`Session::load`]. Returns the task's number.
+    pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
+        self.begin(name, content, size, ReadSetup::default(), false)
+    }
+
+    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, again: bool) -> u64 {
+        self.tasks += 1;
+        let task = ReadTask {
+            id: self.tasks,
+            name: name.to_owned(),
+            content,
+            size,
+            setup,
+        };
+        self.requests.push(Request::Read(task.clone()));
+        self.reading.push(Reading { task, done: 0, again });
+        self.revision += 1;
+        self.tasks
+    }
+
+    /// Reads a file of the library anew, as its entries say, unless that is under way.
+    pub(super) fn read_again(&mut self, file: SourceFile) {
+        let setup = self.setup_of(&file);
+        let same =
+            |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
+        if !self.reading.iter().any(same) {
+            self.begin(&file.name, file.content, file.size, setup, true);
+        }
+    }
+
+    fn roles_by_hand(&self, file: &SourceFile) -> BTreeMap<usize, crate::skeleton::Roles> {
+        let entries = self.library.entries().iter().filter_map(|entry| match &entry.origin {
+            Origin::File(own) if own.sha256 == file.sha256 => Some((own.index, entry.roles_by_hand.clone()?)),
+            _ => None,
+        });
+        entries.collect()
+    }
+
+    /// So many bytes of a task's file are read.
+    pub fn progress_reading(&mut self, task: u64, done: u64) {
+        if let Some(reading) = self.reading.iter_mut().find(|reading| reading.task.id == task) {
+            reading.done = done;
+            self.revision += 1;
+        }
+    }
+
+    /// The key of the file that a task reads, where its bytes lie outside.
+    #[must_use]
+    pub fn reading_key(&self, task: u64) -> Option<&str> {
+        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        match &reading.task.content {
+            Content::Outside(key) => Some(key),
+            Content::Here(_) => None,
+        }
+    }
+
+    /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody waits for it any longer.
+    pub fn finish_reading(&mut self, task: u64, report: Result<ReadReport, String>) -> Option<Result<Loaded, String>> {
+        let at = self.reading.iter().position(|reading| reading.task.id == task)?;
+        let Reading { task, again, .. } = self.reading.remove(at);
+        self.revision += 1;
+        let report = match report {
+            Ok(report) => report,
+            Err(reason) => {
+                self.say(Level::Error, format!("{} could not be read: {reason}.", task.name));
+                self.refresh();
+                return Some(Err(reason));
             }
         };
-        self.remember(None);
-        let sha256 = sha256_hex(&bytes);
-        let (entries, warnings) = file_entries(name, &sha256, &bytes, &options, imported, None);
-        let mut ids = Vec::new();
-        for entry in entries {
-            let id = entry.id.clone();
-            let awaited = [Slot::A, Slot::B].into_iter().any(|slot| self.slot(slot).is_none());
-            self.library.put(entry);
-            if !(awaited
-                && [Slot::A, Slot::B]
-                    .into_iter()
-                    .any(|slot| self.slot(slot).is_some_and(|entry| entry.id == id)))
-            {
-                self.offer(&id);
+        // What lies outside is from now on known by what it holds.
+        let content = match (task.content, report.files.as_slice()) {
+            (Content::Outside(_), [file]) if file.unpacked.is_none() => Content::Outside(file.sha256.clone()),
+            (content, _) => content,
+        };
+        Some(if again {
+            let refilled = self.refill(report, &task.setup.options);
+            if let Err(error) = &refilled {
+                self.say(Level::Error, error.to_string());
             }
-            ids.push(id);
+            self.refresh();
+            refilled.map_err(|error| error.to_string())
+        } else {
+            self.admit(report, &content, &task.setup).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Gives up a task.
+    pub(super) fn stop_reading(&mut self, task: u64) {
+        self.reading.retain(|reading| reading.task.id != task);
+        self.requests.push(Request::StopReading(task));
+    }
+
+    pub(super) fn reading_jobs(&self) -> impl Iterator<Item = Job> + '_ {
+        self.reading.iter().map(|Reading { task, done, .. }| Job {
+            task: Some(task.id),
+            name: task.name.clone(),
+            progress: *done as f64 / task.size.max(1) as f64,
+            size: Some(task.size),
+        })
+    }
+
+    /// Brings the clips of a report into the library.
+    fn admit(&mut self, report: ReadReport, content: &Content, setup: &ReadSetup) -> Result<Loaded, ImportError> {
+        // Of several files some may be good; one alone fails as a whole.
+        if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
+            let error = error.clone();
+            self.say(Level::Error, error.to_string());
+            return Err(error);
         }
+        self.remember(None);
+        let mut loaded = Loaded::default();
+        let mut names = Vec::new();
+        for file in report.files {
+            let name = file.name.clone();
+            match file_entries(file, content, &setup.options) {
+                Ok((entries, warnings)) => {
+                    names.push(name);
+                    loaded.warnings.extend(warnings);
+                    for entry in entries {
+                        loaded.ids.push(entry.id.clone());
+                        self.join(entry);
+                    }
+                }
+                Err(error) => {
+                    self.say(Level::Error, error.to_string());
+                    loaded.warnings.push(error.to_string());
+                }
+            }
+        }
+        loaded.warnings.extend(report.notes);
         self.history.settle();
         self.library_revision += 1;
-        let what = if warnings.is_empty() {
-            String::new()
-        } else {
-            format!(" {}", warnings.join(" "))
-        };
-        self.say(
-            if warnings.is_empty() { Level::Info } else { Level::Warning },
-            format!("{name} is in the library.{what}"),
-        );
+        if !names.is_empty() {
+            let told = std::iter::once(in_the_library(&names)).chain(loaded.warnings.iter().cloned());
+            let text = told.collect::<Vec<_>>().join(" ");
+            self.say(if loaded.warnings.is_empty() { Level::Info } else { Level::Warning }, text);
+        }
         self.refresh();
-        Ok(Loaded { ids, warnings })
+        Ok(loaded)
+    }
+
+    /// Adds a clip, or puts it in the place of the one that is the same.
+    fn join(&mut self, entry: Entry) {
+        let id = entry.id.clone();
+        let awaited = [Slot::A, Slot::B].into_iter().any(|slot| self.slot(slot).is_none());
+        self.library.put(entry);
+        let holds = |session: &Self, slot| session.slot(slot).is_some_and(|entry| entry.id == id);
+        if !(awaited && [Slot::A, Slot::B].into_iter().any(|slot| holds(self, slot))) {
+            self.offer(&id);
+        }
+    }
+
+    /// Gives the clips that are in the library what was read anew.
+    fn refill(&mut self, report: ReadReport, options: &ImportOptions) -> Result<Loaded, ImportError> {
+        let mut loaded = Loaded::default();
+        for file in report.files {
+            // Where the bytes are is known: the entries say it.
+            let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;
+            loaded.warnings.extend(warnings);
+            for new in entries {
+                self.library.change(&new.id, |entry| {
+                    if let Origin::File(file) = &mut entry.origin {
+                        file.options = *options;
+                    }
+                    entry.motion = new.motion;
+                    entry.about = new.about;
+                    entry.warnings = new.warnings;
+                });
+                loaded.ids.push(new.id);
+            }
+        }
+        self.library_revision += 1;
+        Ok(loaded)
+    }
+
+    /// Reads a file of the library anew, at once. An error changes nothing.
+    pub(super) fn read_at_once(&mut self, file: &SourceFile) -> Result<Loaded, ImportError> {
+        let Content::Here(bytes) = &file.content else {
+            return Ok(Loaded::default());
+        };
+        let setup = self.setup_of(file);
+        let report = read(&file.name, bytes, &setup, &mut |_| true).unwrap_or_default();
+        self.refill(report, &file.options)
+    }
+
+    fn setup_of(&self, file: &SourceFile) -> ReadSetup {
+        ReadSetup {
+            options: file.options,
+            roles: self.roles_by_hand(file),
+            companions: file.companion.iter().cloned().collect(),
+        }
+    }
+
+    pub(super) fn reimport(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
+        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        let Origin::File(file) = &entry.origin else {
+            return Err(CommandError::NotPossible("only a clip that came from a file can be read again"));
+        };
+        let file = SourceFile {
+            options: *options,
+            ..file.clone()
+        };
+        if file.is_large() {
+            self.remember(None);
+            self.read_again(file);
+            return Ok(());
+        }
+        let (params, library) = (self.params.clone(), self.library.clone());
+        self.read_at_once(&file)?;
+        self.history.before_change(&params, &library, None);
+        Ok(())
     }
 
     /// Puts a clip that just came into the slot where a user expects it: what is looked at in View; else A, then B, as long as
@@ -123,49 +310,38 @@ impl Session {
         }
     }
 
-    /// Brings stored work back; `bytes_of` gives a file's bytes by its SHA-256. Files that are gone or no longer read are named in a notice.
-    /// The parameters come from `query` when there is one (a link was opened), else from what was stored.
-    pub fn restore(&mut self, saved: &Saved, bytes_of: impl Fn(&str) -> Option<Arc<[u8]>>, query: Option<&str>) {
+    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are gone or no longer read are named in a notice, large
+    /// ones are asked for with [`Request::Read`]. The parameters come from `query` when there is one (a link was opened), else from what was stored.
+    pub fn restore(&mut self, saved: &Saved, mut content_of: impl FnMut(&str) -> Option<Content>, query: Option<&str>) {
         let mut lost = Vec::new();
         let mut library = Library::default();
         for stored in &saved.entries {
-            match &stored.file {
-                None => {
-                    if let Some(entry) = self.library.find(&stored.id) {
-                        library.put(Entry {
-                            name: stored.name.clone(),
-                            ..(**entry).clone()
-                        });
-                    } else if made_params(&stored.id).is_some() {
-                        library.put(Entry {
-                            id: stored.id.clone(),
-                            name: stored.name.clone(),
-                            origin: Origin::Made,
-                            motion: None,
-                            warnings: Vec::new(),
-                            roles_by_hand: None,
-                        });
-                    }
-                }
+            let entry = match &stored.file {
+                None => match self.library.find(&stored.id) {
+                    Some(entry) => (**entry).clone(),
+                    None if made_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
+                    None => continue,
+                },
                 Some(file) => {
-                    let imported = bytes_of(&file.sha256).map(|bytes| (import(&file.name, &bytes, &file.options), bytes));
-                    let Some((Ok(imported), bytes)) = imported else {
+                    let Some(content) = content_of(&file.sha256) else {
                         lost.push(file.name.clone());
                         continue;
                     };
-                    let (entries, _) = file_entries(&file.name, &file.sha256, &bytes, &file.options, imported, stored.roles.as_ref());
-                    for entry in entries.into_iter().filter(|entry| entry.id == stored.id) {
-                        library.put(Entry {
-                            name: stored.name.clone(),
-                            ..entry
-                        });
+                    Entry {
+                        roles_by_hand: stored.roles.clone(),
+                        ..Entry::new(&stored.id, &stored.name, Origin::File(file.with(content)))
                     }
                 }
-            }
+            };
+            library.put(Entry {
+                name: stored.name.clone(),
+                ..entry
+            });
         }
         if !library.entries().is_empty() {
             self.library = library;
         }
+        lost.extend(self.read_stored());
         if !lost.is_empty() {
             self.say(
                 Level::Warning,
@@ -179,40 +355,85 @@ impl Session {
         self.history = History::default();
         self.refresh();
     }
+
+    /// Reads the files of the library that have no motion yet. Returns the names of those that cannot be read any more; their clips are gone.
+    fn read_stored(&mut self) -> Vec<String> {
+        let mut lost = Vec::new();
+        let entries = self.library.entries().to_vec();
+        for entry in entries {
+            let Origin::File(file) = &entry.origin else { continue };
+            let read_by_now = self.library.find(&entry.id).is_none_or(|entry| entry.motion.is_some());
+            if read_by_now {
+                continue;
+            }
+            if file.is_large() {
+                self.read_again(file.clone());
+            } else if self.read_at_once(file).is_err() {
+                self.library.remove(&entry.id);
+                lost.push(file.name.clone());
+            }
+        }
+        lost
+    }
 }
 
-/// An entry for every clip of a file, and the file's warnings.
-fn file_entries(
-    name: &str,
-    sha256: &str,
-    bytes: &Arc<[u8]>,
-    options: &ImportOptions,
-    imported: Imported,
-    roles: Option<&Roles>,
-) -> (Vec<Entry>, Vec<String>) {
-    let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
-    let entry = |(index, clip): (usize, crate::formats::ImportedClip)| Entry {
-        id: file_id(name, sha256, index),
-        name: clip.clip.name().to_owned(),
-        origin: Origin::File(SourceFile {
-            name: name.to_owned(),
-            sha256: sha256.to_owned(),
-            bytes: Arc::clone(bytes),
-            index,
-            options: *options,
-        }),
-        motion: Some(Arc::new(Motion::analyze(clip.clip, roles.cloned()))),
-        warnings: warnings.clone(),
-        roles_by_hand: roles.cloned(),
+impl SavedFile {
+    fn with(&self, content: Content) -> SourceFile {
+        let size = match &content {
+            Content::Here(bytes) => bytes.len() as u64,
+            Content::Outside(_) => self.size.max(LARGE_BYTES + 1),
+        };
+        SourceFile {
+            name: self.name.clone(),
+            sha256: self.sha256.clone(),
+            content,
+            size,
+            companion: self.companion.clone(),
+            index: self.index,
+            options: self.options,
+        }
+    }
+}
+
+/// `walk.bvh is in the library.`
+fn in_the_library(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [name] => format!("{name} is in the library."),
+        several => format!("{} files are in the library.", several.len()),
+    }
+}
+
+/// An entry for every clip of a file, and the file's warnings. `content` is the file's, unless it came out of an archive.
+fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> Result<(Vec<Entry>, Vec<String>), ImportError> {
+    let read = file.result?;
+    let source = SourceFile {
+        name: file.name,
+        sha256: file.sha256,
+        size: file.size,
+        content: file
+            .unpacked
+            .map_or_else(|| content.clone(), |bytes| Content::Here(Arc::from(bytes))),
+        companion: read.companion,
+        index: 0,
+        options: *options,
     };
-    (imported.clips.into_iter().enumerate().map(entry).collect(), warnings)
-}
-
-fn sha256_hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        // Writing to a string cannot fail.
-        write!(hex, "{byte:02x}").ok();
-        hex
-    })
+    let warnings = read.warnings;
+    let entries = read.clips.into_iter().enumerate().map(|(index, clip)| {
+        let source = SourceFile { index, ..source.clone() };
+        Entry {
+            motion: Some(Arc::new(clip.motion)),
+            about: Some(clip.about),
+            warnings: warnings.clone(),
+            ..Entry::new(file_id(&source.name, &source.sha256, index), String::new(), Origin::File(source))
+        }
+    });
+    let named = entries.map(|mut entry| {
+        entry.name = entry
+            .motion
+            .as_ref()
+            .map_or_else(String::new, |motion| motion.clip.name().to_owned());
+        entry
+    });
+    Ok((named.collect(), warnings))
 }

@@ -4,11 +4,13 @@ mod loading;
 mod panes;
 
 pub use loading::Loaded;
+use loading::Reading;
+pub use panes::Job;
 pub use panes::Pane;
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
-use super::library::{Entry, Library, Origin, Sample, SourceFile, split_reference};
+use super::library::{Entry, Library, Origin, Sample, split_reference};
 use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
@@ -16,7 +18,6 @@ use super::params::{Key, Params, Value};
 use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
-use crate::formats::{ImportOptions, import};
 use crate::synth;
 use std::sync::Arc;
 
@@ -83,6 +84,8 @@ pub struct Session {
     panes: Vec<Pane>,
     blender: Blender,
     requests: Vec<Request>,
+    reading: Vec<Reading>,
+    tasks: u64,
     library_revision: u64,
     revision: u64,
 }
@@ -105,6 +108,8 @@ impl Session {
             panes: Vec::new(),
             blender: Blender::default(),
             requests: Vec::new(),
+            reading: Vec::new(),
+            tasks: 0,
             library_revision: 0,
             revision: 0,
         };
@@ -316,6 +321,7 @@ impl Session {
                 }
             }
             Command::Dismiss(id) => self.notices.dismiss(id),
+            Command::StopReading(id) => self.stop_reading(id),
         }
         self.refresh();
         Ok(())
@@ -435,14 +441,7 @@ impl Session {
         }
         let made = made_params(reference).is_some();
         if made {
-            self.library.put(Entry {
-                id: reference.to_owned(),
-                name: reference.to_owned(),
-                origin: Origin::Made,
-                motion: None,
-                warnings: Vec::new(),
-                roles_by_hand: None,
-            });
+            self.library.put(Entry::new(reference, reference, Origin::Made));
             self.library_revision += 1;
         }
         made
@@ -493,34 +492,19 @@ impl Session {
         }
         let mut roles = motion.roles.clone();
         roles.set(role, joint);
+        let file = match &entry.origin {
+            Origin::File(file) if file.is_large() => Some(file.clone()),
+            _ => None,
+        };
+        if let Some(file) = file {
+            self.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
+            self.read_again(file);
+            return Ok(());
+        }
         let corrected = Arc::new(Motion::analyze((*motion.clip).clone(), Some(roles.clone())));
         self.change_entry(id, |entry| {
             entry.motion = Some(corrected);
             entry.roles_by_hand = Some(roles);
-        })
-    }
-
-    fn reimport(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
-        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
-        let Origin::File(file) = &entry.origin else {
-            return Err(CommandError::NotPossible("only a clip that came from a file can be read again"));
-        };
-        let imported = import(&file.name, &file.bytes, options)?;
-        let warnings = imported.warnings.iter().map(ToString::to_string).collect();
-        let clip = imported
-            .clips
-            .into_iter()
-            .nth(file.index)
-            .ok_or(CommandError::NotPossible("the file has no such character"))?;
-        let motion = Arc::new(Motion::analyze(clip.clip, entry.roles_by_hand.clone()));
-        let file = SourceFile {
-            options: *options,
-            ..file.clone()
-        };
-        self.change_entry(id, |entry| {
-            entry.origin = Origin::File(file);
-            entry.motion = Some(motion);
-            entry.warnings = warnings;
         })
     }
 
@@ -532,12 +516,8 @@ impl Session {
         let motion = made_motion(&self.params).map_err(|_| CommandError::NotPossible("there is no clip to keep"))?;
         self.remember(None);
         self.library.put(Entry {
-            name: id.clone(),
-            id,
-            origin: Origin::Made,
             motion: Some(Arc::new(motion)),
-            warnings: Vec::new(),
-            roles_by_hand: None,
+            ..Entry::new(id.clone(), id, Origin::Made)
         });
         self.library_revision += 1;
         Ok(())
@@ -582,14 +562,7 @@ fn built_in_library() -> Library {
         .iter()
         .map(|sample| (sample.id.to_owned(), sample.label.to_owned(), Origin::Sample(sample)));
     for (id, name, origin) in presets.chain(samples) {
-        library.put(Entry {
-            id,
-            name,
-            origin,
-            motion: None,
-            warnings: Vec::new(),
-            roles_by_hand: None,
-        });
+        library.put(Entry::new(id, name, origin));
     }
     library
 }

@@ -21,6 +21,19 @@ pub struct Pane {
     inputs: Option<Inputs>,
 }
 
+/// Something that takes longer than a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// The number by which it can be stopped; `None` where it ends soon by itself.
+    pub task: Option<u64>,
+    /// What it is: `matching`, or the file that is read.
+    pub name: String,
+    /// How much is done, 0 to 1.
+    pub progress: f64,
+    /// The size of the file that is read, bytes.
+    pub size: Option<u64>,
+}
+
 /// What a result depends on. Equal inputs, equal result: nothing is computed again.
 #[derive(Clone, Debug)]
 enum Inputs {
@@ -59,10 +72,16 @@ impl Session {
         next.is_some_and(|id| self.motion_of(&id).is_ok())
     }
 
-    /// What is under way, by name, with its progress from 0 to 1.
+    /// What is under way.
     #[must_use]
-    pub fn jobs(&self) -> Vec<(&'static str, f32)> {
-        self.blender.progress().map(|progress| ("matching", progress)).into_iter().collect()
+    pub fn jobs(&self) -> Vec<Job> {
+        let matching = self.blender.progress().map(|progress| Job {
+            task: None,
+            name: "matching".into(),
+            progress: f64::from(progress),
+            size: None,
+        });
+        self.reading_jobs().chain(matching).collect()
     }
 
     /// The motion of a clip: made or asked for when it is not there yet.
@@ -90,7 +109,17 @@ impl Session {
                 let params = made_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
                 Arc::new(made_motion(&params)?)
             }
-            Origin::File(_) => return Err(format!("`{id}` could not be read.")),
+            Origin::File(file) => {
+                let file = file.clone();
+                if !file.is_large() {
+                    self.read_at_once(&file).map_err(|error| error.to_string())?;
+                    let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
+                    return motion.ok_or_else(|| format!("{} has no such clip any more.", file.name));
+                }
+                let text = format!("{} is being read.", file.name);
+                self.read_again(file);
+                return Err(text);
+            }
         };
         self.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
         self.revision += 1;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::session::reading::{Content, LARGE_BYTES, read};
 use crate::session::transport::Span;
 
 fn blend_window(session: &mut Session, frames: f64) {
@@ -188,7 +189,7 @@ fn the_work_survives_storage() {
     let saved = session.saved();
 
     let mut restored = Session::new();
-    restored.restore(&saved, |_| Some(Arc::clone(&bytes)), None);
+    restored.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
     settle(&mut restored);
     settle(&mut session);
     assert_eq!(restored.clip_infos(), session.clip_infos());
@@ -247,4 +248,80 @@ fn addresses_are_asked_for_and_others_are_refused() {
         .unwrap();
     assert_eq!(session.take_requests(), [Request::Fetch("https://example.org/a.bvh".into())]);
     assert!(session.notices().list().iter().any(|notice| notice.text.contains("ftp://x/b.bvh")));
+}
+
+/// The task that the session has just asked for.
+fn asked(session: &mut Session) -> crate::session::reading::ReadTask {
+    let requests = session.take_requests();
+    let task = requests.into_iter().find_map(|request| match request {
+        Request::Read(task) => Some(task),
+        _ => None,
+    });
+    task.unwrap()
+}
+
+#[test]
+fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
+    let bytes = made_bvh(6.0);
+    let mut session = Session::new();
+    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    let asked_for = asked(&mut session);
+    assert_eq!((asked_for.id, asked_for.name.as_str()), (task, "long.bvh"));
+    session.progress_reading(task, LARGE_BYTES / 2);
+    let job = &session.jobs()[0];
+    assert_eq!(
+        (job.task, job.name.as_str(), job.size),
+        (Some(task), "long.bvh", Some(LARGE_BYTES + 1))
+    );
+    assert!((job.progress - 0.5).abs() < 1e-3);
+    let report = read("long.bvh", &bytes, &asked_for.setup, &mut |_| true).unwrap();
+    let sha256 = report.files[0].sha256.clone();
+    let loaded = session.finish_reading(task, Ok(report.clone())).unwrap().unwrap();
+    assert_eq!(session.slot(Slot::A).unwrap().id, loaded.ids[0]);
+    assert!(session.jobs().iter().all(|job| job.task.is_none()));
+    let Origin::File(file) = &session.slot(Slot::A).unwrap().origin else {
+        panic!()
+    };
+    assert_eq!(
+        file.content,
+        Content::Outside(sha256.clone()),
+        "its bytes are where the platform keeps them"
+    );
+    assert!(session.finish_reading(task, Ok(report.clone())).is_none(), "once is enough");
+
+    // Its roles are corrected by reading it again, elsewhere too.
+    session
+        .apply(Command::CorrectRole(loaded.ids[0].clone(), crate::skeleton::Role::Head, Some(1)))
+        .unwrap();
+    let again = asked(&mut session);
+    assert_eq!(again.content, Content::Outside(sha256));
+    let report = read("long.bvh", &bytes, &again.setup, &mut |_| true).unwrap();
+    session.finish_reading(again.id, Ok(report)).unwrap().unwrap();
+    let motion = session.slot(Slot::A).unwrap().motion.clone().unwrap();
+    assert_eq!(motion.roles.get(crate::skeleton::Role::Head), Some(1));
+
+    // After a reload it is asked for again, and is there as soon as it was read.
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), |key| Some(Content::Outside(key.into())), None);
+    assert!(restored.panes()[0].problem.as_ref().is_some_and(|text| text.contains("being read")));
+    let again = asked(&mut restored);
+    assert!(
+        restored.take_requests().iter().all(|request| !matches!(request, Request::Read(_))),
+        "asked once"
+    );
+    let report = read("long.bvh", &bytes, &again.setup, &mut |_| true).unwrap();
+    restored.finish_reading(again.id, Ok(report)).unwrap().unwrap();
+    settle(&mut restored);
+    assert_eq!(restored.panes()[0].problem, None);
+}
+
+#[test]
+fn reading_can_be_given_up() {
+    let mut session = Session::new();
+    let clips = session.clip_infos();
+    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    session.apply(Command::StopReading(task)).unwrap();
+    assert!(session.take_requests().contains(&Request::StopReading(task)));
+    assert!(session.finish_reading(task, Err("stopped".into())).is_none());
+    assert_eq!(session.clip_infos(), clips);
 }

@@ -1,0 +1,452 @@
+//! A report on its way from a worker: a head of JSON, and the long arrays as bytes in pieces, so that neither side copies for longer than a
+//! frame lasts.
+
+use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
+use crate::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
+use crate::formats::ImportError;
+use crate::math::Planar;
+use crate::session::motion::Motion;
+use crate::skeleton::{Joint, Roles, Side, Skeleton, SkeletonError};
+use glam::{DVec2, Quat, Vec3};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The length of a piece, bytes: a whole number of every kind of value below, and copied in well under a millisecond.
+const PIECE_BYTES: usize = 48 << 14;
+
+/// Why pieces do not make a report.
+#[derive(Debug, thiserror::Error)]
+pub enum WireError {
+    /// The head is not one.
+    #[error("the head of a report cannot be read: {0}")]
+    Head(#[from] serde_json::Error),
+    /// More or fewer bytes than the head tells of.
+    #[error("a report of {expected} bytes came with {found}")]
+    Length {
+        /// What the head says.
+        expected: usize,
+        /// What came.
+        found: usize,
+    },
+    /// The arrays make no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+    /// The joints make no skeleton.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+}
+
+#[derive(Serialize, Deserialize)]
+struct Head {
+    files: Vec<FileHead>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileHead {
+    name: String,
+    sha256: String,
+    size: u64,
+    /// How many bytes of the file itself come along.
+    unpacked: Option<usize>,
+    result: Result<ClipsHead, ImportError>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ClipsHead {
+    clips: Vec<ClipHead>,
+    warnings: Vec<String>,
+    companion: Option<Companion>,
+    awaits_skeleton: bool,
+}
+
+/// A clip without its arrays.
+#[derive(Serialize, Deserialize)]
+struct ClipHead {
+    name: String,
+    joints: Vec<Joint>,
+    fps: f64,
+    frames: usize,
+    provenance: Provenance,
+    /// The joints that have translations.
+    moving: Vec<usize>,
+    roles: Roles,
+    about: About,
+}
+
+/// A report that is ready to travel.
+#[derive(Debug)]
+pub struct Parcel {
+    head: String,
+    report: ReadReport,
+}
+
+impl Parcel {
+    /// Packs a report.
+    ///
+    /// # Errors
+    /// [`WireError::Head`] when JSON cannot hold it.
+    pub fn new(report: ReadReport) -> Result<Self, WireError> {
+        let head = Head {
+            files: report.files.iter().map(FileHead::of).collect(),
+            notes: report.notes.clone(),
+        };
+        Ok(Self {
+            head: serde_json::to_string(&head)?,
+            report,
+        })
+    }
+
+    /// Everything but the arrays.
+    #[must_use]
+    pub fn head(&self) -> &str {
+        &self.head
+    }
+
+    /// Hands out the arrays, piece by piece, in the order in which [`Unpacker::push`] wants them.
+    pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
+        let mut piece = Piece {
+            bytes: Vec::with_capacity(PIECE_BYTES),
+            send: &mut send,
+        };
+        for file in &self.report.files {
+            for part in file.unpacked.as_deref().unwrap_or_default().chunks(PIECE_BYTES) {
+                piece.put(part);
+            }
+            for clip in file.result.as_ref().map_or(&[][..], |read| &read.clips) {
+                put_motion(&mut piece, &clip.motion);
+            }
+        }
+        piece.flush();
+    }
+}
+
+fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
+    let clip = &motion.clip;
+    for q in (0..clip.frames()).flat_map(|frame| clip.rotations(frame)) {
+        piece.put(q.to_array().map(f32::to_le_bytes).as_flattened());
+    }
+    let translations = clip.translations().iter().flat_map(|track| &track.values);
+    for v in clip.root_translations().iter().chain(translations) {
+        piece.put(v.to_array().map(f32::to_le_bytes).as_flattened());
+    }
+    for place in &motion.ground_frames {
+        let numbers = [place.yaw, place.shift.x, place.shift.y];
+        piece.put(numbers.map(f64::to_le_bytes).as_flattened());
+    }
+    for frame in 0..clip.frames() {
+        piece.put(&Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame))));
+    }
+}
+
+/// Gathers values up to the length of a piece; no value is cut.
+struct Piece<'a> {
+    bytes: Vec<u8>,
+    send: &'a mut dyn FnMut(&[u8]),
+}
+
+impl Piece<'_> {
+    fn put(&mut self, value: &[u8]) {
+        if self.bytes.len() + value.len() > PIECE_BYTES {
+            self.flush();
+        }
+        self.bytes.extend_from_slice(value);
+    }
+
+    fn flush(&mut self) {
+        if !self.bytes.is_empty() {
+            (self.send)(&self.bytes);
+            self.bytes.clear();
+        }
+    }
+}
+
+impl FileHead {
+    fn of(file: &ReadFile) -> Self {
+        Self {
+            name: file.name.clone(),
+            sha256: file.sha256.clone(),
+            size: file.size,
+            unpacked: file.unpacked.as_ref().map(Vec::len),
+            result: match &file.result {
+                Ok(read) => Ok(ClipsHead {
+                    clips: read.clips.iter().map(ClipHead::of).collect(),
+                    warnings: read.warnings.clone(),
+                    companion: read.companion.clone(),
+                    awaits_skeleton: read.awaits_skeleton,
+                }),
+                Err(error) => Err(error.clone()),
+            },
+        }
+    }
+
+    fn clips(&self) -> &[ClipHead] {
+        self.result.as_ref().map_or(&[], |read| &read.clips)
+    }
+
+    /// How many bytes of arrays come with it.
+    fn bytes(&self) -> usize {
+        let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
+        clips.saturating_add(self.unpacked.unwrap_or(0))
+    }
+}
+
+impl ClipHead {
+    fn of(clip: &ReadClip) -> Self {
+        let motion = &clip.motion;
+        Self {
+            name: motion.clip.name().to_owned(),
+            joints: motion.clip.skeleton().joints().to_vec(),
+            fps: motion.clip.fps(),
+            frames: motion.clip.frames(),
+            provenance: motion.clip.provenance(),
+            moving: motion.clip.translations().iter().map(|track| track.joint).collect(),
+            roles: motion.roles.clone(),
+            about: clip.about.clone(),
+        }
+    }
+}
+
+/// The arrays of one clip, while they come in.
+#[derive(Default)]
+struct Arrays {
+    rotations: Vec<Quat>,
+    /// The root's, then those of each joint that moves.
+    translations: Vec<Vec<Vec3>>,
+    ground_frames: Vec<Planar>,
+    contacts: [Vec<bool>; 2],
+}
+
+impl Arrays {
+    /// Takes what it still needs from the front of `bytes`.
+    fn take(&mut self, head: &ClipHead, bytes: &mut &[u8]) {
+        let frames = head.frames;
+        fill(
+            &mut self.rotations,
+            frames.saturating_mul(head.joints.len()),
+            bytes,
+            |b: &[u8; 16]| {
+                let [x, y, z, w] = floats(b);
+                Quat::from_xyzw(x, y, z, w)
+            },
+        );
+        self.translations.resize_with(head.moving.len() + 1, Vec::new);
+        for values in &mut self.translations {
+            fill(values, frames, bytes, |b: &[u8; 12]| Vec3::from_array(floats(b)));
+        }
+        fill(&mut self.ground_frames, frames, bytes, |b: &[u8; 24]| {
+            let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|i| b[8 * at + i]));
+            Planar {
+                yaw: number(0),
+                shift: DVec2::new(number(1), number(2)),
+            }
+        });
+        let mut pairs: Vec<[bool; 2]> = Vec::new();
+        fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |b: &[u8; 2]| {
+            b.map(|flag| flag != 0)
+        });
+        for pair in pairs {
+            self.contacts[0].push(pair[0]);
+            self.contacts[1].push(pair[1]);
+        }
+    }
+
+    fn into_clip(self, head: ClipHead) -> Result<ReadClip, WireError> {
+        let skeleton = Arc::new(Skeleton::new(head.joints)?);
+        let mut translations = self.translations.into_iter();
+        let root = translations.next().unwrap_or_default();
+        let tracks = head.moving.into_iter().zip(translations);
+        let tracks = tracks.map(|(joint, values)| JointTranslations { joint, values }).collect();
+        let clip = Clip::new(head.name, skeleton, head.fps, self.rotations, root)?;
+        Ok(ReadClip {
+            motion: Motion {
+                clip: Arc::new(clip.with_translations(tracks)?.with_provenance(head.provenance)),
+                roles: head.roles,
+                contacts: Contacts::from_flags(self.contacts),
+                ground_frames: self.ground_frames,
+            },
+            about: head.about,
+        })
+    }
+}
+
+/// Moves values from the front of `bytes` to `values` until there are `wanted` or no more bytes.
+fn fill<T, const N: usize>(values: &mut Vec<T>, wanted: usize, bytes: &mut &[u8], read: impl Fn(&[u8; N]) -> T) {
+    let missing = wanted.saturating_sub(values.len());
+    let (all, _) = bytes.as_chunks::<N>();
+    let coming = &all[..missing.min(all.len())];
+    values.extend(coming.iter().map(read));
+    *bytes = &bytes[coming.len() * N..];
+}
+
+fn floats<const N: usize, const M: usize>(bytes: &[u8; N]) -> [f32; M] {
+    std::array::from_fn(|at| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * at + i])))
+}
+
+/// Puts the pieces of a report together again.
+pub struct Unpacker {
+    head: Head,
+    files: Vec<Incoming>,
+    found: usize,
+}
+
+/// A file that comes in.
+#[derive(Default)]
+struct Incoming {
+    unpacked: Vec<u8>,
+    clips: Vec<Arrays>,
+}
+
+impl std::fmt::Debug for Unpacker {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Unpacker")
+            .field("files", &self.files.len())
+            .field("found", &self.found)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Unpacker {
+    /// Begins with the head.
+    ///
+    /// # Errors
+    /// [`WireError::Head`] when it is none.
+    pub fn new(head: &str) -> Result<Self, WireError> {
+        Ok(Self {
+            head: serde_json::from_str(head)?,
+            files: Vec::new(),
+            found: 0,
+        })
+    }
+
+    /// Takes the next piece.
+    pub fn push(&mut self, piece: &[u8]) {
+        self.found += piece.len();
+        let mut rest = piece;
+        // Those before the last one are complete.
+        let mut at = self.files.len().saturating_sub(1);
+        while let (false, Some(head)) = (rest.is_empty(), self.head.files.get(at)) {
+            if at == self.files.len() {
+                self.files.push(Incoming::default());
+            }
+            if let Some(file) = self.files.get_mut(at) {
+                file.take(head, &mut rest);
+            }
+            at += 1;
+        }
+    }
+
+    /// The report, once all pieces are in.
+    ///
+    /// # Errors
+    /// [`WireError`] when something is missing or makes no clip.
+    pub fn finish(mut self) -> Result<ReadReport, WireError> {
+        let expected = self.head.files.iter().map(FileHead::bytes).sum();
+        if self.found != expected {
+            return Err(WireError::Length {
+                expected,
+                found: self.found,
+            });
+        }
+        self.files.resize_with(self.head.files.len(), Incoming::default);
+        let files = self.head.files.into_iter().zip(self.files);
+        let files: Result<Vec<ReadFile>, WireError> = files.map(|(head, file)| file.into_file(head)).collect();
+        Ok(ReadReport {
+            files: files?,
+            notes: self.head.notes,
+        })
+    }
+}
+
+impl Incoming {
+    fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
+        fill(&mut self.unpacked, head.unpacked.unwrap_or(0), bytes, |&[byte]| byte);
+        self.clips.resize_with(head.clips().len(), Arrays::default);
+        for (head, clip) in head.clips().iter().zip(&mut self.clips) {
+            clip.take(head, bytes);
+        }
+    }
+
+    fn into_file(mut self, head: FileHead) -> Result<ReadFile, WireError> {
+        self.clips.resize_with(head.clips().len(), Arrays::default);
+        let result = match head.result {
+            Ok(read) => {
+                let clips = read.clips.into_iter().zip(self.clips);
+                let clips: Result<Vec<ReadClip>, WireError> = clips.map(|(head, arrays)| arrays.into_clip(head)).collect();
+                Ok(ReadClips {
+                    clips: clips?,
+                    warnings: read.warnings,
+                    companion: read.companion,
+                    awaits_skeleton: read.awaits_skeleton,
+                })
+            }
+            Err(error) => Err(error),
+        };
+        Ok(ReadFile {
+            name: head.name,
+            sha256: head.sha256,
+            size: head.size,
+            unpacked: head.unpacked.map(|_| self.unpacked),
+            result,
+        })
+    }
+}
+
+impl ClipHead {
+    /// How many bytes its arrays take.
+    fn bytes(&self) -> usize {
+        let per_frame = 16 * self.joints.len() + 12 * (self.moving.len() + 1) + 24 + 2;
+        self.frames.saturating_mul(per_frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::bvh;
+    use crate::session::reading::{ReadSetup, read};
+    use crate::synth::{Action, Params, synthesize};
+
+    fn report(secs: f32) -> ReadReport {
+        let made = synthesize(&Params {
+            duration_secs: secs,
+            ..Params::new(Action::Walk)
+        });
+        let text = bvh::write(&made.unwrap().clip, &bvh::WriteOptions::default());
+        read("walk.bvh", text.as_bytes(), &ReadSetup::default(), &mut |_| true).unwrap()
+    }
+
+    fn sent(report: &ReadReport) -> ReadReport {
+        let parcel = Parcel::new(report.clone()).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head()).unwrap();
+        parcel.pieces(|piece| unpacker.push(piece));
+        unpacker.finish().unwrap()
+    }
+
+    #[test]
+    fn what_is_sent_arrives_as_it_was() {
+        // Long enough for several pieces.
+        let mut long = report(60.0);
+        long.files.push(ReadFile {
+            unpacked: Some((0..=255).collect()),
+            ..report(1.0).files.remove(0)
+        });
+        long.notes.push("two".into());
+        let mut pieces = 0;
+        Parcel::new(long.clone()).unwrap().pieces(|_| pieces += 1);
+        assert!(pieces > 1, "{pieces}");
+        assert_eq!(sent(&long), long);
+        let refused = read("no.bvh", b"HIERARCHY x", &ReadSetup::default(), &mut |_| true).unwrap();
+        assert!(refused.files[0].result.is_err());
+        assert_eq!(sent(&refused), refused);
+    }
+
+    #[test]
+    fn what_is_lost_on_the_way_is_noticed() {
+        let parcel = Parcel::new(report(2.0)).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head()).unwrap();
+        parcel.pieces(|piece| unpacker.push(&piece[..piece.len() - 2]));
+        assert!(matches!(unpacker.finish(), Err(WireError::Length { .. })));
+        assert!(Unpacker::new("{}").is_err());
+    }
+}
