@@ -16,7 +16,7 @@ use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
-use eframe::egui;
+use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
@@ -32,6 +32,9 @@ use std::time::Duration;
 const WORK_MS: f64 = 5.0;
 /// Time that the playhead skips over when a frame took longer than that, seconds: a page that was in the background does not leap on.
 const LONGEST_STEP_SECS: f64 = 0.25;
+
+/// Without a graphics card a picture every so many milliseconds is enough.
+const SOFTWARE_FRAME_MS: f64 = 33.0;
 
 /// What the page's API tells its listeners.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -120,6 +123,8 @@ struct Window {
     generation: u64,
     /// As the API calls it; empty before there is one.
     backend: &'static str,
+    /// Whether there is no graphics card.
+    in_software: bool,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
@@ -178,7 +183,9 @@ impl Segue {
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
-        self.window.backend = api::backend_name(state.adapter.get_info().backend);
+        let adapter = state.adapter.get_info();
+        self.window.backend = api::backend_name(adapter.backend);
+        self.window.in_software = adapter.device_type == wgpu::DeviceType::Cpu;
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
         state
@@ -376,8 +383,11 @@ impl Segue {
         self.clock.frame_began = platform::now_ms();
         let more = self.pump();
         let ticked = self.tick();
-        if more || ticked {
+        if more {
             ctx.request_repaint();
+        }
+        if ticked {
+            self.animate(ctx);
         }
     }
 
@@ -407,8 +417,11 @@ impl Segue {
         let theme = ui::theme::theme_of(ui);
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
-        if self.session.revision() != before || self.picture.is_moving() {
+        if self.session.revision() != before {
             ui.ctx().request_repaint();
+        }
+        if self.picture.is_moving() {
+            self.animate(ui.ctx());
         }
         self.frames.begin();
         self.clock.frame_took = platform::now_ms() - self.clock.frame_began;
@@ -429,18 +442,21 @@ impl Segue {
     fn act(&mut self, action: &Action, ctx: &egui::Context) {
         match action {
             Action::OpenFiles => platform::open_files(&self.inbox),
-            Action::StopFetching(name) => {
-                let sources = self.session.params().text(Key::Src).split_whitespace();
-                let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
-                let rest = segue::session::Value::Text(rest.join(" "));
-                self.obey(Command::Set(vec![(Key::Src, rest)]));
-            }
+            Action::StopFetching(name) => self.stop_fetching(name),
             Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
             Action::SaveBvh(which) => match self.export(which, "bvh") {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
                 Err(reason) => self.session.say(Level::Error, reason),
             },
         }
+    }
+
+    /// Takes the addresses of a file out of the link: it is not fetched any longer.
+    fn stop_fetching(&mut self, name: &str) {
+        let sources = self.session.params().text(Key::Src).split_whitespace();
+        let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
+        let rest = segue::session::Value::Text(rest.join(" "));
+        self.obey(Command::Set(vec![(Key::Src, rest)]));
     }
 
     /// Remembers how long the last frame took. eframe measures all of it, up to the commands for the graphics device, but only when it began
@@ -474,7 +490,21 @@ impl Segue {
         if let Some(wait) = waits.into_iter().flatten().min_by(f64::total_cmp) {
             ctx.request_repaint_after(Duration::from_secs_f64((wait / 1e3).max(0.0)));
         }
-        if self.session.params().is_on(Key::Play) || self.keeper.is_waiting() {
+        if self.keeper.is_waiting() {
+            ctx.request_repaint();
+        }
+        if self.session.params().is_on(Key::Play) {
+            self.animate(ctx);
+        }
+    }
+
+    /// Something moves by itself: the next picture comes with the screen's next beat, or, where pictures are drawn in software, in time to leave
+    /// the processor free for everything else.
+    fn animate(&self, ctx: &egui::Context) {
+        if self.window.in_software {
+            let since_ms = platform::now_ms() - self.clock.frame_began;
+            ctx.request_repaint_after(Duration::from_secs_f64((SOFTWARE_FRAME_MS - since_ms).max(0.0) / 1e3));
+        } else {
             ctx.request_repaint();
         }
     }

@@ -208,6 +208,19 @@ impl Segue {
         self.session.jobs().iter().any(|job| job.task == Some(task))
     }
 
+    /// Stops what is under way: the file of that name that is read or fetched.
+    pub(crate) fn stop(&mut self, name: &str) -> Result<(), String> {
+        let reading = self.session.jobs().into_iter().find(|job| job.name == name && job.task.is_some());
+        if let Some(task) = reading.and_then(|job| job.task) {
+            self.obey(Command::StopReading(task));
+        } else if self.downloads.under_way().any(|(fetched, _)| fetched == name) {
+            self.stop_fetching(name);
+        } else {
+            return Err(format!("stop: found `{name}`, expected the name of a file that is under way"));
+        }
+        Ok(())
+    }
+
     /// What [`Self::load_large`] gave; `None` when it was stopped.
     pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, String>> {
         self.read.remove(&task).flatten()

@@ -71,7 +71,7 @@ impl Picture {
             .map(|(pane, place)| (pane, within(rect, place, size, scale)))
             .collect();
         let stage = self.director.stage(session, &shown, scale, look, &colors_of(palette), dt_secs);
-        painter.set(index, render::paint_callback(STAGE, rect, stage));
+        painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
     }
 
     /// Whether a camera is still on its way.

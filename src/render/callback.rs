@@ -4,6 +4,7 @@ use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState,
 use eframe::wgpu;
 use segue::scene::Stage;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Makes the renderer and leaves it with egui's. Call it once, when the app is created.
 pub(crate) fn install(render_state: &RenderState) {
@@ -14,9 +15,13 @@ pub(crate) fn install(render_state: &RenderState) {
 /// A shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
 ///
 /// Keep the `Arc` and change the stage with `Arc::make_mut` in the next frame: egui has let go of it by then, so that nothing is copied.
-pub(crate) fn paint_callback(id: u64, rect: egui::Rect, stage: Arc<Stage>) -> egui::Shape {
-    egui::Shape::Callback(Callback::new_paint_callback(rect, StageCallback { id, rect, stage }))
+pub(crate) fn paint_callback(id: u64, rect: egui::Rect, stage: Arc<Stage>, ctx: &egui::Context) -> egui::Shape {
+    let ctx = ctx.clone();
+    egui::Shape::Callback(Callback::new_paint_callback(rect, StageCallback { id, rect, stage, ctx }))
 }
+
+/// What stood still for so long is drawn finely where moving things are drawn coarsely.
+const REFINE_AFTER: Duration = Duration::from_millis(200);
 
 /// The size in physical pixels of the target for a stage in `rect`: what its panes' viewports divide.
 pub(crate) fn stage_pixels(ctx: &egui::Context, rect: egui::Rect) -> [u32; 2] {
@@ -34,6 +39,7 @@ struct StageCallback {
     id: u64,
     rect: egui::Rect,
     stage: Arc<Stage>,
+    ctx: egui::Context,
 }
 
 impl CallbackTrait for StageCallback {
@@ -47,7 +53,9 @@ impl CallbackTrait for StageCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<StageRenderer>() {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
-            renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
+            if renderer.prepare(device, queue, encoder, self.id, &self.stage, size).to_be_refined {
+                self.ctx.request_repaint_after(REFINE_AFTER);
+            }
         }
         Vec::new()
     }

@@ -1,6 +1,7 @@
-// Puts the finished stage into the page, pixel by pixel.
+// Puts the finished stage into the page: pixel by pixel, or stretched where it is smaller.
 
 @group(0) @binding(0) var stage: texture_2d<f32>;
+@group(0) @binding(1) var linearly: sampler;
 
 struct Pixel {
     @builtin(position) clip: vec4f,
@@ -17,8 +18,7 @@ fn vs_composite(@builtin(vertex_index) index: u32) -> Pixel {
 }
 
 fn texel(uv: vec2f) -> vec3f {
-    let size = vec2f(textureDimensions(stage));
-    return textureLoad(stage, vec2i(clamp(uv * size, vec2f(0.0), size - 1.0)), 0).rgb;
+    return textureSampleLevel(stage, linearly, uv, 0.0).rgb;
 }
 
 // The page's target takes encoded colours as they are.

@@ -127,9 +127,21 @@ fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
     }
 }
 
+/// The same part of another target; neighbours stay neighbours.
+fn stretched(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
+    let place = |at: u32, axis: usize| (f64::from(at) * f64::from(to[axis]) / f64::from(from[axis].max(1))).round() as u32;
+    let (x, y) = (place(viewport.x, 0), place(viewport.y, 1));
+    Viewport {
+        x,
+        y,
+        width: place(viewport.x + viewport.width, 0) - x,
+        height: place(viewport.y + viewport.height, 1) - y,
+    }
+}
+
 impl Frame {
-    /// Fills the frame from a stage that is drawn into `size` pixels.
-    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2], quality: Quality) {
+    /// Fills the frame from a stage whose panes divide `size` pixels and that is drawn into `target` pixels.
+    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2], target: [u32; 2], quality: Quality) {
         self.clear = stage.look.background_top;
         self.views.clear();
         self.figures.clear();
@@ -139,7 +151,7 @@ impl Frame {
         self.rings.clear();
         self.panes.clear();
         for pane in &stage.panes {
-            let viewport = clip(pane.viewport, size);
+            let viewport = stretched(clip(pane.viewport, size), size, target);
             if viewport.width == 0 || viewport.height == 0 {
                 continue;
             }
@@ -152,7 +164,8 @@ impl Frame {
             });
             let rings = self.rings.len() as u32;
             self.rings.extend(pane.rings.iter().filter_map(ring_instance));
-            self.views.push(view_uniform(pane, viewport, stage));
+            self.views
+                .push(view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32));
             self.panes.push(PaneDraw {
                 viewport,
                 figures,
@@ -326,7 +339,7 @@ fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
     }
 }
 
-fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {
+fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) -> ViewUniform {
     let camera = &pane.camera;
     let look = &stage.look;
     let [right, up, back] = camera.axes();
@@ -337,11 +350,12 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage) -> ViewUniform {
     } else {
         (camera.fov_y * 0.5).tan()
     };
-    let scale = if stage.pixels_per_point > 0.0 {
-        stage.pixels_per_point
-    } else {
-        1.0
-    };
+    let scale = stretch
+        * if stage.pixels_per_point > 0.0 {
+            stage.pixels_per_point
+        } else {
+            1.0
+        };
     // The main light stands over the camera's left shoulder, so that the body is modelled from all sides.
     let level_back = Vec3::new(camera.yaw.sin(), 0.0, camera.yaw.cos());
     let key = (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y);

@@ -49,7 +49,10 @@ pub(crate) fn render_to_image(
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
         label: Some("stage image"),
     });
-    renderer.prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height]);
+    while renderer
+        .prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height])
+        .to_be_refined
+    {}
     let Some(view) = renderer.view(SNAPSHOT) else {
         return Err(ImageError::Size(width, height));
     };

@@ -19,6 +19,7 @@ pub(super) struct Pipelines {
     pub(super) view_layout: wgpu::BindGroupLayout,
     pub(super) figure_layout: wgpu::BindGroupLayout,
     pub(super) composite_layout: wgpu::BindGroupLayout,
+    pub(super) composite_sampler: wgpu::Sampler,
     pub(super) ground: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
     pub(super) shade: wgpu::RenderPipeline,
@@ -228,6 +229,12 @@ impl Pipelines {
             view_layout,
             figure_layout,
             composite_layout,
+            composite_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("stage composite"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            }),
             composite,
             sample_count,
         }
@@ -279,16 +286,24 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
 fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("stage composite"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
             },
-            count: None,
-        }],
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                count: None,
+            },
+        ],
     });
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("composite"),

@@ -39,8 +39,10 @@ struct Mesh {
 /// What belongs to one stage.
 pub(super) struct View {
     pub(super) targets: Targets,
+    /// A smaller picture, for what moves on a machine that draws in software.
+    coarse: Option<Targets>,
     drawn: Frame,
-    is_drawn: bool,
+    shown: Shown,
     limbs: GrowingBuffer,
     strokes: GrowingBuffer,
     rings: GrowingBuffer,
@@ -51,6 +53,28 @@ pub(super) struct View {
     /// Frames since it was last asked for.
     idle: u32,
 }
+
+/// What stands in the targets of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shown {
+    Nothing,
+    /// The frame last drawn, in the smaller target.
+    Coarse,
+    /// The frame last drawn, pixel by pixel.
+    Fine,
+}
+
+/// What [`StageRenderer::prepare`] did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Prepared {
+    /// Whether anything was drawn.
+    pub(crate) drawn: bool,
+    /// Whether the picture is to be drawn once more, finer, when nothing moves any longer.
+    pub(crate) to_be_refined: bool,
+}
+
+/// So many pixels of what moves are drawn without a graphics card: about what keeps it moving.
+const PLAIN_PIXELS: f32 = 180_000.0;
 
 /// A stage that was not asked for in so many frames of others gives its memory back.
 const FORGET_AFTER: u32 = 240;
@@ -93,12 +117,21 @@ impl GrowingBuffer {
 }
 
 impl View {
+    /// The targets that hold, or are to hold, the picture that is shown.
+    fn current(&self) -> &Targets {
+        match &self.coarse {
+            Some(coarse) if self.shown == Shown::Coarse => coarse,
+            _ => &self.targets,
+        }
+    }
+
     fn new(targets: Targets) -> Self {
         let (vertex, uniform) = (wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::UNIFORM);
         Self {
             targets,
+            coarse: None,
             drawn: Frame::default(),
-            is_drawn: false,
+            shown: Shown::Nothing,
             limbs: GrowingBuffer::new("limbs", vertex),
             strokes: GrowingBuffer::new("strokes", vertex),
             rings: GrowingBuffer::new("rings", vertex),
@@ -196,7 +229,9 @@ impl StageRenderer {
         self.views.retain(|(key, _)| *key != id);
     }
 
-    /// Draws `stage` into its own target of `size` pixels, unless nothing changed. `true` where it was drawn.
+    /// Draws `stage` into its own target of `size` pixels, unless nothing changed.
+    ///
+    /// Where every pixel costs ([`Quality::Plain`]), what changes is drawn smaller and stretched; asked for again unchanged, it is drawn finely.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -205,9 +240,12 @@ impl StageRenderer {
         id: u64,
         stage: &Stage,
         size: [u32; 2],
-    ) -> bool {
+    ) -> Prepared {
         if size.contains(&0) {
-            return false;
+            return Prepared {
+                drawn: false,
+                to_be_refined: false,
+            };
         }
         let size = size.map(|side| side.min(self.largest_side));
         for (_, view) in &mut self.views {
@@ -216,28 +254,64 @@ impl StageRenderer {
         self.views.retain(|(key, view)| *key == id || view.idle < FORGET_AFTER);
         let mut view = match self.views.iter().position(|(key, _)| *key == id) {
             Some(index) => self.views.swap_remove(index).1,
-            None => View::new(Targets::new(
-                device,
-                &self.pipelines.composite_layout,
-                size,
-                self.pipelines.sample_count,
-            )),
+            None => View::new(self.targets(device, size)),
         };
         view.idle = 0;
         if view.targets.size != size {
-            view.targets = Targets::new(device, &self.pipelines.composite_layout, size, self.pipelines.sample_count);
-            view.is_drawn = false;
+            view.targets = self.targets(device, size);
+            view.coarse = None;
+            view.shown = Shown::Nothing;
         }
-        self.scratch.build(stage, size, self.quality);
-        let draw = !view.is_drawn || view.drawn != self.scratch;
-        if draw {
+        let small = self.coarse_size(size);
+        self.scratch.build(stage, size, small.unwrap_or(size), self.quality);
+        let changed = view.shown == Shown::Nothing || view.drawn != self.scratch;
+        let draw = match (changed, small) {
+            (true, Some(small)) => {
+                let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
+                if !fits {
+                    view.coarse = Some(self.targets(device, small));
+                }
+                Some(Shown::Coarse)
+            }
+            (true, None) => Some(Shown::Fine),
+            (false, _) if view.shown == Shown::Coarse => Some(Shown::Fine),
+            (false, _) => None,
+        };
+        if let Some(shown) = draw {
             std::mem::swap(&mut view.drawn, &mut self.scratch);
-            self.upload(device, queue, &mut view);
-            self.encode(encoder, &view);
-            view.is_drawn = true;
+            view.shown = shown;
+            if shown == Shown::Fine && small.is_some() {
+                // What is compared with the next stage stays the smaller one.
+                self.scratch.build(stage, size, size, self.quality);
+                std::mem::swap(&mut view.drawn, &mut self.scratch);
+                self.upload(device, queue, &mut view);
+                self.encode(encoder, &view);
+                std::mem::swap(&mut view.drawn, &mut self.scratch);
+            } else {
+                self.upload(device, queue, &mut view);
+                self.encode(encoder, &view);
+            }
         }
+        let prepared = Prepared {
+            drawn: draw.is_some(),
+            to_be_refined: view.shown == Shown::Coarse,
+        };
         self.views.push((id, view));
-        draw
+        prepared
+    }
+
+    fn targets(&self, device: &wgpu::Device, size: [u32; 2]) -> Targets {
+        Targets::new(device, &self.pipelines, size)
+    }
+
+    /// The size of the smaller picture of a stage; `None` where there is no need of one.
+    fn coarse_size(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
+        let pixels = width as f32 * height as f32;
+        if self.quality == Quality::Full || pixels <= PLAIN_PIXELS {
+            return None;
+        }
+        let scale = (PLAIN_PIXELS / pixels).sqrt();
+        Some([width, height].map(|side| ((side as f32 * scale) as u32).max(1)))
     }
 
     fn view_stride(&self) -> usize {
@@ -275,7 +349,7 @@ impl StageRenderer {
     }
 
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
-        let targets = &view.targets;
+        let targets = view.current();
         let clear = view.drawn.clear.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("stage"),
@@ -319,7 +393,7 @@ impl StageRenderer {
             self.encode_pane(&mut pass, view, pane);
         }
         // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor would cut.
-        let [width, height] = view.targets.size;
+        let [width, height] = targets.size;
         pass.set_scissor_rect(0, 0, width, height);
     }
 
@@ -410,10 +484,10 @@ impl StageRenderer {
     /// Copies the finished stage into the page; the pass' viewport is where it goes.
     pub(crate) fn paint(&self, pass: &mut wgpu::RenderPass<'_>, id: u64) {
         if let Some(view) = self.view(id)
-            && view.is_drawn
+            && view.shown != Shown::Nothing
         {
             pass.set_pipeline(&self.pipelines.composite);
-            pass.set_bind_group(0, &view.targets.composite, &[]);
+            pass.set_bind_group(0, &view.current().composite, &[]);
             pass.draw(0..3, 0..1);
         }
     }

@@ -1,3 +1,4 @@
+use super::pipelines::Pipelines;
 use eframe::wgpu;
 
 /// Colours are kept encoded, as egui keeps its own: blending then looks the same in the stage and beside it.
@@ -19,7 +20,8 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    pub(super) fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, size: [u32; 2], sample_count: u32) -> Self {
+    pub(super) fn new(device: &wgpu::Device, pipelines: &Pipelines, size: [u32; 2]) -> Self {
+        let sample_count = pipelines.sample_count;
         let texture = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -49,11 +51,17 @@ impl Targets {
         let depth = view(texture("stage depth", DEPTH_FORMAT, sample_count, attachment));
         let composite = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("stage composite"),
-            layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(&color_view),
-            }],
+            layout: &pipelines.composite_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&color_view),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::Sampler(&pipelines.composite_sampler),
+                },
+            ],
         });
         Self {
             size,

@@ -386,6 +386,39 @@ fn from_above_close_up_and_other_bodies() {
     }
 }
 
+/// Draws without a graphics card what moves, and then what stands still.
+#[test]
+fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
+    let Some(mut gpu) = gpu() else { return };
+    let actors = actors();
+    let size = [960, 600];
+    let mut stage = stage(&actors, size, 2, false, 1.0);
+    gpu.renderer.set_quality(Quality::Plain);
+    let mut prepared = |stage: &Stage| {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let prepared = gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, stage, size);
+        gpu.queue.submit([encoder.finish()]);
+        (prepared.drawn, prepared.to_be_refined)
+    };
+    assert_eq!(prepared(&stage), (true, true));
+    assert_eq!(prepared(&stage), (true, false));
+    assert_eq!(prepared(&stage), (false, false));
+    stage.panes[0].camera.yaw += 0.1;
+    assert_eq!(prepared(&stage), (true, true));
+
+    // The coarse frame shows the same panes in the same places.
+    let (mut fine, mut coarse) = (super::frame::Frame::default(), super::frame::Frame::default());
+    fine.build(&stage, size, size, Quality::Plain);
+    coarse.build(&stage, size, [480, 300], Quality::Plain);
+    for (fine, coarse) in fine.panes.iter().zip(&coarse.panes) {
+        let half = |side: u32| side.div_ceil(2);
+        assert_eq!(
+            [coarse.viewport.x, coarse.viewport.y, coarse.viewport.width, coarse.viewport.height],
+            [fine.viewport.x, fine.viewport.y, fine.viewport.width, fine.viewport.height].map(half)
+        );
+    }
+}
+
 #[test]
 fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
     let Some(mut gpu) = gpu() else { return };
@@ -393,13 +426,29 @@ fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
     let mut stage = stage(&actors, [64, 64], 1, false, 1.0);
     assert!(render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [0, 64]).is_err());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    assert!(!gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [0, 0]));
+    assert!(!gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [0, 0]).drawn);
     // What did not change is not drawn again; what changed in size or content is.
-    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]));
-    assert!(!gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]));
-    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64]));
+    assert!(
+        gpu.renderer
+            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64])
+            .drawn
+    );
+    assert!(
+        !gpu.renderer
+            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64])
+            .drawn
+    );
+    assert!(
+        gpu.renderer
+            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64])
+            .drawn
+    );
     stage.panes[0].camera.yaw += 0.1;
-    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64]));
+    assert!(
+        gpu.renderer
+            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64])
+            .drawn
+    );
     gpu.queue.submit([encoder.finish()]);
     // Panes that reach out of the stage, that are empty, and limbs that are no numbers.
     stage.panes[0].viewport = Viewport {
@@ -599,7 +648,11 @@ fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
         });
         let view = page.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 3, &stage, [128, 96]));
+        assert!(
+            gpu.renderer
+                .prepare(&gpu.device, &gpu.queue, &mut encoder, 3, &stage, [128, 96])
+                .drawn
+        );
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -632,7 +685,7 @@ fn time_to_build_and_encode() {
     let actors = actors();
     let mut stage = stage(&actors, [1440, 900], 3, false, 1.0);
     let mut frame = Frame::default();
-    frame.build(&stage, [1440, 900], Quality::Full);
+    frame.build(&stage, [1440, 900], [1440, 900], Quality::Full);
     gpu.renderer.set_quality(Quality::Full);
     let rounds = 200u32;
     let (mut bodies, mut build, mut prepare) = (0.0, 0.0, 0.0);
@@ -651,11 +704,15 @@ fn time_to_build_and_encode() {
         }
         bodies += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        frame.build(&stage, [1440, 900], Quality::Full);
+        frame.build(&stage, [1440, 900], [1440, 900], Quality::Full);
         build += start.elapsed().as_secs_f64();
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let start = Instant::now();
-        assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 7, &stage, [1440, 900]));
+        assert!(
+            gpu.renderer
+                .prepare(&gpu.device, &gpu.queue, &mut encoder, 7, &stage, [1440, 900])
+                .drawn
+        );
         prepare += start.elapsed().as_secs_f64();
         // Without submitting: this measures the processor's side alone.
         drop(encoder);

@@ -39,6 +39,7 @@ export function makeApi(handle, { stopped, onLost }) {
   return Object.freeze({
     version: handle.version(),
     load: (name, bytes) => callAsync("load", String(name), asBytes(bytes)),
+    stop: (name) => call("stop", String(name)),
     clips: () => call("clips"),
     params: () => call("params"),
     set: (values) => callAsync("set", values),

@@ -195,6 +195,11 @@ impl SegueHandle {
         to_js(&self.borrow()?.metrics())
     }
 
+    /// Stops reading or fetching a file.
+    pub fn stop(&self, name: &str) -> Result<(), JsValue> {
+        self.change(|segue| segue.stop(name))
+    }
+
     /// A motion as the bytes of a file.
     #[wasm_bindgen(js_name = exportClip)]
     pub fn export_clip(&self, which: &str, format: &str) -> Result<Vec<u8>, JsValue> {
