@@ -70,7 +70,7 @@ pub(super) fn skip_blank_in_line(text: &[u8], mut at: usize) -> usize {
 
 /// The number at `at`, however it is spelled.
 pub(super) fn number(text: &[u8], at: usize) -> Number {
-    let end = token_end(text, at);
+    let end = number_end(text, at);
     match scan(text.get(..end).unwrap_or_default(), at, false) {
         Scan::Value { value, end, glued } => Number::Value { value, end, glued },
         Scan::NotFinite { end, glued } => Number::NotFinite { end, glued },
@@ -78,6 +78,22 @@ pub(super) fn number(text: &[u8], at: usize) -> Number {
         // Commas end tokens, so that decimal commas never get here.
         Scan::Cut | Scan::Bad | Scan::OtherDecimalSign => Number::None,
     }
+}
+
+/// The end of the token at `at`, or the end of the sign with which another number begins in it: no further, so that a long run of numbers
+/// without spaces takes no longer than one with.
+fn number_end(text: &[u8], at: usize) -> usize {
+    let mut before = b'+';
+    for (index, &b) in text.iter().enumerate().skip(at) {
+        if is_blank(b) {
+            return index;
+        }
+        if matches!(b, b'+' | b'-') && !matches!(before, b'e' | b'E' | b'+' | b'-') {
+            return index + 1;
+        }
+        before = b;
+    }
+    text.len()
 }
 
 /// Whether a token consists of digits only, as frame numbers do.

@@ -1,12 +1,14 @@
 use super::amc::{Stop, frames};
 use super::convert::Converter;
 use super::skeleton::AcclaimSkeleton;
+use crate::clip::Clip;
 use crate::formats::assemble::assemble;
 use crate::formats::error::{Fault, ImportError};
 use crate::formats::raw::RawMotion;
 use crate::formats::text::decode;
 use crate::formats::warning::{Tally, WarningKind};
 use crate::formats::{ImportOptions, Imported, check_size};
+use crate::skeleton::{Role, Roles, WorldPose};
 
 /// Frames per second of the CMU database, taken where nobody says otherwise: no AMC file tells.
 pub const DEFAULT_FPS: f64 = 120.0;
@@ -78,7 +80,36 @@ fn finish(
 ) -> Result<Imported, Fault> {
     let fps = given_fps(options).unwrap_or(DEFAULT_FPS);
     let clips = assemble(name, vec![raw], fps, options, skeleton.unit_of_file, &mut tally, first_row_at)?;
+    if let Some(metres) = clips.first().and_then(|found| off_ground(&found.clip)) {
+        tally.add(WarningKind::OffGround { metres }, None);
+    }
     let mut warnings = skeleton.warnings.clone();
     warnings.extend(tally.into_warnings(text));
     Ok(Imported { clips, warnings })
+}
+
+/// How high over the ground (y = 0) the feet of a motion are at their lowest, metres, where that is no place for feet: the values of a motion
+/// are those of one body, and on longer or shorter legs it sinks in or floats. `None` where all is well or there are no feet.
+fn off_ground(clip: &Clip) -> Option<f32> {
+    /// Frames that are looked at, spread over the clip.
+    const SAMPLES: usize = 240;
+    /// Feet below or above this share of a body's height are in the ground or in the air: marker noise and soles stay within.
+    const SUNK: f32 = -0.06;
+    const AFLOAT: f32 = 0.1;
+    let roles = Roles::detect(clip.skeleton());
+    let feet = [Role::LeftFoot, Role::LeftToe, Role::RightFoot, Role::RightToe].map(|role| roles.get(role));
+    let [Some(_), _, Some(_), _] = feet else { return None };
+    let samples = clip.frames().min(SAMPLES);
+    let mut world = WorldPose::default();
+    let mut lows: Vec<f32> = Vec::with_capacity(samples);
+    for sample in 0..samples {
+        clip.world_pose_into(sample * clip.frames() / samples, &mut world);
+        let heights = feet.iter().flatten().filter_map(|&joint| world.positions.get(joint).map(|p| p.y));
+        lows.push(heights.fold(f32::MAX, f32::min));
+    }
+    lows.sort_by(f32::total_cmp);
+    // One frame in twenty may be a slip of the capture.
+    let low = *lows.get(lows.len() / 20)?;
+    let share = low / roles.body_height(clip.skeleton());
+    (!(SUNK..AFLOAT).contains(&share)).then_some(low)
 }
