@@ -73,7 +73,8 @@ struct Frames<'r, 'a> {
     /// The frame being read, counted from 1; 0 before the first one.
     frame: usize,
     frame_at: usize,
-    number: Option<u64>,
+    /// Its number in the file.
+    number: f64,
     values: u64,
     not_finite: u64,
     first_not_finite: usize,
@@ -105,7 +106,7 @@ pub(super) fn frames(
         numbers_before: 0,
         frame: 0,
         frame_at: 0,
-        number: None,
+        number: 0.0,
         values: 0,
         not_finite: 0,
         first_not_finite: 0,
@@ -115,7 +116,7 @@ pub(super) fn frames(
     Ok(first_at)
 }
 
-impl<'a> Frames<'_, 'a> {
+impl Frames<'_, '_> {
     fn read(&mut self, converter: &mut Converter<'_>, progress: &mut dyn FnMut(usize) -> bool) -> Result<usize, Stop> {
         let (mut reported, mut first_at, mut joint) = (0, None, 0);
         loop {
@@ -157,29 +158,26 @@ impl<'a> Frames<'_, 'a> {
                 return Err(Fault::new(at, quoted(token), "the number of a frame").into());
             }
             self.at += token.len();
-            match self.skeleton.find(&name(token).0) {
-                Some(found) => {
-                    let before = std::mem::replace(&mut joint, found);
-                    if let Some(spelled) = self.spelled.get_mut(found) {
-                        *spelled = token;
-                    }
-                    if !self.bone(joint, at)? {
-                        return self.truncated(first_at, at);
-                    }
-                    self.follows(before, joint);
+            let Some(found) = self.skeleton.find(&name(token).0) else {
+                let run = self.numbers(None);
+                self.give_back_frame_number(&run);
+                if run.count == 0 && self.at == self.text.len() {
+                    return self.truncated(first_at, at);
                 }
-                None => {
-                    let run = self.numbers(None);
-                    self.give_back_frame_number(&run);
-                    if run.count == 0 && self.at == self.text.len() {
-                        return self.truncated(first_at, at);
-                    }
-                    if self.unknown.insert(token) {
-                        let name = name(token).0;
-                        self.tally.add(WarningKind::UnknownBones { name }, Some(at));
-                    }
+                if self.unknown.insert(token) {
+                    let name = name(token).0;
+                    self.tally.add(WarningKind::UnknownBones { name }, Some(at));
                 }
+                continue;
+            };
+            let before = std::mem::replace(&mut joint, found);
+            if let Some(spelled) = self.spelled.get_mut(found) {
+                *spelled = token;
             }
+            if !self.bone(joint, at)? {
+                return self.truncated(first_at, at);
+            }
+            self.follows(before, joint);
         }
         self.end_frame(converter)?;
         first_at.ok_or_else(|| Fault::new(self.at, "the end of the file", "the number of a frame").into())
@@ -211,11 +209,11 @@ impl<'a> Frames<'_, 'a> {
         self.at = line_end(self.text, self.at);
     }
 
-    fn begin_frame(&mut self, number: Option<u64>, at: usize, length: usize) {
+    fn begin_frame(&mut self, number: f64, at: usize, length: usize) {
         self.frame += 1;
         self.frame_at = at;
         self.at = at + length;
-        if self.frame > 1 && (number.is_none() || number != self.number.and_then(|number| number.checked_add(1))) {
+        if self.frame > 1 && number != self.number + 1.0 {
             self.tally.add(WarningKind::FrameNumbers, Some(at));
         }
         self.number = number;
@@ -461,13 +459,11 @@ enum Odd {
     None,
 }
 
-/// The number of a frame, where a token is a number: `None` in it where that is no counting number.
-fn frame_number(token: &[u8]) -> Option<Option<u64>> {
-    if is_digits(token) {
-        return Some(std::str::from_utf8(token).ok().and_then(|digits| digits.parse().ok()));
-    }
+/// The number of a frame, where a token is a number.
+fn frame_number(token: &[u8]) -> Option<f64> {
     let starts = matches!(token.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.'));
-    (starts && fast_float2::parse::<f64, _>(token).is_ok_and(f64::is_finite)).then_some(None)
+    let number = fast_float2::parse(token).ok().filter(|_| starts)?;
+    (is_digits(token) || f64::is_finite(number)).then_some(number)
 }
 
 /// The bones of the first frame and how many values each has, as far as the beginning of a file tells.

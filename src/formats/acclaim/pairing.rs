@@ -22,7 +22,7 @@ pub(in crate::formats) fn starts_like_amc(text: &[u8]) -> bool {
         return true;
     }
     let second = lexer.take();
-    is_digits(first) && second.first().is_some_and(u8::is_ascii_alphabetic) && lexer.number().is_ok()
+    is_digits(first) && second.first().is_some_and(u8::is_ascii_alphabetic) && !lexer.peek_in_line().is_empty() && lexer.number().is_ok()
 }
 
 /// The bones of an AMC file and how many values each has: those of the first frame, as far as the first 64 KB hold it. Empty for anything else.
