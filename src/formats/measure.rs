@@ -31,7 +31,7 @@ pub struct Measure {
     pub provenance: Provenance,
     /// The height of the character at rest, in the file's units.
     pub height_units: f64,
-    /// Whether the unit was found by the height rather than given.
+    /// Whether the unit was found by the height, or by the word of the file where that fits the height, rather than given.
     pub unit_detected: bool,
     /// Whether the height fits no unit, so that centimetres were taken.
     pub unit_unknown: bool,
@@ -44,6 +44,22 @@ impl Measure {
     #[must_use]
     pub fn height_metres(&self) -> f64 {
         self.height_units * self.provenance.metres_per_unit
+    }
+
+    /// The same with the unit that the file itself tells of, metres, where that makes the character as tall as a person (0.9 to 2.5 m) and no
+    /// other unit was given.
+    pub(super) fn with_unit_of_file(self, metres_per_unit: Option<f64>) -> Self {
+        match metres_per_unit.filter(|unit| self.unit_detected && (0.9..2.5).contains(&(self.height_units * unit))) {
+            Some(metres_per_unit) => Self {
+                provenance: Provenance {
+                    metres_per_unit,
+                    ..self.provenance
+                },
+                unit_unknown: false,
+                ..self
+            },
+            None => self,
+        }
     }
 }
 

@@ -4,6 +4,8 @@
 //! comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
 //! that are there, never a number in a header.
 
+pub mod acclaim;
+mod assemble;
 pub mod bvh;
 mod error;
 mod gzip;
@@ -71,7 +73,7 @@ pub struct Imported {
     pub warnings: Vec<ImportWarning>,
 }
 
-/// Reads a motion file. `name` is the file's name: for errors, for the name of the clip, and for its ending where the content says nothing.
+/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which is nothing without one, see [`acclaim`]. `name` is the file's name: for errors, for the name of the clip, and for its ending where the content says nothing.
 ///
 /// # Errors
 /// [`ImportError`] when the file is too large, of no known format, or broken.
@@ -90,22 +92,59 @@ pub fn import_with_progress(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<Imported>, ImportError> {
     check_size(name, bytes, options)?;
-    if looks_like_bvh(bytes) || has_extension(name, "bvh") {
-        return bvh::read_with_progress(name, bytes, options, progress);
+    match kind_of(name, bytes) {
+        FileKind::Bvh => bvh::read_with_progress(name, bytes, options, progress),
+        FileKind::Asf => acclaim::skeleton_clip(&acclaim::read_skeleton(name, bytes, options)?, options).map(Some),
+        FileKind::Amc => {
+            let error = ImportError::whole_file(
+                name,
+                "a motion without its skeleton (.amc)",
+                "the ASF file (.asf) that belongs to it",
+            );
+            Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
+        }
+        FileKind::Unknown => {
+            let found = match name.rsplit_once('.') {
+                Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
+                _ => "a file of unknown format".to_owned(),
+            };
+            let error = ImportError::whole_file(name, found, "a motion file (.bvh, or .asf with .amc)");
+            Err(error.with_hint("convert it to BVH, or rename it if it is one"))
+        }
     }
-    let found = match name.rsplit_once('.') {
-        Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
-        _ => "a file of unknown format".to_owned(),
-    };
-    Err(ImportError::whole_file(name, found, "a BVH file (.bvh)").with_hint("convert it to BVH, or rename it if it is one"))
 }
 
-/// Whether the first word is one that BVH files start with.
-fn looks_like_bvh(bytes: &[u8]) -> bool {
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FileKind {
+    /// Skeleton and motion, [`bvh`].
+    Bvh,
+    /// A skeleton whose motions are in AMC files, [`acclaim`].
+    Asf,
+    /// A motion whose skeleton is in an ASF file, [`acclaim`].
+    Amc,
+    /// Nothing that is known here.
+    Unknown,
+}
+
+/// What a file is: by its first words, and where they say nothing by the ending of its name.
+#[must_use]
+pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     /// Comments may come first; UTF-16 has two bytes for each.
     const HEAD: usize = 16 << 10;
     let head = text::decode(bytes.get(..HEAD).unwrap_or(bytes));
-    bvh::starts_like_bvh(&head)
+    if bvh::starts_like_bvh(&head) {
+        FileKind::Bvh
+    } else if acclaim::starts_like_asf(&head) {
+        FileKind::Asf
+    } else if acclaim::starts_like_amc(&head) {
+        FileKind::Amc
+    } else {
+        let endings = [("bvh", FileKind::Bvh), ("asf", FileKind::Asf), ("amc", FileKind::Amc)];
+        let known = endings.into_iter().find(|(ending, _)| has_extension(name, ending));
+        known.map_or(FileKind::Unknown, |(_, kind)| kind)
+    }
 }
 
 fn has_extension(name: &str, extension: &str) -> bool {
@@ -146,10 +185,26 @@ mod tests {
         let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a BVH file (.bvh)"
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, or .asf with .amc)"
         );
         assert!(error.hint.is_some());
         assert!(import("", b"", &options).is_err());
+    }
+
+    #[test]
+    fn content_counts_before_the_ending() {
+        let kinds = [
+            ("x.amc", "HIERARCHY\nROOT a", FileKind::Bvh),
+            ("x.bvh", "# by hand\n:version 1.10\n:root", FileKind::Asf),
+            ("x.bvh", ":DEGREES\n1\nroot 1", FileKind::Amc),
+            ("x", "1\nroot 1 2 3", FileKind::Amc),
+            ("x.AMC", "", FileKind::Amc),
+            ("x.asf", "?", FileKind::Asf),
+            ("x.txt", "?", FileKind::Unknown),
+        ];
+        for (name, text, kind) in kinds {
+            assert_eq!(kind_of(name, text.as_bytes()), kind, "{name} {text}");
+        }
     }
 
     #[test]

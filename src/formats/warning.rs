@@ -62,6 +62,49 @@ pub enum WarningKind {
         /// Whether it was left out.
         dropped: bool,
     },
+    /// The format has no frame rate: this one is taken.
+    AssumedFrameRate {
+        /// Frames per second.
+        fps: f64,
+    },
+    /// Frame numbers that do not follow each other. Frames count as they come.
+    FrameNumbers,
+    /// Frames that leave out bones which frames before them have: their pose is held.
+    MissingBones,
+    /// Bones of the motion that the skeleton does not have: left out.
+    UnknownBones {
+        /// The first of them.
+        name: String,
+    },
+    /// Bones with another number of values than the skeleton has degrees of freedom for: they rest.
+    ValueCount {
+        /// The first of them.
+        name: String,
+        /// Its values in the motion.
+        found: usize,
+        /// Its degrees of freedom.
+        expected: usize,
+    },
+    /// Bones of the skeleton that can move, and of which the motion says nothing: they rest.
+    RestingBones {
+        /// The first of them.
+        name: String,
+    },
+    /// Names in the hierarchy that no bone has: left out.
+    UnknownInHierarchy {
+        /// The first of them.
+        name: String,
+    },
+    /// Bones that do not hang on the root: left out.
+    LooseBones {
+        /// The first of them.
+        name: String,
+    },
+    /// The lowest point of the motion is far from the ground: the skeleton may be that of another person.
+    OffGround {
+        /// Its height over the ground, metres.
+        metres: f32,
+    },
     /// No unit of length makes this skeleton the size of a person: centimetres are taken.
     UnknownUnit,
 }
@@ -161,6 +204,51 @@ impl fmt::Display for ImportWarning {
             WarningKind::RestFromFirstRow => write!(f, "all OFFSETs are zero; the rest pose was taken from the first row"),
             WarningKind::TPose { dropped: true } => write!(f, "the first row is a T-pose{place}; dropped"),
             WarningKind::TPose { dropped: false } => write!(f, "the first row is a T-pose{place}; kept and marked"),
+            WarningKind::AssumedFrameRate { fps } => {
+                write!(
+                    f,
+                    "the format has no frame rate; {fps} frames per second are taken, it can be set by hand"
+                )
+            }
+            WarningKind::FrameNumbers => write!(
+                f,
+                "{}{place} {} not follow the one before; frames were taken as they come",
+                n("frame number"),
+                if one { "does" } else { "do" }
+            ),
+            WarningKind::MissingBones => write!(f, "{}{place} without some of the bones; their pose was held", n("frame")),
+            WarningKind::UnknownBones { name } => {
+                write!(
+                    f,
+                    "{} of the motion{place} not in the skeleton, such as `{name}`; left out",
+                    n("bone")
+                )
+            }
+            WarningKind::ValueCount { name, found, expected } => write!(
+                f,
+                "{}{place} with more or fewer values than the skeleton has degrees of freedom, such as {found} for the {expected} of `{name}`; \
+                 left at rest",
+                n("bone")
+            ),
+            WarningKind::RestingBones { name } => {
+                write!(
+                    f,
+                    "{} of the skeleton without values in the motion, such as `{name}`; left at rest",
+                    n("bone")
+                )
+            }
+            WarningKind::UnknownInHierarchy { name } => {
+                write!(f, "{} in the hierarchy{place} without bone, such as `{name}`; left out", n("name"))
+            }
+            WarningKind::LooseBones { name } => {
+                write!(f, "{}{place} not below the root, such as `{name}`; left out", n("bone"))
+            }
+            WarningKind::OffGround { metres } => write!(
+                f,
+                "the feet never come nearer than {:.0} cm {} the ground; the skeleton may be that of another person",
+                metres.abs() * 100.0,
+                if *metres > 0.0 { "above" } else { "below" }
+            ),
             WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
         }
     }

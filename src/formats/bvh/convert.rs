@@ -9,10 +9,10 @@ use glam::{Quat, Vec3};
 
 /// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single digits takes 8; only files in which most joints
 /// have no channel at all, and those made to fill the memory, come near.
-const MEMORY_PER_BYTE: u64 = 16;
+pub(in crate::formats) const MEMORY_PER_BYTE: u64 = 16;
 
 /// Motions below this are always taken.
-const MEMORY_FLOOR: u64 = 64 << 20;
+pub(in crate::formats) const MEMORY_FLOOR: u64 = 64 << 20;
 
 /// Whether a channel turns, and about or along which axis (0 to 2).
 pub(super) fn kind(channel: Channel) -> (bool, usize) {
@@ -209,7 +209,7 @@ fn vec3(v: [f64; 3]) -> Vec3 {
 }
 
 /// `q` (x, y, z, w) times a turn about one axis, given sine and cosine of half the angle.
-fn turned([x, y, z, w]: [f64; 4], axis: usize, s: f64, c: f64) -> [f64; 4] {
+pub(in crate::formats) fn turned([x, y, z, w]: [f64; 4], axis: usize, s: f64, c: f64) -> [f64; 4] {
     match axis {
         0 => [x * c + w * s, y * c + z * s, z * c - y * s, w * c - x * s],
         1 => [x * c - z * s, y * c + w * s, z * c + x * s, w * c - y * s],
@@ -218,7 +218,7 @@ fn turned([x, y, z, w]: [f64; 4], axis: usize, s: f64, c: f64) -> [f64; 4] {
 }
 
 /// Sine and cosine of half an angle in degrees, to 1e-13. No branches on usual angles, so that it runs over a row as vectors.
-fn half_angle_sin_cos(degrees: f64) -> (f64, f64) {
+pub(in crate::formats) fn half_angle_sin_cos(degrees: f64) -> (f64, f64) {
     use std::f64::consts::FRAC_PI_2;
     // Adding this rounds to a whole number and leaves it in the lowest bits, for magnitudes below 2⁵¹.
     const ROUND: f64 = 6_755_399_441_055_744.0;

@@ -5,7 +5,7 @@ use crate::formats::warning::WarningKind;
 use crate::skeleton::Channel;
 
 /// Joints nested deeper than this are refused: no skeleton is, and what comes after may recurse.
-pub(super) const MAX_DEPTH: usize = 4096;
+pub(in crate::formats) const MAX_DEPTH: usize = 4096;
 
 /// A joint as the file has it: file units, file axes.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,6 +16,11 @@ mod number;
 mod read;
 mod write;
 
+// What reading text takes in any format.
+pub(super) use convert::{MEMORY_FLOOR, MEMORY_PER_BYTE, half_angle_sin_cos, turned};
+pub(super) use hierarchy::MAX_DEPTH;
+pub(super) use number::{Scan, scan};
+
 pub use read::{read, read_with_progress};
 pub use write::{RotationOrder, WriteOptions, write};
 

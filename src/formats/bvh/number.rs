@@ -7,7 +7,7 @@ const LARGEST: f64 = 1e30;
 
 /// What stands at a place where a number should.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Scan {
+pub(in crate::formats) enum Scan {
     /// A number that ends before `end`; `glued` when the next one follows without a space.
     Value { value: f64, end: usize, glued: bool },
     /// `nan`, `-nan(ind)`, `1.#IND`, `inf`, or a number out of all bounds.
@@ -29,7 +29,7 @@ pub(super) fn token_end(text: &[u8], at: usize) -> usize {
 }
 
 /// Reads the number at `at`. With `commas`, numbers have a decimal comma, otherwise a point.
-pub(super) fn scan(text: &[u8], at: usize, commas: bool) -> Scan {
+pub(in crate::formats) fn scan(text: &[u8], at: usize, commas: bool) -> Scan {
     let end = piece_end(text, at);
     let piece = text.get(at..end).unwrap_or_default();
     let glued = matches!(text.get(end), Some(b'+' | b'-'));

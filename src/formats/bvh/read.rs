@@ -3,13 +3,11 @@ use super::header::{DEFAULT_FPS, header};
 use super::hierarchy::hierarchy;
 use super::lexer::{Lexer, Stop};
 use super::motion::{Progress, rows};
-use crate::formats::error::{Fault, ImportError};
-use crate::formats::measure::measure;
-use crate::formats::raw::RawMotion;
-use crate::formats::t_pose::first_frame_is_t_pose;
+use crate::formats::assemble::assemble;
+use crate::formats::error::ImportError;
 use crate::formats::text::decode;
-use crate::formats::warning::{Tally, WarningKind};
-use crate::formats::{ImportOptions, Imported, ImportedClip, check_size, stem};
+use crate::formats::warning::WarningKind;
+use crate::formats::{ImportOptions, Imported, check_size};
 
 /// Reads a BVH file: one clip for each ROOT, in metres and Y up.
 ///
@@ -82,7 +80,7 @@ fn parse(name: &str, text: &[u8], options: &ImportOptions, commas: bool, progres
         lexer.tally.add(WarningKind::NoFrames, None);
     }
     let first_row_at = first_row_at(text, bytes_left);
-    assemble(name, converter.finish(), fps, options, &mut lexer.tally, first_row_at)
+    assemble(name, converter.finish(), fps, options, None, &mut lexer.tally, first_row_at)
         .map(|clips| Imported {
             clips,
             warnings: std::mem::take(&mut lexer.tally).into_warnings(text),
@@ -96,52 +94,4 @@ fn first_row_at(text: &[u8], bytes_left: usize) -> usize {
     lexer.at = text.len() - bytes_left;
     lexer.skip_blank();
     lexer.at
-}
-
-fn assemble(
-    name: &str,
-    mut motions: Vec<RawMotion>,
-    fps: f64,
-    options: &ImportOptions,
-    tally: &mut Tally,
-    first_row_at: usize,
-) -> Result<Vec<ImportedClip>, Fault> {
-    let mut rest_from_first_row = false;
-    for motion in &mut motions {
-        rest_from_first_row |= motion.rest_from_first_frame();
-    }
-    if rest_from_first_row {
-        tally.add(WarningKind::RestFromFirstRow, None);
-    }
-    let t_poses: Vec<bool> = motions.iter().map(first_frame_is_t_pose).collect();
-    // Characters of one file stay in step: the row goes only where it is a T-pose for all of them.
-    let dropped = options.drop_t_pose && t_poses.iter().all(|&is_t_pose| is_t_pose);
-    if t_poses.contains(&true) {
-        tally.add(WarningKind::TPose { dropped }, Some(first_row_at));
-    }
-    let several = motions.len() > 1;
-    let mut clips = Vec::with_capacity(motions.len());
-    for (mut raw, t_pose_first_row) in motions.into_iter().zip(t_poses) {
-        if dropped {
-            raw.drop_first_frame();
-        }
-        let measure = measure(&raw, options.metres_per_unit, options.up);
-        if measure.unit_unknown {
-            tally.add(WarningKind::UnknownUnit, None);
-        }
-        let clip_name = match raw.joints.first() {
-            Some(root) if several => format!("{} ({})", stem(name), root.name),
-            _ => stem(name).to_owned(),
-        };
-        let clip = raw
-            .into_clip(clip_name, fps, &measure)
-            .map_err(|error| Fault::new(0, error.to_string(), "a skeleton with a motion"))?;
-        clips.push(ImportedClip {
-            clip,
-            t_pose_first_row,
-            t_pose_dropped: dropped,
-            measure,
-        });
-    }
-    Ok(clips)
 }
