@@ -1,9 +1,9 @@
 use super::ImportError;
 use flate2::read::GzDecoder;
-use std::io::Read as _;
+use std::io::{self, Read};
 
 /// No bundled take unpacks to more. A damaged file must not fill the memory.
-const MOST_BYTES: u64 = 64 << 20;
+const MOST_BYTES: usize = 64 << 20;
 
 /// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have unpacked them on the way.
 ///
@@ -13,13 +13,18 @@ pub fn unpack_gzip(name: &str, packed: &[u8]) -> Result<Vec<u8>, ImportError> {
     if !packed.starts_with(&[0x1f, 0x8b]) {
         return Ok(packed.to_vec());
     }
-    let mut bytes = Vec::new();
-    let unpacked = GzDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut bytes);
-    match unpacked {
-        Ok(_) if bytes.len() as u64 <= MOST_BYTES => Ok(bytes),
-        Ok(_) => Err(ImportError::whole_file(name, "more than 64 MiB after unpacking", "a smaller file")),
+    match read_at_most(GzDecoder::new(packed), MOST_BYTES) {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err(ImportError::whole_file(name, "more than 64 MiB after unpacking", "a smaller file")),
         Err(error) => Err(ImportError::whole_file(name, error.to_string(), "a gzip file")),
     }
+}
+
+/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what comes, whatever a header promises.
+pub(super) fn read_at_most(reader: impl Read, most: usize) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    reader.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok((bytes.len() <= most).then_some(bytes))
 }
 
 #[cfg(test)]

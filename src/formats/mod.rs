@@ -4,8 +4,11 @@
 //! comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
 //! that are there, never a number in a header.
 
+pub mod archive;
 pub mod bvh;
+pub mod csv;
 mod error;
+pub mod gltf;
 mod gzip;
 mod measure;
 mod raw;
