@@ -87,11 +87,17 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
 }
 
 fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, String> {
-    ZipArchive::from_slice(bytes).map_err(|error| match error.kind() {
-        ErrorKind::MissingEndOfCentralDirectory if is_zip(bytes) => "a zip archive without an end: it was cut off".to_owned(),
+    let cut_off = || "a zip archive without an end: it was cut off".to_owned();
+    let archive = ZipArchive::from_slice(bytes).map_err(|error| match error.kind() {
+        ErrorKind::MissingEndOfCentralDirectory if is_zip(bytes) => cut_off(),
         ErrorKind::MissingEndOfCentralDirectory => "no zip archive".to_owned(),
         _ => format!("a damaged zip archive ({error})"),
-    })
+    })?;
+    // The end of an archive inside one that was cut off may look like its own. But then nothing in it is at the start, and something comes after.
+    let is_inner = archive.end_offset() < bytes.len() as u64
+        && bytes.starts_with(b"PK\x03\x04")
+        && archive.entries().all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
+    if is_inner { Err(cut_off()) } else { Ok(archive) }
 }
 
 struct Unpacking<'a> {

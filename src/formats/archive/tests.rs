@@ -11,7 +11,7 @@ const TAKES: &[u8] = include_bytes!("../../../tests/cases/archive/takes.zip");
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut archive = ZipArchiveWriter::new(Vec::new());
     for (path, content) in files {
-        let file = archive.new_file(rawzip::EntryPath::verbatim(path.as_bytes()));
+        let file = archive.new_file(rawzip::path::EntryPath::verbatim(path.as_bytes()));
         let (mut entry, config) = file.compression_method(CompressionMethod::DEFLATE).start().unwrap();
         let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::best()));
         writer.write_all(content).unwrap();

@@ -34,7 +34,7 @@ impl Bones {
         }
         for (joint, _) in has_bone.iter().enumerate().filter(|(_, has_bone)| !**has_bone) {
             let up = Vec3::Y * MARK;
-            bones.octahedron(joint, positions[joint] - up, positions[joint] + up, 0.5, [Vec3::X * MARK, Vec3::Z * MARK]);
+            bones.octahedron(joint, positions[joint] - up, positions[joint] + up, 0.5, [Vec3::Z * MARK, Vec3::X * MARK]);
         }
         bones
     }
@@ -50,6 +50,7 @@ impl Bones {
         true
     }
 
+    /// `side`, `other` and the way from `start` to `end` are right-handed.
     fn octahedron(&mut self, joint: usize, start: Vec3, end: Vec3, waist: f32, [side, other]: [Vec3; 2]) {
         let middle = start.lerp(end, waist);
         let ring = [middle + side, middle + other, middle - side, middle - other];

@@ -48,8 +48,8 @@ pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
         let candidates = std::iter::once(even).chain((1..=MOST_BETWEEN).map(|between| f64::from(between) / nearest));
         candidates
             .flat_map(|fps| [fps.round(), fps])
-            .find(|&fps| fps > 0.0 && fps <= HIGHEST_FPS && holds(fps))
             .map(|fps| if fps < LOWEST_FPS { fps * (DEFAULT_FPS / fps).round() } else { fps })
+            .find(|&fps| fps > 0.0 && fps <= HIGHEST_FPS && holds(fps))
     });
     let fps = found.unwrap_or(DEFAULT_FPS);
     Rate {
