@@ -77,7 +77,9 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
     let Unpacking { mut files, tally, .. } = unpacking;
     let warnings = tally.into_warnings(b"");
     if files.is_empty() {
-        let unreadable = warnings.iter().find(|warning| matches!(warning.kind, WarningKind::UnreadableFiles { .. }));
+        let unreadable = warnings
+            .iter()
+            .find(|warning| matches!(warning.kind, WarningKind::UnreadableFiles { .. }));
         let found = unreadable.map_or_else(|| "an archive without motion files".to_owned(), ToString::to_string);
         return Err(ImportError::whole_file(name, found, "motion files (.bvh, .asf, .amc, .glb, .gltf)"));
     }
@@ -96,7 +98,9 @@ fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, String> {
     // The end of an archive inside one that was cut off may look like its own. But then nothing in it is at the start, and something comes after.
     let is_inner = archive.end_offset() < bytes.len() as u64
         && bytes.starts_with(b"PK\x03\x04")
-        && archive.entries().all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
+        && archive
+            .entries()
+            .all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
     if is_inner { Err(cut_off()) } else { Ok(archive) }
 }
 

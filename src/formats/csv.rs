@@ -46,7 +46,7 @@ pub struct CsvInputs<'a> {
 pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
     let clip = inputs.clip;
     let mut out = String::new();
-    header(&mut out, inputs, options);
+    header(&mut out, inputs, options.rotations);
     let mut world = WorldPose::default();
     let mut turns: Vec<Quat> = vec![Quat::IDENTITY; clip.skeleton().len()];
     let mut angles = vec![[0.0; 3]; clip.skeleton().len()];
@@ -80,8 +80,8 @@ pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
     out
 }
 
-fn header(out: &mut String, inputs: &CsvInputs<'_>, options: &CsvOptions) {
-    let rotations: Vec<&str> = match options.rotations {
+fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
+    let rotations: Vec<&str> = match rotations {
         CsvRotations::Quaternions => vec!["qx", "qy", "qz", "qw"],
         CsvRotations::Euler(order) => order.axes().into_iter().map(|axis| ["rx_deg", "ry_deg", "rz_deg"][axis]).collect(),
     };
@@ -90,7 +90,11 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, options: &CsvOptions) {
     for joint in inputs.clip.skeleton().joints() {
         let times = seen.entry(&joint.name).or_default();
         *times += 1;
-        let name = if *times == 1 { joint.name.clone() } else { format!("{} ({times})", joint.name) };
+        let name = if *times == 1 {
+            joint.name.clone()
+        } else {
+            format!("{} ({times})", joint.name)
+        };
         for column in ["x_m", "y_m", "z_m"].iter().chain(&rotations) {
             out.push(',');
             quoted(out, &format!("{name}.{column}"));
@@ -196,7 +200,14 @@ mod tests {
         let joints = clip.skeleton().len();
         assert_eq!(rows.len(), clip.frames() + 1);
         assert!(rows.iter().all(|row| row.len() == 1 + 7 * joints + 2 + 1));
-        assert_eq!(rows[0][..3], ["time_s".to_owned(), format!("{}.x_m", clip.skeleton().joints()[0].name), format!("{}.y_m", clip.skeleton().joints()[0].name)]);
+        assert_eq!(
+            rows[0][..3],
+            [
+                "time_s".to_owned(),
+                format!("{}.x_m", clip.skeleton().joints()[0].name),
+                format!("{}.y_m", clip.skeleton().joints()[0].name)
+            ]
+        );
         assert!(text.contains(",\"speed, \"\"fast\"\"\"\r\n"));
         for frame in 0..clip.frames() {
             let row = &rows[frame + 1];
@@ -229,7 +240,9 @@ mod tests {
         for frame in 0..clip.frames() {
             for joint in 0..clip.skeleton().len() {
                 let at = 4 + 6 * joint;
-                let turn = Quat::from_rotation_z(angle(frame, at)) * Quat::from_rotation_x(angle(frame, at + 1)) * Quat::from_rotation_y(angle(frame, at + 2));
+                let turn = Quat::from_rotation_z(angle(frame, at))
+                    * Quat::from_rotation_x(angle(frame, at + 1))
+                    * Quat::from_rotation_y(angle(frame, at + 2));
                 assert!(quat::angle_between(turn, clip.rotations(frame)[joint]) < 1e-5);
                 if frame > 0 {
                     assert!((0..3).all(|i| (angle(frame, at + i) - angle(frame - 1, at + i)).abs() < 3.0));
@@ -250,6 +263,9 @@ mod tests {
         let joints = vec![joint("a,b", None), joint("hand", Some(0)), joint("hand", Some(0))];
         let clip = Clip::new("c", Arc::new(Skeleton::new(joints).unwrap()), 30.0, vec![], vec![]).unwrap();
         let text = write_csv(&inputs(&clip), &CsvOptions::default());
-        assert!(text.starts_with("time_s,\"a,b.x_m\",\"a,b.y_m\"") && text.contains(",hand.x_m,") && text.ends_with(",hand (2).qw\r\n"), "{text}");
+        assert!(
+            text.starts_with("time_s,\"a,b.x_m\",\"a,b.y_m\"") && text.contains(",hand.x_m,") && text.ends_with(",hand (2).qw\r\n"),
+            "{text}"
+        );
     }
 }

@@ -96,6 +96,9 @@ pub fn import_with_progress(
     if looks_like_bvh(bytes) || has_extension(name, "bvh") {
         return bvh::read_with_progress(name, bytes, options, progress);
     }
+    if gltf::is_gltf(bytes) || has_extension(name, "glb") || has_extension(name, "gltf") {
+        return gltf::read(name, bytes, &|_| None, options).map(Some);
+    }
     let found = match name.rsplit_once('.') {
         Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
         _ => "a file of unknown format".to_owned(),

@@ -102,12 +102,20 @@ fn what_is_no_archive_of_motion_is_refused() {
 fn a_bomb_is_refused_before_it_fills_the_memory() {
     let limits = ArchiveLimits { max_bytes: 3 << 20 };
     let megabyte = vec![b' '; 1 << 20];
-    let three = zip(&[("1.bvh", &megabyte), ("2.bvh", &megabyte), ("3.bvh", &megabyte), ("4.txt", &megabyte)]);
+    let three = zip(&[
+        ("1.bvh", &megabyte),
+        ("2.bvh", &megabyte),
+        ("3.bvh", &megabyte),
+        ("4.txt", &megabyte),
+    ]);
     assert!(three.len() < 1 << 14);
     assert_eq!(unpack("a.zip", &three, &limits).unwrap().files.len(), 3);
     let four = zip(&[("1.bvh", &megabyte), ("2.bvh", &megabyte), ("3.bvh", &megabyte), ("4.bvh", b" ")]);
     let error = unpack("a.zip", &four, &limits).unwrap_err();
-    assert_eq!(error.to_string(), "a.zip:1:1: found more than 3 MB after unpacking, expected at most 3 MB");
+    assert_eq!(
+        error.to_string(),
+        "a.zip:1:1: found more than 3 MB after unpacking, expected at most 3 MB"
+    );
     let nested = zip(&[("in.zip", &four)]);
     assert!(unpack("a.zip", &nested, &limits).is_err());
 }

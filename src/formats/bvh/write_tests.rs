@@ -139,7 +139,11 @@ fn another_frame_rate_is_resampled() {
         };
         write(&clip, &options)
     };
-    assert!(at(Some(60.0)).contains("Frames: 3\nFrame Time: 0.016666666666666666\n0 10 0 0 0 0\n0 10 0 0 11.459156 0\n"), "{}", at(Some(60.0)));
+    assert!(
+        at(Some(60.0)).contains("Frames: 3\nFrame Time: 0.016666666666666666\n0 10 0 0 0 0\n0 10 0 0 11.459156 0\n"),
+        "{}",
+        at(Some(60.0))
+    );
     for no_rate in [None, Some(0.0), Some(f64::NAN), Some(1e9)] {
         assert!(at(no_rate).contains("Frames: 5\nFrame Time: 0.008333333333333333\n"));
     }

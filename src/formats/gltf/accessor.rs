@@ -2,10 +2,10 @@
 
 use super::document::Document;
 use crate::formats::ImportError;
+use gltf::json::Index;
 use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType, Type};
 use gltf::json::buffer::View;
 use gltf::json::validation::{Checked, USize64};
-use gltf::json::Index;
 
 const VALID: &str = "a valid glTF 2.0 file";
 
@@ -28,7 +28,10 @@ impl Document<'_> {
     /// The elements of an accessor as numbers, one element after the other. Integers are fractions of their largest value (section 3.6.2.2).
     pub(super) fn floats(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<f32>, ImportError> {
         let at = index.value();
-        let accessor = self.root.get(index).ok_or_else(|| self.error(format!("accessor {at}, which is not there"), VALID))?;
+        let accessor = self
+            .root
+            .get(index)
+            .ok_or_else(|| self.error(format!("accessor {at}, which is not there"), VALID))?;
         let (Checked::Valid(GenericComponentType(component)), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(self.error(format!("accessor {at} of an unknown type"), VALID));
         };
@@ -56,7 +59,12 @@ impl Document<'_> {
                 return Err(self.error(format!("accessor {at} with indices of an unknown type"), VALID));
             };
             let count = self.size(sparse.count)?;
-            let places = self.elements(sparse.indices.buffer_view, Some(sparse.indices.byte_offset), count, index_type.size())?;
+            let places = self.elements(
+                sparse.indices.buffer_view,
+                Some(sparse.indices.byte_offset),
+                count,
+                index_type.size(),
+            )?;
             let contents = self.elements(
                 sparse.values.buffer_view,
                 Some(sparse.values.byte_offset),
@@ -78,7 +86,10 @@ impl Document<'_> {
 
     fn elements(&self, view: Index<View>, offset: Option<USize64>, count: usize, size: usize) -> Result<Elements<'_>, ImportError> {
         let at = view.value();
-        let view = self.root.get(view).ok_or_else(|| self.error(format!("buffer view {at}, which is not there"), VALID))?;
+        let view = self
+            .root
+            .get(view)
+            .ok_or_else(|| self.error(format!("buffer view {at}, which is not there"), VALID))?;
         let buffer = self.buffer(view.buffer.value())?;
         let start = self.size(view.byte_offset.unwrap_or_default())?;
         let (length, offset) = (self.size(view.byte_length)?, self.size(offset.unwrap_or_default())?);
@@ -87,7 +98,9 @@ impl Document<'_> {
             .get(start..)
             .and_then(|rest| rest.get(..length))
             .and_then(|view| view.get(offset..));
-        let needed = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
+        let needed = count
+            .checked_sub(1)
+            .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
         match (bytes, needed) {
             (Some(bytes), Some(needed)) if needed <= bytes.len() && stride >= size => Ok(Elements {
                 bytes,
@@ -96,7 +109,10 @@ impl Document<'_> {
                 count,
             }),
             _ => {
-                let found = format!("buffer view {at} with {} bytes for {count} values of {size}", bytes.map_or(0, <[u8]>::len));
+                let found = format!(
+                    "buffer view {at} with {} bytes for {count} values of {size}",
+                    bytes.map_or(0, <[u8]>::len)
+                );
                 Err(self.error(found, "all bytes of the animation").with_hint("the file may be cut off"))
             }
         }

@@ -34,7 +34,13 @@ impl Bones {
         }
         for (joint, _) in has_bone.iter().enumerate().filter(|(_, has_bone)| !**has_bone) {
             let up = Vec3::Y * MARK;
-            bones.octahedron(joint, positions[joint] - up, positions[joint] + up, 0.5, [Vec3::Z * MARK, Vec3::X * MARK]);
+            bones.octahedron(
+                joint,
+                positions[joint] - up,
+                positions[joint] + up,
+                0.5,
+                [Vec3::Z * MARK, Vec3::X * MARK],
+            );
         }
         bones
     }
@@ -84,7 +90,10 @@ mod tests {
         assert_eq!(bones.positions.len() % 24, 0);
         for (corners, normals) in bones.positions.chunks(24).zip(bones.normals.chunks(24)) {
             let middle = corners.iter().sum::<Vec3>() / 24.0;
-            let outwards = corners.iter().zip(normals).all(|(corner, normal)| (corner - middle).dot(*normal) > 0.0);
+            let outwards = corners
+                .iter()
+                .zip(normals)
+                .all(|(corner, normal)| (corner - middle).dot(*normal) > 0.0);
             assert!(outwards && normals.iter().all(|normal| normal.is_normalized()));
         }
     }

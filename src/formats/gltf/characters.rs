@@ -144,7 +144,11 @@ impl<'a> Search<'a> {
         }
         let above = nodes.all[root].parent.map_or(World::IDENTITY, |parent| nodes.all[parent].world);
         let joint_nodes: Vec<usize> = below.iter().copied().filter(|&node| self.taken[node]).collect();
-        let joints = joint_nodes.iter().enumerate().map(|(index, &node)| self.joint(index, node, root)).collect();
+        let joints = joint_nodes
+            .iter()
+            .enumerate()
+            .map(|(index, &node)| self.joint(index, node, root))
+            .collect();
         let uneven = |node: &&usize| is_uneven(nodes.all[**node].scale) && !nodes.all[**node].children.is_empty();
         let uneven = joint_nodes.iter().filter(uneven).count();
         for &node in below {

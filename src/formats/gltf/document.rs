@@ -73,9 +73,9 @@ impl<'a> Document<'a> {
         match self.buffers.get(index) {
             Some(Buffer::Slice(bytes)) => Ok(bytes),
             Some(Buffer::Shared(bytes)) => Ok(bytes),
-            Some(Buffer::Missing(why)) => {
-                Err(self.error(why.clone(), "the binary data of the animation").with_hint("open it together with its .bin file"))
-            }
+            Some(Buffer::Missing(why)) => Err(self
+                .error(why.clone(), "the binary data of the animation")
+                .with_hint("open it together with its .bin file")),
             None => Err(self.error(format!("a view of buffer {index}, which is not there"), "a valid glTF 2.0 file")),
         }
     }
@@ -92,7 +92,10 @@ impl<'a> Document<'a> {
         let left = count.checked_mul(bytes_each).and_then(|bytes| self.left.get().checked_sub(bytes));
         let Some(left) = left else {
             return Err(self
-                .error("more motion than fits into the memory that a file may take", "a shorter or a sparser animation")
+                .error(
+                    "more motion than fits into the memory that a file may take",
+                    "a shorter or a sparser animation",
+                )
                 .with_hint("export a part of the animation, or at a lower frame rate"));
         };
         self.left.set(left);
@@ -150,7 +153,11 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
     }
     // Channels that move something else than a node (KHR_animation_pointer) are valid, but the library does not know them.
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
-    for channels in animations.into_iter().flatten().filter_map(|animation| animation.get_mut("channels")?.as_array_mut()) {
+    for channels in animations
+        .into_iter()
+        .flatten()
+        .filter_map(|animation| animation.get_mut("channels")?.as_array_mut())
+    {
         channels.retain(|channel| channel.pointer("/target/node").is_some());
     }
     serde_json::from_value(value).map_err(|_| refused(&error))

@@ -49,7 +49,13 @@ pub(super) struct Nodes {
 
 impl Nodes {
     pub(super) fn of(document: &Document<'_>) -> Result<Self, ImportError> {
-        let mut all: Vec<Node> = document.root.nodes.iter().enumerate().map(|(index, node)| at_rest(index, node)).collect();
+        let mut all: Vec<Node> = document
+            .root
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(index, node)| at_rest(index, node))
+            .collect();
         for parent in 0..all.len() {
             for index in 0..all[parent].children.len() {
                 let child = all[parent].children[index];
@@ -106,7 +112,11 @@ fn at_rest(index: usize, node: &gltf::json::Node) -> Node {
         children: node.children.iter().flatten().map(gltf::json::Index::value).collect(),
         translation: if translation.is_finite() { translation } else { DVec3::ZERO },
         // A matrix without volume has no rotation.
-        rotation: if length.is_finite() && length > 1e-6 { rotation * length.recip() } else { DQuat::IDENTITY },
+        rotation: if length.is_finite() && length > 1e-6 {
+            rotation * length.recip()
+        } else {
+            DQuat::IDENTITY
+        },
         scale: if scale.is_finite() { scale } else { DVec3::ONE },
         is_bare: node.mesh.is_none() && node.camera.is_none(),
         world: World::IDENTITY,

@@ -25,7 +25,8 @@ use std::sync::Arc;
 /// name that stands in it (the `.bin` of a `.gltf`).
 ///
 /// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second where there is none; `options.fps` overrides that and
-/// does not change how long an animation takes. Lengths are metres unless that makes giants of a hundred metres.
+/// does not change how long an animation takes. Lengths are metres unless that makes giants of more than ten metres: centimetres then, or
+/// millimetres.
 ///
 /// # Errors
 /// [`ImportError`] when the file is no glTF 2.0, is cut off, holds nothing that moves, or asks for more memory than `options.max_bytes`.
@@ -151,7 +152,10 @@ fn key_times(document: &Document<'_>, input: Index<Accessor>) -> Result<Arc<[f32
     if times.iter().all(|time| time.is_finite()) && times.is_sorted() {
         Ok(times.into())
     } else {
-        Err(document.error(format!("times of keys that do not rise (accessor {})", input.value()), "rising times"))
+        Err(document.error(
+            format!("times of keys that do not rise (accessor {})", input.value()),
+            "rising times",
+        ))
     }
 }
 
@@ -197,19 +201,19 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// Metres per unit. The format is made for metres, but not every exporter knows.
+    /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.
     fn unit(&self, rest: &RawMotion, tally: &mut Tally) -> f64 {
-        /// Smaller units than this make of metres a body that nobody means.
-        const SMALL: f64 = 0.01;
+        /// Nothing that moves on joints is higher, in each unit.
+        const HIGHEST: [(f64, f64); 2] = [(10.0, 1.0), (1000.0, 0.01)];
         let found = measure(rest, self.options.metres_per_unit, Some(UpAxis::Y));
-        let metres_per_unit = found.provenance.metres_per_unit;
         if !found.unit_detected {
-            return metres_per_unit;
+            return found.provenance.metres_per_unit;
         }
-        if found.unit_unknown || metres_per_unit > SMALL {
-            return 1.0;
+        let unit = HIGHEST.iter().find(|(highest, _)| found.height_units <= *highest);
+        let metres_per_unit = unit.map_or(0.001, |(_, unit)| *unit);
+        if metres_per_unit != 1.0 {
+            tally.add(WarningKind::NotMetres { metres_per_unit }, None);
         }
-        tally.add(WarningKind::NotMetres { metres_per_unit }, None);
         metres_per_unit
     }
 
@@ -222,7 +226,8 @@ impl Context<'_> {
         let joints = character.joints.len();
         // Too many frames for a number of bytes are too many for `spend`, which takes what saturates for too much.
         let frames = frames as usize;
-        self.document.spend(frames.saturating_mul(joints), size_of::<Quat>() + size_of::<Vec3>())?;
+        self.document
+            .spend(frames.saturating_mul(joints), size_of::<Quat>() + size_of::<Vec3>())?;
         let mut raw = RawMotion {
             joints: character.joints.clone(),
             rotations: vec![Quat::IDENTITY; frames * joints],
@@ -233,7 +238,9 @@ impl Context<'_> {
         for (joint, &node) in character.nodes.iter().enumerate() {
             let above = match character.joints[joint].parent {
                 None => character.above,
-                Some(_) => self.nodes.all[node].parent.map_or(character.above, |parent| self.nodes.all[parent].world),
+                Some(_) => self.nodes.all[node]
+                    .parent
+                    .map_or(character.above, |parent| self.nodes.all[parent].world),
             };
             if let Some(curve) = motion.turns.get(&node) {
                 let (parent, own) = (above.rotation.as_quat(), self.nodes.all[node].world.rotation.as_quat().conjugate());
@@ -262,14 +269,7 @@ impl Context<'_> {
         Ok(raw)
     }
 
-    fn clip(
-        &self,
-        mut raw: RawMotion,
-        name: &str,
-        fps: f64,
-        metres_per_unit: f64,
-        tally: &mut Tally,
-    ) -> Result<ImportedClip, ImportError> {
+    fn clip(&self, mut raw: RawMotion, name: &str, fps: f64, metres_per_unit: f64, tally: &mut Tally) -> Result<ImportedClip, ImportError> {
         let t_pose_first_row = first_frame_is_t_pose(&raw);
         let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
         if t_pose_first_row {

@@ -21,7 +21,7 @@ struct Made {
 
 impl Made {
     /// Nodes, and the joints of a skin.
-    fn new(nodes: Value, joints: &[usize]) -> Self {
+    fn new(nodes: &Value, joints: &[usize]) -> Self {
         let mut root = json!({ "asset": { "version": "2.0" }, "nodes": nodes, "accessors": [], "bufferViews": [] });
         if !joints.is_empty() {
             root["skins"] = json!([{ "joints": joints }]);
@@ -59,7 +59,11 @@ impl Made {
         let input = self.floats("SCALAR", 1, times);
         let (kind, width) = if path == "rotation" { ("VEC4", 4) } else { ("VEC3", 3) };
         let output = self.floats(kind, width, values);
-        self.sampler(node, path, json!({ "input": input, "output": output, "interpolation": interpolation }));
+        self.sampler(
+            node,
+            path,
+            json!({ "input": input, "output": output, "interpolation": interpolation }),
+        );
     }
 
     fn sampler(&mut self, node: usize, path: &str, sampler: Value) {
@@ -144,7 +148,10 @@ fn a_clip_comes_back_from_its_file() {
     }
     // At another rate, and without frames.
     let half = write_glb(&clip, &GlbOptions { fps: Some(60.0) }).unwrap();
-    assert_eq!(only(&read("x.glb", &half, &|_| None, &ImportOptions::default()).unwrap()).frames(), 79);
+    assert_eq!(
+        only(&read("x.glb", &half, &|_| None, &ImportOptions::default()).unwrap()).frames(),
+        79
+    );
     let still = write_glb(&clip.crop(0..0).unwrap(), &GlbOptions::default()).unwrap();
     let imported = read("x.glb", &still, &|_| None, &ImportOptions::default()).unwrap();
     assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
@@ -154,7 +161,7 @@ fn a_clip_comes_back_from_its_file() {
 #[test]
 fn each_interpolation_is_what_the_format_says() {
     let times = [0.0, 0.5, 1.0];
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(0, "translation", "STEP", &times, &[0.0, 1.0, 0.0, 2.0, 1.0, 0.0, 3.0, 1.0, 0.0]);
     let turns = [about_z(0.0), about_z(1.0), about_z(0.5)];
     // The long way round: the shorter one is meant.
@@ -163,16 +170,26 @@ fn each_interpolation_is_what_the_format_says() {
     let imported = made.read();
     let clip = only(&imported);
     assert_eq!((clip.fps(), clip.frames()), (30.0, 31));
-    assert_eq!(clip.skeleton().joints()[1].end_site, Some(Vec3::Y * 0.3), "a leaf that does not move is an end");
+    assert_eq!(
+        clip.skeleton().joints()[1].end_site,
+        Some(Vec3::Y * 0.3),
+        "a leaf that does not move is an end"
+    );
     let x = |frame: usize| clip.root_translations()[frame].x;
     assert_eq!((x(0), x(14), x(15), x(29), x(30)), (0.0, 0.0, 2.0, 2.0, 3.0));
     for (frame, angle) in [(0, 0.0), (3, 0.2), (15, 1.0), (18, 0.9), (30, 0.5)] {
-        assert!(quat::angle_between(clip.rotations(frame)[1], Quat::from_rotation_z(angle)) < 1e-5, "frame {frame}");
+        assert!(
+            quat::angle_between(clip.rotations(frame)[1], Quat::from_rotation_z(angle)) < 1e-5,
+            "frame {frame}"
+        );
     }
     // A cubic that a spline with the right slopes follows exactly.
     let (value, slope) = (|t: f32| t * t * t - t + 1.0, |t: f32| 3.0 * t * t - 1.0);
-    let triples: Vec<f32> = times.iter().flat_map(|&t| [0.0, slope(t), 0.0, 0.0, value(t), 0.0, 0.0, slope(t), 0.0]).collect();
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let triples: Vec<f32> = times
+        .iter()
+        .flat_map(|&t| [0.0, slope(t), 0.0, 0.0, value(t), 0.0, 0.0, slope(t), 0.0])
+        .collect();
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(0, "translation", "CUBICSPLINE", &times, &triples);
     let imported = made.read();
     for (frame, place) in only(&imported).root_translations().iter().enumerate() {
@@ -182,7 +199,7 @@ fn each_interpolation_is_what_the_format_says() {
 
 #[test]
 fn small_numbers_sparse_ones_and_strides_are_read() {
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     // Rotations as normalised shorts, interleaved with something else.
     let turns: Vec<u8> = [0.0, 0.4, 0.8]
         .into_iter()
@@ -204,7 +221,10 @@ fn small_numbers_sparse_ones_and_strides_are_read() {
     let imported = made.read();
     let clip = only(&imported);
     assert_eq!((clip.fps(), clip.frames()), (30.0, 7));
-    assert_eq!((clip.root_translations()[3], clip.root_translations()[6]), (Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)));
+    assert_eq!(
+        (clip.root_translations()[3], clip.root_translations()[6]),
+        (Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0))
+    );
     assert!(quat::angle_between(clip.rotations(3)[1], Quat::from_rotation_z(0.4)) < 1e-4);
     assert!(clip.rotations(5).iter().all(|q| q.is_normalized()));
 }
@@ -222,14 +242,28 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
         { "name": "Mesh", "mesh": 0, "skin": 0 },
         { "name": "Lamp", "translation": [0, 300, 0] }
     ]);
-    let mut made = Made::new(nodes, &[5, 3]);
+    let mut made = Made::new(&nodes, &[5, 3]);
     made.root["meshes"] = json!([{ "primitives": [{ "attributes": {} }] }]);
     made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 100.0, 0.0, 0.0]);
     made.channel(7, "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
     let imported = made.read();
     let clip = only(&imported);
-    let joints: Vec<_> = clip.skeleton().joints().iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
-    assert_eq!(joints, [("Mover", None), ("Armature", Some(0)), ("Hips", Some(1)), ("Chest", Some(2)), ("Head", Some(3))]);
+    let joints: Vec<_> = clip
+        .skeleton()
+        .joints()
+        .iter()
+        .map(|joint| (joint.name.as_str(), joint.parent))
+        .collect();
+    assert_eq!(
+        joints,
+        [
+            ("Mover", None),
+            ("Armature", Some(0)),
+            ("Hips", Some(1)),
+            ("Chest", Some(2)),
+            ("Head", Some(3))
+        ]
+    );
     let top = |frame: usize| clip.world_pose(frame).positions[4];
     assert!(top(0).distance(Vec3::new(0.0, 1.6, 0.0)) < 1e-6 && top(30).distance(Vec3::new(1.0, 1.6, 0.0)) < 1e-6);
     // At rest nothing is turned, whatever the nodes are.
@@ -239,14 +273,21 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
 
 #[test]
 fn several_characters_and_animations_are_several_clips() {
-    let mut made = Made::new(json!([{ "name": "A", "children": [1] }, { "name": "A2", "translation": [0, 1, 0] }, { "name": "B", "children": [3] }, { "name": "B2", "translation": [0, 1, 0] }]), &[]);
+    let mut made = Made::new(
+        &json!([{ "name": "A", "children": [1] }, { "name": "A2", "translation": [0, 1, 0] }, { "name": "B", "children": [3] }, { "name": "B2", "translation": [0, 1, 0] }]),
+        &[],
+    );
     made.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);
     made.channel(0, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
     let first = made.root["animations"][0].clone();
     made.root["animations"] = json!([first, first, { "name": "unused", "channels": [], "samplers": [] }]);
     made.root["animations"][0]["name"] = json!("walk");
     let imported = made.read();
-    let clips: Vec<_> = imported.clips.iter().map(|found| (found.clip.name(), found.clip.skeleton().len(), found.clip.frames())).collect();
+    let clips: Vec<_> = imported
+        .clips
+        .iter()
+        .map(|found| (found.clip.name(), found.clip.skeleton().len(), found.clip.frames()))
+        .collect();
     assert_eq!(clips, [("walk (A)", 2, 31), ("made 2 (A)", 2, 31), ("made (B)", 2, 1)]);
     assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
 }
@@ -262,7 +303,7 @@ fn without_a_skin_the_moving_nodes_are_the_skeleton() {
         { "name": "Camera", "camera": 0 },
         { "name": "Skirt", "mesh": 0 }
     ]);
-    let mut made = Made::new(nodes, &[]);
+    let mut made = Made::new(&nodes, &[]);
     made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 1.0, 0.0, 0.0, 1.0, 2.0]);
     made.channel(3, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
     let imported = made.read();
@@ -272,17 +313,38 @@ fn without_a_skin_the_moving_nodes_are_the_skeleton() {
     assert_eq!(clip.skeleton().joints()[2].end_site, Some(Vec3::Y * 0.2));
     assert_eq!(clip.root_translations()[30], Vec3::new(0.0, 1.0, 3.0));
     let still = open(br#"{"asset":{"version":"2.0"},"nodes":[{}]}"#).unwrap_err();
-    assert!(still.to_string().contains("found a file without skeleton and without animation"), "{still}");
+    assert!(
+        still.to_string().contains("found a file without skeleton and without animation"),
+        "{still}"
+    );
 }
 
 #[test]
 fn oddities_are_told() {
     let nodes = json!([{ "name": "Hips", "children": [1], "scale": [1, 2, 1] }, { "name": "Chest", "children": [2], "translation": [0, 0.5, 0] }, { "translation": [0, 0.5, 0] }]);
-    let mut made = Made::new(nodes, &[0, 1]);
+    let mut made = Made::new(&nodes, &[0, 1]);
     let times = [0.0, 0.0123, 0.5171, 0.9];
-    made.channel(0, "translation", "LINEAR", &times, &[0.0, 1.0, 0.0, f32::NAN, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
-    made.channel(0, "scale", "LINEAR", &times, &[1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0]);
-    made.channel(1, "scale", "STEP", &times, &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0, 1.0, 1.0, 1.0]);
+    made.channel(
+        0,
+        "translation",
+        "LINEAR",
+        &times,
+        &[0.0, 1.0, 0.0, f32::NAN, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0],
+    );
+    made.channel(
+        0,
+        "scale",
+        "LINEAR",
+        &times,
+        &[1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0],
+    );
+    made.channel(
+        1,
+        "scale",
+        "STEP",
+        &times,
+        &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0, 1.0, 1.0, 1.0],
+    );
     let imported = made.read();
     assert_eq!(
         sentences(&imported),
@@ -293,18 +355,31 @@ fn oddities_are_told() {
             "1 node scaled by a different factor along each axis; joints below are exact at rest and near in motion",
         ]
     );
-    assert_eq!(only(&imported).skeleton().rest_positions()[1], Vec3::Y, "as tall as the scale makes it");
+    assert_eq!(
+        only(&imported).skeleton().rest_positions()[1],
+        Vec3::Y,
+        "as tall as the scale makes it"
+    );
     // Not every exporter knows that lengths are metres.
-    let mut made = Made::new(json!([{ "name": "Hips", "children": [1], "translation": [0, 90, 0] }, { "name": "Head", "translation": [0, 85, 0] }, { "name": "Foot", "translation": [0, -88, 0] }]), &[0, 1, 2]);
+    let mut made = Made::new(
+        &json!([{ "name": "Hips", "children": [1], "translation": [0, 90, 0] }, { "name": "Head", "translation": [0, 85, 0] }, { "name": "Foot", "translation": [0, -88, 0] }]),
+        &[0, 1, 2],
+    );
     made.root["nodes"][0]["children"] = json!([1, 2]);
     let imported = read("tall.gltf", &made.text(), &|_| None, &ImportOptions::default()).unwrap();
-    assert_eq!(sentences(&imported), ["the body is far too large for metres; units of 0.01 m are taken", "the file holds a skeleton and no motion"]);
+    assert_eq!(
+        sentences(&imported),
+        [
+            "the body is far too large for metres; units of 0.01 m are taken",
+            "the file holds a skeleton and no motion"
+        ]
+    );
     assert_eq!(only(&imported).root_translations()[0], Vec3::Y * 0.9);
 }
 
 #[test]
 fn buffers_are_found_beside_the_file_or_missed_by_name() {
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
     let mut root = made.root.clone();
     root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "my%20walk.bin" }]);
@@ -328,7 +403,11 @@ fn buffers_are_found_beside_the_file_or_missed_by_name() {
 #[test]
 fn what_is_no_gltf_is_refused_with_its_place() {
     let say = |text: &str| open(text.as_bytes()).unwrap_err().to_string();
-    assert!(say("{\n \"asset\": {]").starts_with("dir/made.gltf:2:12: found JSON that is no glTF"), "{}", say("{\n \"asset\": {]"));
+    assert!(
+        say("{\n \"asset\": {]").starts_with("dir/made.gltf:2:12: found JSON that is no glTF"),
+        "{}",
+        say("{\n \"asset\": {]")
+    );
     assert!(say(r#"{"asset":{"version":"1.0"},"nodes":{}}"#).contains("found glTF version 1.0, expected glTF 2.0"));
     assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#).contains("below themselves"));
     assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[2]},{"children":[2]},{}]}"#).contains("two parents"));
@@ -342,9 +421,10 @@ fn what_is_no_gltf_is_refused_with_its_place() {
 
 #[test]
 fn channels_that_move_no_node_are_passed_over() {
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let pointer = json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
+    let pointer =
+        json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
     made.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
     made.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     assert_eq!(only(&made.read()).frames(), 31);
@@ -353,7 +433,7 @@ fn channels_that_move_no_node_are_passed_over() {
 #[test]
 fn a_few_bytes_cannot_ask_for_all_memory() {
     let refused = |made: &Made| open(&made.text()).unwrap_err().to_string();
-    let mut made = Made::new(two_bones(), &[0, 1]);
+    let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(1, "rotation", "LINEAR", &[0.0, 4e9], &[about_z(0.0), about_z(1.0)].concat());
     assert!(refused(&made).contains("more motion than fits"), "{}", refused(&made));
     for accessor in [
@@ -361,7 +441,7 @@ fn a_few_bytes_cannot_ask_for_all_memory() {
         json!({ "bufferView": 0, "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
         json!({ "bufferView": 0, "componentType": 5126, "count": u64::MAX, "type": "SCALAR" }),
     ] {
-        let mut made = Made::new(two_bones(), &[0, 1]);
+        let mut made = Made::new(&two_bones(), &[0, 1]);
         let view = made.view(&[0; 64]);
         let input = made.accessor(accessor);
         made.sampler(1, "rotation", json!({ "input": input, "output": input }));
@@ -377,7 +457,15 @@ type Tree = Vec<(prop::sample::Index, [f32; 3], [f32; 3], f32)>;
 
 fn tree() -> impl Strategy<Value = Tree> {
     let vector = || [-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0];
-    prop::collection::vec((any::<prop::sample::Index>(), vector(), vector().prop_map(|v| v.map(|v| 3.0 * v)), 0.3f32..2.0), 2..9)
+    prop::collection::vec(
+        (
+            any::<prop::sample::Index>(),
+            vector(),
+            vector().prop_map(|v| v.map(|v| 3.0 * v)),
+            0.3f32..2.0,
+        ),
+        2..9,
+    )
 }
 
 proptest! {
@@ -397,7 +485,7 @@ proptest! {
         }).collect();
         let joints: Vec<usize> = joints.into_iter().filter(|&joint| joint < tree.len()).collect();
         prop_assume!(!joints.is_empty());
-        let mut made = Made::new(json!(nodes), &joints);
+        let mut made = Made::new(&json!(nodes), &joints);
         // From rest to a key one frame later; the last channel of a property counts.
         let mut moved: Vec<([f32; 3], Quat)> = tree.iter().map(|(_, place, angles, _)| (*place, turn(*angles))).collect();
         let at_rest = moved.clone();

@@ -46,7 +46,10 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
     let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
     let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();
-    let inverse_bind: Vec<f32> = positions.iter().flat_map(|&position| Mat4::from_translation(-position).to_cols_array()).collect();
+    let inverse_bind: Vec<f32> = positions
+        .iter()
+        .flat_map(|&position| Mat4::from_translation(-position).to_cols_array())
+        .collect();
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
     let primitive = primitive(&mut file, &Bones::around(skeleton, &positions), skeleton.len());
     let mut root = json!({
@@ -99,9 +102,13 @@ fn primitive(file: &mut File, bones: &Bones, joints: usize) -> Value {
     let is_small = joints <= 1 << 8;
     let followed = bones.joints.iter().flat_map(|&joint| {
         let [low, high, ..] = joint.to_le_bytes();
-        if is_small { [low, 0, 0, 0, 0, 0, 0, 0] } else { [low, high, 0, 0, 0, 0, 0, 0] }
-            .into_iter()
-            .take(if is_small { 4 } else { 8 })
+        if is_small {
+            [low, 0, 0, 0, 0, 0, 0, 0]
+        } else {
+            [low, high, 0, 0, 0, 0, 0, 0]
+        }
+        .into_iter()
+        .take(if is_small { 4 } else { 8 })
     });
     let followed: Vec<u8> = followed.collect();
     let count = bones.joints.len();
@@ -208,7 +215,11 @@ impl File {
         let mut json = root.to_string().into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + json.len() + 8 + self.binary.len();
-        let word = |length: usize| u32::try_from(length).map(u32::to_le_bytes).map_err(|_| GlbError::TooLarge(length as u64));
+        let word = |length: usize| {
+            u32::try_from(length)
+                .map(u32::to_le_bytes)
+                .map_err(|_| GlbError::TooLarge(length as u64))
+        };
         let mut bytes = Vec::with_capacity(length);
         bytes.extend_from_slice(b"glTF");
         bytes.extend_from_slice(&2_u32.to_le_bytes());
