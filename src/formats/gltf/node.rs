@@ -4,6 +4,9 @@ use super::document::Document;
 use crate::formats::ImportError;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
+/// Sizes and distances beyond this are lost in single precision.
+const FAR: f64 = 1e18;
+
 /// A node as the file has it: its place in the tree, and its transform when no animation moves it.
 pub(super) struct Node {
     pub(super) name: String,
@@ -81,6 +84,11 @@ impl Nodes {
                 rotation: (parent.rotation * node.rotation).normalize(),
                 linear: parent.linear * DMat3::from_quat(node.rotation) * DMat3::from_diagonal(node.scale),
             };
+            let World { position, linear, .. } = node.world;
+            if !(position.abs().max_element() < FAR && linear.to_cols_array().iter().all(|entry| entry.abs() < FAR)) {
+                let found = format!("node {index} (`{}`) farther away than can be told", node.name);
+                return Err(document.error(found, "a scene of some size"));
+            }
         }
         if order.len() < all.len() {
             return Err(document.error("nodes that are below themselves", "a tree of nodes"));

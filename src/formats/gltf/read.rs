@@ -131,9 +131,8 @@ impl Motion {
             tally.add(WarningKind::NotFinite, None);
         }
         let keys = all_times.values().flat_map(|times| times.iter().map(|&time| f64::from(time)));
-        let given = options.fps.filter(|fps| fps.is_finite() && *fps > 0.0);
-        let rate = rate(keys.collect(), given);
-        if !rate.holds_keys && given.is_none() {
+        let rate = rate(keys.collect(), given_fps(options));
+        if !rate.holds_keys && given_fps(options).is_none() {
             tally.add(WarningKind::Resampled { fps: rate.fps }, None);
         }
         Ok(Self {
@@ -143,6 +142,10 @@ impl Motion {
             rate,
         })
     }
+}
+
+fn given_fps(options: &ImportOptions) -> Option<f64> {
+    options.fps.filter(|fps| fps.is_finite() && *fps > 0.0)
 }
 
 fn key_times(document: &Document<'_>, input: Index<Accessor>) -> Result<Arc<[f32]>, ImportError> {
@@ -196,7 +199,8 @@ impl Context<'_> {
         }
         if clips.len() == before {
             tally.add(WarningKind::NoFrames, None);
-            clips.push(self.clip(rest, stem(self.document.name()), 30.0, metres_per_unit, tally)?);
+            let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
+            clips.push(self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?);
         }
         Ok(())
     }
@@ -256,9 +260,15 @@ impl Context<'_> {
                     0 => (above.position, above.linear),
                     _ => (DVec3::ZERO, above.linear),
                 };
+                let mut good = character.joints[joint].offset;
                 let values = (0..frames).map(|frame| {
                     let local = curve.at(secs(frame), same_secs, &mut key).truncate();
-                    (at + axes * local.as_dvec3()).as_vec3()
+                    let place = (at + axes * local.as_dvec3()).as_vec3();
+                    // Between finite keys, a spline with steep slopes need not stay finite.
+                    if place.is_finite() {
+                        good = place;
+                    }
+                    good
                 });
                 match joint {
                     0 => raw.root_translations = values.collect(),

@@ -413,6 +413,8 @@ fn what_is_no_gltf_is_refused_with_its_place() {
     assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[2]},{"children":[2]},{}]}"#).contains("two parents"));
     assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[9]}]}"#).contains("node 9, which is not there"));
     assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{}],"skins":[{"joints":[4]}]}"#).contains("node 4 in a skin"));
+    let huge = r#"{"asset":{"version":"2.0"},"nodes":[{"scale":[1e30,1e30,1e30],"children":[1]},{"translation":[1,0,0]}],"skins":[{"joints":[0]}]}"#;
+    assert!(say(huge).contains("farther away than can be told"));
     let glb = write_glb(&wander(&fixtures::cmu_bvh(), 3, 1), &GlbOptions::default()).unwrap();
     let cut = open(&glb[..glb.len() - 5]).unwrap_err().to_string();
     assert!(cut.contains("the file was cut off, expected a whole glTF 2.0 file"), "{cut}");
