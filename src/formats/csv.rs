@@ -230,7 +230,14 @@ mod tests {
 
     #[test]
     fn angles_make_the_rotation_and_do_not_jump() {
-        let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
+        let run = synthesize(&Params::new(Action::Run)).unwrap().clip;
+        // It spins as it runs: angles go on beyond half a turn.
+        let poses = (0..run.frames()).map(|frame| {
+            let mut pose = run.pose(frame);
+            pose.rotations[0] = Quat::from_rotation_y(0.2 * frame as f32) * pose.rotations[0];
+            pose
+        });
+        let clip = Clip::from_poses("spin", Arc::clone(run.skeleton()), run.fps(), poses).unwrap();
         let options = CsvOptions {
             rotations: CsvRotations::Euler(RotationOrder::Zxy),
         };

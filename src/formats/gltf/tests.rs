@@ -422,6 +422,23 @@ fn what_is_no_gltf_is_refused_with_its_place() {
 }
 
 #[test]
+fn keys_that_cannot_be_are_refused() {
+    let say = |times: &[f32], values: usize, stride: Option<u32>| {
+        let mut made = Made::new(&two_bones(), &[0, 1]);
+        made.channel(1, "rotation", "LINEAR", times, &about_z(0.0).repeat(values));
+        if let Some(stride) = stride {
+            made.root["bufferViews"][1]["byteStride"] = json!(stride);
+        }
+        open(&made.text()).map_or_else(|error| error.to_string(), |_| "read".to_owned())
+    };
+    assert_eq!(say(&[0.0, 1.0], 2, None), "read");
+    assert!(say(&[1.0, 0.0], 2, None).contains("expected rising times"));
+    assert!(say(&[0.0, f32::NAN], 2, None).contains("expected rising times"));
+    assert!(say(&[0.0, 1.0], 3, None).contains("found 3 values for 2 keys, expected 1 for each key"));
+    assert!(say(&[0.0, 1.0], 2, Some(4)).contains("for 2 values of 16"));
+}
+
+#[test]
 fn channels_that_move_no_node_are_passed_over() {
     let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
