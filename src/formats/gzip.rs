@@ -1,25 +1,35 @@
 use super::ImportError;
 use flate2::read::GzDecoder;
-use std::io::Read as _;
+use std::io::{self, Read};
 
-/// No bundled take unpacks to more. A damaged file must not fill the memory.
-const MOST_BYTES: u64 = 64 << 20;
+/// Whether the bytes start as a gzip file does.
+pub(super) fn is_gzip(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
 
 /// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have unpacked them on the way.
 ///
 /// # Errors
-/// [`ImportError`] when it is damaged or unpacks to more than 64 MiB.
-pub fn unpack_gzip(name: &str, packed: &[u8]) -> Result<Vec<u8>, ImportError> {
-    if !packed.starts_with(&[0x1f, 0x8b]) {
+/// [`ImportError`] when it is damaged or unpacks to more than `most` bytes.
+pub fn unpack_gzip(name: &str, packed: &[u8], most: usize) -> Result<Vec<u8>, ImportError> {
+    if !is_gzip(packed) {
         return Ok(packed.to_vec());
     }
-    let mut bytes = Vec::new();
-    let unpacked = GzDecoder::new(packed).take(MOST_BYTES + 1).read_to_end(&mut bytes);
-    match unpacked {
-        Ok(_) if bytes.len() as u64 <= MOST_BYTES => Ok(bytes),
-        Ok(_) => Err(ImportError::whole_file(name, "more than 64 MiB after unpacking", "a smaller file")),
+    match read_at_most(GzDecoder::new(packed), most) {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => {
+            let found = format!("more than {} MB after unpacking", most >> 20);
+            Err(ImportError::whole_file(name, found, "a smaller file"))
+        }
         Err(error) => Err(ImportError::whole_file(name, error.to_string(), "a gzip file")),
     }
+}
+
+/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what comes, whatever a header promises.
+pub(super) fn read_at_most(reader: impl Read, most: usize) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    reader.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok((bytes.len() <= most).then_some(bytes))
 }
 
 #[cfg(test)]
@@ -33,9 +43,10 @@ mod tests {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(b"HIERARCHY").unwrap();
         let packed = encoder.finish().unwrap();
-        assert_eq!(unpack_gzip("a.gz", &packed).unwrap(), b"HIERARCHY");
-        assert_eq!(unpack_gzip("a.gz", b"HIERARCHY").unwrap(), b"HIERARCHY");
-        let cut = unpack_gzip("a.gz", &packed[..packed.len() - 4]).unwrap_err();
+        assert_eq!(unpack_gzip("a.gz", &packed, 9).unwrap(), b"HIERARCHY");
+        assert_eq!(unpack_gzip("a.gz", b"HIERARCHY", 9).unwrap(), b"HIERARCHY");
+        assert!(unpack_gzip("a.gz", &packed, 8).is_err());
+        let cut = unpack_gzip("a.gz", &packed[..packed.len() - 4], 9).unwrap_err();
         assert!(cut.to_string().starts_with("a.gz:1:1: found "), "{cut}");
     }
 }

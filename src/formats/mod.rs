@@ -5,9 +5,12 @@
 //! that are there, never a number in a header.
 
 pub mod acclaim;
+pub mod archive;
 mod assemble;
 pub mod bvh;
+pub mod csv;
 mod error;
+pub mod gltf;
 mod gzip;
 mod measure;
 mod raw;
@@ -103,20 +106,21 @@ pub fn import_with_progress(
             );
             Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
         }
+        FileKind::Gltf => gltf::read(name, bytes, &|_| None, options).map(Some),
+        FileKind::Zip | FileKind::Gzip => Err(ImportError::whole_file(name, "an archive", "one of the files in it")),
         FileKind::Unknown => {
             let found = match name.rsplit_once('.') {
                 Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
                 _ => "a file of unknown format".to_owned(),
             };
-            let error = ImportError::whole_file(name, found, "a motion file (.bvh, or .asf with .amc)");
+            let error = ImportError::whole_file(name, found, "a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)");
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
     }
 }
 
 /// What a file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum FileKind {
     /// Skeleton and motion, [`bvh`].
     Bvh,
@@ -124,8 +128,30 @@ pub enum FileKind {
     Asf,
     /// A motion whose skeleton is in an ASF file, [`acclaim`].
     Amc,
+    /// A scene with animations, [`gltf`].
+    Gltf,
+    /// Several files in one, [`archive`].
+    Zip,
+    /// One file, packed with gzip.
+    Gzip,
     /// Nothing that is known here.
     Unknown,
+}
+
+impl FileKind {
+    /// What people call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bvh => "bvh",
+            Self::Asf => "asf",
+            Self::Amc => "amc",
+            Self::Gltf => "gltf",
+            Self::Zip => "zip",
+            Self::Gzip => "gz",
+            Self::Unknown => "unknown",
+        }
+    }
 }
 
 /// What a file is: by its first words, and where they say nothing by the ending of its name.
@@ -133,6 +159,15 @@ pub enum FileKind {
 pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     /// Comments may come first; UTF-16 has two bytes for each.
     const HEAD: usize = 16 << 10;
+    if archive::is_zip(bytes) {
+        return FileKind::Zip;
+    }
+    if gltf::is_gltf(bytes) {
+        return FileKind::Gltf;
+    }
+    if gzip::is_gzip(bytes) {
+        return FileKind::Gzip;
+    }
     let head = text::decode(bytes.get(..HEAD).unwrap_or(bytes));
     if bvh::starts_like_bvh(&head) {
         FileKind::Bvh
@@ -141,7 +176,15 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     } else if acclaim::starts_like_amc(&head) {
         FileKind::Amc
     } else {
-        let endings = [("bvh", FileKind::Bvh), ("asf", FileKind::Asf), ("amc", FileKind::Amc)];
+        let endings = [
+            ("bvh", FileKind::Bvh),
+            ("asf", FileKind::Asf),
+            ("amc", FileKind::Amc),
+            ("glb", FileKind::Gltf),
+            ("gltf", FileKind::Gltf),
+            ("zip", FileKind::Zip),
+            ("gz", FileKind::Gzip),
+        ];
         let known = endings.into_iter().find(|(ending, _)| has_extension(name, ending));
         known.map_or(FileKind::Unknown, |(_, kind)| kind)
     }

@@ -55,6 +55,33 @@ pub enum WarningKind {
     DecimalCommas,
     /// Two numbers without a space between them, split before the sign.
     MissingSpaces,
+    /// Hidden files of an archive, and what a Mac adds to it: left out.
+    HiddenFiles,
+    /// Files of an archive that hold no motion: left out.
+    OtherFiles,
+    /// Files of an archive with a path that leads out of it: the rest of the path counts.
+    PathsOutside,
+    /// Files of an archive that cannot be read: left out.
+    UnreadableFiles {
+        /// The first of them.
+        path: String,
+        /// Why it cannot be read.
+        why: String,
+    },
+    /// Animated scales: the scale at rest is taken.
+    ScaleAnimation,
+    /// Nodes that are scaled by another factor along each axis: joints below them are where they should be at rest, and nearly so in motion.
+    UnevenScale,
+    /// The keys of an animation lie at no common rate that can be played: it is sampled.
+    Resampled {
+        /// Frames per second.
+        fps: f64,
+    },
+    /// A format that is made for metres holds a body of another size.
+    NotMetres {
+        /// Metres per unit.
+        metres_per_unit: f64,
+    },
     /// All OFFSETs are zero: the rest pose is taken from the position channels of the first row.
     RestFromFirstRow,
     /// The first row is a T-pose in front of the motion.
@@ -201,6 +228,28 @@ impl fmt::Display for ImportWarning {
             }
             WarningKind::DecimalCommas => write!(f, "the numbers have decimal commas{place}; read as points"),
             WarningKind::MissingSpaces => write!(f, "{} between numbers{place}; split before the sign", n("missing space")),
+            WarningKind::HiddenFiles => write!(f, "{} of the archive left out", n("hidden file")),
+            WarningKind::OtherFiles => write!(f, "{} of the archive without motion left out", n("file")),
+            WarningKind::PathsOutside => write!(
+                f,
+                "{} of the archive {} a path out of it; the rest of the path was taken",
+                n("file"),
+                if one { "has" } else { "have" }
+            ),
+            WarningKind::UnreadableFiles { path, why } if one => write!(f, "`{path}` in the archive left out: {why}"),
+            WarningKind::UnreadableFiles { path, why } => {
+                write!(f, "{} of the archive left out, the first: `{path}`, {why}", n("file"))
+            }
+            WarningKind::ScaleAnimation => write!(f, "{} ignored", n("animated scale")),
+            WarningKind::UnevenScale => write!(
+                f,
+                "{} scaled by a different factor along each axis; joints below are exact at rest and near in motion",
+                n("node")
+            ),
+            WarningKind::Resampled { fps } => write!(f, "the keys have no common rate; sampled at {fps} frames per second"),
+            WarningKind::NotMetres { metres_per_unit } => {
+                write!(f, "the body is far too large for metres; units of {metres_per_unit} m are taken")
+            }
             WarningKind::RestFromFirstRow => write!(f, "all OFFSETs are zero; the rest pose was taken from the first row"),
             WarningKind::TPose { dropped: true } => write!(f, "the first row is a T-pose{place}; dropped"),
             WarningKind::TPose { dropped: false } => write!(f, "the first row is a T-pose{place}; kept and marked"),

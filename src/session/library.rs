@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
-use crate::formats::ImportOptions;
+use crate::formats::{FileKind, ImportOptions};
 use crate::skeleton::Roles;
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub struct SourceFile {
     pub content: Content,
     /// How many there are.
     pub size: u64,
+    /// What it is.
+    pub kind: FileKind,
     /// The skeleton file that it was read with.
     pub companion: Option<Companion>,
     /// Which of the clips in the file this is, from 0.
@@ -97,10 +99,18 @@ impl Entry {
     /// The format in the API.
     #[must_use]
     pub fn format(&self) -> &'static str {
-        match self.origin {
+        match &self.origin {
             Origin::Preset | Origin::Made => "synth",
-            Origin::Sample(_) | Origin::File(_) => "bvh",
+            Origin::Sample(_) => "bvh",
+            Origin::File(file) => file.kind.name(),
         }
+    }
+
+    /// Whether it is the motion of a skeleton that is not here.
+    #[must_use]
+    pub fn awaits_skeleton(&self) -> bool {
+        let motion_alone = |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
+        self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
     }
 
     /// The whole SHA-256 of the file it came from, hexadecimal.
@@ -213,6 +223,7 @@ mod tests {
             sha256: sha256.into(),
             content: Content::Here(Arc::from([])),
             size: 0,
+            kind: FileKind::Bvh,
             companion: None,
             index: 0,
             options: ImportOptions::default(),

@@ -2,7 +2,7 @@
 
 use super::library::{Entry, Origin};
 use super::reading::Companion;
-use crate::formats::ImportOptions;
+use crate::formats::{FileKind, ImportOptions};
 use crate::skeleton::Roles;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +38,9 @@ pub struct SavedFile {
     /// How many bytes it has.
     #[serde(default)]
     pub size: u64,
+    /// What it is.
+    #[serde(default = "bvh")]
+    pub kind: FileKind,
     /// The skeleton file that it is read with.
     #[serde(default)]
     pub companion: Option<Companion>,
@@ -47,6 +50,11 @@ pub struct SavedFile {
     pub options: ImportOptions,
 }
 
+/// What there was before there were other kinds.
+fn bvh() -> FileKind {
+    FileKind::Bvh
+}
+
 impl From<&Entry> for SavedEntry {
     fn from(entry: &Entry) -> Self {
         let file = match &entry.origin {
@@ -54,6 +62,7 @@ impl From<&Entry> for SavedEntry {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),
                 size: file.size,
+                kind: file.kind,
                 companion: file.companion.clone(),
                 index: file.index,
                 options: file.options,

@@ -7,7 +7,14 @@ use crate::shell::{self, Result, cargo, command, fail, root};
 use crate::{dist, server, tools};
 
 /// The parts, in an order that fails early and lets each reuse what the one before has built.
-const PARTS: [(&str, Part); 5] = [("lint", lint), ("core", core), ("app", app), ("web", web), ("browser", browser)];
+const PARTS: [(&str, Part); 6] = [
+    ("lint", lint),
+    ("core", core),
+    ("oracles", oracles),
+    ("app", app),
+    ("web", web),
+    ("browser", browser),
+];
 
 type Part = fn(&mut Report);
 
@@ -45,6 +52,23 @@ fn clippy(what: &[&str]) -> Command {
 
 fn core(report: &mut Report) {
     report.run("tests, core alone", cargo(&["test", "--locked", "--no-default-features"]));
+}
+
+fn oracles(report: &mut Report) {
+    report.step("exported files in three.js and bvhio", || {
+        tools::browser_packages()?;
+        let python = tools::python("bvhio==1.5.4")?;
+        shell::run(&mut cargo(&[
+            "test",
+            "--quiet",
+            "--locked",
+            "--no-default-features",
+            "--test=formats_exchange",
+        ]))?;
+        let files = shell::target().join("tmp/exchange");
+        shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
+        shell::run(command(python, &["tests/oracles/read_back.py"]).arg(&files))
+    });
 }
 
 fn app(report: &mut Report) {

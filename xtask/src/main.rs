@@ -20,9 +20,10 @@ cargo xtask serve --dist
     Only writes the deployable folder dist/, each file precompressed beside itself (.br and .gz).
 
 cargo xtask test [PART …]
-    Everything that must pass. Parts: lint core app web browser; all of them unless some are named.
+    Everything that must pass. Parts: lint core oracles app web browser; all of them unless some are named.
     lint        rustfmt, clippy for the core alone, for the whole app and for the web
     core        the tests of the motion core and its documentation examples, built without any UI
+    oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     app         the tests of the app, pictures of the UI among them
     web         the release build that `serve` makes
     browser     that build in Chromium, on WebGL2 and on WebGPU

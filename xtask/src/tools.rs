@@ -114,6 +114,26 @@ pub fn browser_packages() -> Result<()> {
     })
 }
 
+/// Finds or installs one Python package, with its exact version, and gives the path of the Python that has it.
+pub fn python(package: &str) -> Result<PathBuf> {
+    let folder = target().join("python").join(package);
+    let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    let python = bin.join("python");
+    // Written last, so that half an installation is made again.
+    let done = folder.join("installed");
+    if !done.exists() {
+        step(format!("installing {package} for Python (seconds)"), || {
+            run(command("python3", &["-m", "venv", "--clear"]).arg(&folder))?;
+            run(&mut command(
+                &python,
+                &["-m", "pip", "install", "--quiet", "--disable-pip-version-check", package],
+            ))?;
+            Ok(fs::write(&done, "")?)
+        })?;
+    }
+    Ok(python)
+}
+
 fn has_wasm_target() -> bool {
     // Asked of rustc and not of rustup, so that a standard library that came another way counts too.
     output("rustc", &["--print", "target-libdir", "--target", WASM_TARGET]).is_some_and(|folder| PathBuf::from(folder).is_dir())

@@ -1,6 +1,6 @@
 use super::convert::kind;
 use super::euler::{compose, distance, nearest, one_angle, precise, three_angles, two_angles};
-use crate::clip::{Clip, UpAxis};
+use crate::clip::{Clip, Interpolation, UpAxis, resample};
 use crate::skeleton::{Channel, Joint, Skeleton};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use std::fmt::Write as _;
@@ -37,6 +37,16 @@ impl RotationOrder {
             Self::Zyx => [Z, Y, X],
         }
     }
+
+    /// The axes (0 to 2), in order.
+    pub(in crate::formats) fn axes(self) -> [usize; 3] {
+        self.channels().map(|channel| kind(channel).1)
+    }
+
+    /// The angles about the axes, radians, that make a rotation; of all solutions the one nearest to `near`.
+    pub(in crate::formats) fn angles(self, q: Quat, near: [f64; 3]) -> [f64; 3] {
+        three_angles(precise(q), self.axes(), near)
+    }
 }
 
 /// How to write a BVH file. By default the way that the clip came from.
@@ -48,6 +58,8 @@ pub struct WriteOptions {
     pub up: Option<UpAxis>,
     /// One order for the rotations of all joints; each joint's own where `None`.
     pub rotation_order: Option<RotationOrder>,
+    /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
+    pub fps: Option<f64>,
 }
 
 /// Writes a clip as BVH text with LF line ends.
@@ -56,8 +68,13 @@ pub struct WriteOptions {
 /// (Z, X, Y unless it has an order of its own) and, if it moves against its parent, three positions. Leaves get an End Site, of length 0 where
 /// the clip has none. Read back, positions (metres) and rotations (radians) are the same to 1e-5. Line ends and braces in names become spaces
 /// and parentheses, since names are the rest of their line.
+///
+/// Some programs put positions in the place of the OFFSET, others add the two. So the root, which always moves, has an OFFSET of zero where it
+/// has all three positions; and a joint that stays at its OFFSET is not given positions that its source did not have.
 #[must_use]
 pub fn write(clip: &Clip, options: &WriteOptions) -> String {
+    let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
+    let clip = resampled.as_ref().unwrap_or(clip);
     let writer = Writer::new(clip, options);
     let mut out = String::with_capacity(256 * clip.skeleton().len() + 9 * writer.columns() * clip.frames());
     let order = writer.hierarchy(&mut out);
@@ -234,8 +251,9 @@ impl<'a> Writer<'a> {
             &format!("{} {}", if index == 0 { "ROOT" } else { "JOINT" }, written_name(&joint.name)),
         );
         line(out, depth, "{");
-        self.offset(out, depth + 1, joint.offset);
         let channels = &self.plans[index].channels;
+        let is_placed = index == 0 && POSITIONS.iter().all(|position| channels.contains(position));
+        self.offset(out, depth + 1, if is_placed { Vec3::ZERO } else { joint.offset });
         indent(out, depth + 1);
         out.push_str("CHANNELS ");
         out.push_str(&channels.len().to_string());

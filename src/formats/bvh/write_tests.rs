@@ -23,7 +23,7 @@ fn a_bare_skeleton_gets_what_its_motion_needs() {
     let turned = Quat::from_rotation_x(0.5);
     let joints = vec![joint(None, "Hips", &[]), joint(Some(0), "Still", &[]), joint(Some(1), "Turns", &[])];
     let clip = clip(joints, vec![Quat::IDENTITY, Quat::IDENTITY, turned]).with_provenance(Provenance::default());
-    let expected = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 10 0\n\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+    let expected = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 0 0\n\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
                     \tJOINT Still\n\t{\n\t\tOFFSET 0 10 0\n\t\tCHANNELS 0\n\t\tJOINT Turns\n\t\t{\n\t\t\tOFFSET 0 10 0\n\
                     \t\t\tCHANNELS 3 Zrotation Xrotation Yrotation\n\t\t\tEnd Site\n\t\t\t{\n\t\t\t\tOFFSET 0 0 0\n\t\t\t}\n\t\t}\n\t}\n}\n\
                     MOTION\nFrames: 1\nFrame Time: 0.008333333333333333\n0 10 0 0 0 0 0 28.64789 0\n";
@@ -125,5 +125,26 @@ fn numbers_are_short() {
         (1e12, "x1000000000000"),
     ] {
         assert_eq!(text(value), expected);
+    }
+}
+
+#[test]
+fn another_frame_rate_is_resampled() {
+    let joints = vec![joint(None, "r", &[])];
+    let clip = clip(joints, (0..5).map(|i| Quat::from_rotation_x(0.1 * i as f32)).collect());
+    let at = |fps| {
+        let options = WriteOptions {
+            fps,
+            ..WriteOptions::default()
+        };
+        write(&clip, &options)
+    };
+    assert!(
+        at(Some(60.0)).contains("Frames: 3\nFrame Time: 0.016666666666666666\n0 10 0 0 0 0\n0 10 0 0 11.459156 0\n"),
+        "{}",
+        at(Some(60.0))
+    );
+    for no_rate in [None, Some(0.0), Some(f64::NAN), Some(1e9)] {
+        assert!(at(no_rate).contains("Frames: 5\nFrame Time: 0.008333333333333333\n"));
     }
 }

@@ -1,18 +1,21 @@
 //! Files into the library, and the work back from storage.
 
 use super::{Job, Session, slot_key};
-use crate::formats::{self, ImportError, ImportOptions, import};
+use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
 use crate::session::command::{CommandError, Request};
-use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id};
+use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::motion::Motion;
 use crate::session::notice::Level;
 use crate::session::params::{Key, Value};
-use crate::session::reading::{Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
+use crate::session::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use crate::session::recipe::{Slot, made_params};
 use crate::session::saved::{Saved, SavedEntry, SavedFile};
 use crate::session::undo::History;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// No bundled take unpacks to more. A damaged file must not fill the memory.
+const LARGEST_SAMPLE: usize = 64 << 20;
 
 /// What a file gave.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -39,14 +42,15 @@ impl Session {
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
-        let setup = ReadSetup::default();
+        let setup = self.setup_for_new();
         let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
         self.admit(report, &Content::Here(bytes), &setup)
     }
 
     /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
-        self.begin(name, content, size, ReadSetup::default(), false)
+        let setup = self.setup_for_new();
+        self.begin(name, content, size, setup, false)
     }
 
     fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, again: bool) -> u64 {
@@ -174,6 +178,8 @@ impl Session {
             }
         }
         loaded.warnings.extend(report.notes);
+        self.read_waiting();
+        self.drop_used_skeletons();
         self.history.settle();
         self.library_revision += 1;
         if !names.is_empty() {
@@ -191,7 +197,12 @@ impl Session {
         let awaited = [Slot::A, Slot::B].into_iter().any(|slot| self.slot(slot).is_none());
         self.library.put(entry);
         let holds = |session: &Self, slot| session.slot(slot).is_some_and(|entry| entry.id == id);
-        if !(awaited && [Slot::A, Slot::B].into_iter().any(|slot| holds(self, slot))) {
+        // A skeleton alone plays nothing; a motion that waits for one may come into its place when it can be read.
+        let plays = self
+            .library
+            .find(&id)
+            .is_some_and(|entry| entry.motion.as_ref().is_some_and(|motion| motion.clip.frames() > 0));
+        if plays && !(awaited && [Slot::A, Slot::B].into_iter().any(|slot| holds(self, slot))) {
             self.offer(&id);
         }
     }
@@ -205,9 +216,11 @@ impl Session {
             loaded.warnings.extend(warnings);
             for new in entries {
                 self.library.change(&new.id, |entry| {
-                    if let Origin::File(file) = &mut entry.origin {
+                    if let (Origin::File(file), Origin::File(new)) = (&mut entry.origin, new.origin) {
                         file.options = *options;
+                        file.companion = new.companion;
                     }
+                    // A motion whose skeleton was not found keeps waiting.
                     entry.motion = new.motion;
                     entry.about = new.about;
                     entry.warnings = new.warnings;
@@ -233,7 +246,70 @@ impl Session {
         ReadSetup {
             options: file.options,
             roles: self.roles_by_hand(file),
-            companions: file.companion.iter().cloned().collect(),
+            companions: match &file.companion {
+                Some(companion) => vec![companion.clone()],
+                None if file.kind == FileKind::Amc => self.companions(),
+                None => Vec::new(),
+            },
+        }
+    }
+
+    fn setup_for_new(&self) -> ReadSetup {
+        ReadSetup {
+            companions: self.companions(),
+            ..ReadSetup::default()
+        }
+    }
+
+    /// The skeleton files that there are: those that lie in the library, and those that its motions were read with.
+    fn companions(&self) -> Vec<Companion> {
+        let mut all: Vec<Companion> = Vec::new();
+        for entry in self.library.entries() {
+            let Origin::File(file) = &entry.origin else { continue };
+            let found = match (&file.companion, &file.content) {
+                (Some(companion), _) => companion.clone(),
+                (None, Content::Here(bytes)) if file.kind == FileKind::Asf => Companion {
+                    name: file.name.clone(),
+                    sha256: file.sha256.clone(),
+                    bytes: Arc::clone(bytes),
+                },
+                _ => continue,
+            };
+            if all.iter().all(|known| known.sha256 != found.sha256) {
+                all.push(found);
+            }
+        }
+        all
+    }
+
+    /// A skeleton has come: motions that waited for it are read.
+    fn read_waiting(&mut self) {
+        let entries = self.library.entries().to_vec();
+        for entry in entries.iter().filter(|entry| entry.awaits_skeleton()) {
+            let Origin::File(file) = &entry.origin else { continue };
+            if file.is_large() {
+                self.read_again(file.clone());
+            } else if let Err(error) = self.read_at_once(file) {
+                self.say(Level::Error, error.to_string());
+            } else {
+                self.offer(&entry.id);
+            }
+        }
+    }
+
+    /// Skeletons that have a motion by now need no row of their own.
+    fn drop_used_skeletons(&mut self) {
+        let entries = self.library.entries().to_vec();
+        let used = |sha256: &str| {
+            entries.iter().any(|entry| match &entry.origin {
+                Origin::File(file) => file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256),
+                _ => false,
+            })
+        };
+        for entry in &entries {
+            if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256)) {
+                self.library.remove(&entry.id);
+            }
         }
     }
 
@@ -287,7 +363,7 @@ impl Session {
     /// # Errors
     /// [`ImportError`] when it is damaged.
     pub fn load_sample(&mut self, sample: &'static Sample, packed: &[u8]) -> Result<(), ImportError> {
-        let bytes = formats::unpack_gzip(sample.file, packed)?;
+        let bytes = formats::unpack_gzip(sample.file, packed, LARGEST_SAMPLE)?;
         let imported = import(sample.file.trim_end_matches(".gz"), &bytes, &ImportOptions::default())?;
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         if let Some(clip) = imported.clips.into_iter().next() {
@@ -388,6 +464,7 @@ impl SavedFile {
             sha256: self.sha256.clone(),
             content,
             size,
+            kind: self.kind,
             companion: self.companion.clone(),
             index: self.index,
             options: self.options,
@@ -411,6 +488,7 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
         name: file.name,
         sha256: file.sha256,
         size: file.size,
+        kind: file.kind,
         content: file
             .unpacked
             .map_or_else(|| content.clone(), |bytes| Content::Here(Arc::from(bytes))),
@@ -418,7 +496,19 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
         index: 0,
         options: *options,
     };
-    let warnings = read.warnings;
+    let mut warnings = read.warnings;
+    if read.awaits_skeleton {
+        warnings.push(format!(
+            "{} waits for its skeleton: drop the .asf file that belongs to it.",
+            source.name
+        ));
+        let id = file_id(&source.name, &source.sha256, 0);
+        let entry = Entry {
+            warnings: warnings.clone(),
+            ..Entry::new(id, file_stem(&source.name).to_owned(), Origin::File(source))
+        };
+        return Ok((vec![entry], warnings));
+    }
     let entries = read.clips.into_iter().enumerate().map(|(index, clip)| {
         let source = SourceFile { index, ..source.clone() };
         Entry {

@@ -58,7 +58,7 @@ pub struct ClipInfo {
     pub id: String,
     /// What a person calls it.
     pub name: String,
-    /// `bvh` or `synth`.
+    /// `bvh`, `amc`, `asf`, `gltf` or `synth`.
     pub format: &'static str,
     /// Number of joints; 0 while it is not loaded.
     pub joints: usize,
@@ -583,5 +583,7 @@ fn clip_info(entry: &Entry) -> ClipInfo {
     }
 }
 
+#[cfg(test)]
+mod loading_tests;
 #[cfg(test)]
 mod tests;

@@ -109,6 +109,9 @@ impl Session {
                 let params = made_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
                 Arc::new(made_motion(&params)?)
             }
+            Origin::File(file) if entry.awaits_skeleton() => {
+                return Err(format!("{} waits for its skeleton: drop its .asf file.", file.name));
+            }
             Origin::File(file) => {
                 let file = file.clone();
                 if !file.is_large() {

@@ -6,7 +6,9 @@ mod wire;
 pub use wire::{Parcel, Unpacker, WireError};
 
 use super::motion::Motion;
-use crate::formats::{ImportError, ImportOptions, ImportedClip, import_with_progress};
+use crate::formats::acclaim::{self, AcclaimSkeleton};
+use crate::formats::archive::{self, ArchiveLimits};
+use crate::formats::{FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress, kind_of, unpack_gzip};
 use crate::skeleton::Roles;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
@@ -80,6 +82,8 @@ pub struct ReadFile {
     pub sha256: String,
     /// How many bytes it has.
     pub size: u64,
+    /// What it is.
+    pub kind: FileKind,
     /// Its bytes, where it came out of an archive: nobody else has them.
     pub unpacked: Option<Vec<u8>>,
     /// Its clips, or why there are none.
@@ -119,33 +123,176 @@ pub struct About {
     pub t_pose_dropped: bool,
 }
 
-/// Reads a file. `progress` hears how much of it is done, in bytes, and says whether to go on; `None` when it said no.
+/// Reads a file, or all motion files of an archive. `progress` hears how much of it is done, in bytes, and says whether to go on; `None` when it
+/// said no.
 pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMut(usize) -> bool) -> Option<ReadReport> {
-    Some(ReadReport {
-        files: vec![read_file(name, bytes, setup, progress)?],
-        notes: Vec::new(),
-    })
+    let most = setup.options.max_bytes;
+    let unpacked = match kind_of(name, bytes) {
+        FileKind::Zip => archive::unpack(name, bytes, &ArchiveLimits { max_bytes: most }).map(|unpacked| {
+            let files = unpacked
+                .files
+                .into_iter()
+                .map(|file| (format!("{name}/{}", file.path), file.bytes))
+                .collect();
+            (files, unpacked.warnings.iter().map(ToString::to_string).collect())
+        }),
+        FileKind::Gzip => unpack_gzip(name, bytes, most).map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
+        kind => {
+            let skeletons = skeletons_of(&setup.companions, &setup.options);
+            let file = One { name, bytes, kind };
+            return Some(ReadReport {
+                files: vec![file.read(setup, &skeletons, &|_| None, progress)?],
+                notes: Vec::new(),
+            });
+        }
+    };
+    match unpacked {
+        Ok((files, notes)) => read_several(files, notes, bytes.len(), setup, progress),
+        Err(error) => Some(ReadReport {
+            files: vec![ReadFile {
+                name: name.to_owned(),
+                sha256: String::new(),
+                size: bytes.len() as u64,
+                kind: kind_of(name, bytes),
+                unpacked: None,
+                result: Err(error),
+            }],
+            notes: Vec::new(),
+        }),
+    }
 }
 
-fn read_file(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMut(usize) -> bool) -> Option<ReadFile> {
-    let result = match import_with_progress(name, bytes, &setup.options, progress) {
-        Ok(None) => return None,
-        Ok(Some(imported)) => Ok(ReadClips {
+/// Reads what came out of an archive of `packed` bytes.
+fn read_several(
+    files: Vec<(String, Vec<u8>)>,
+    notes: Vec<String>,
+    packed: usize,
+    setup: &ReadSetup,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Option<ReadReport> {
+    let kinds: Vec<FileKind> = files.iter().map(|(name, bytes)| kind_of(name, bytes)).collect();
+    let own = files.iter().zip(&kinds).filter(|(_, kind)| **kind == FileKind::Asf);
+    let mut companions: Vec<Companion> = own.map(|((name, bytes), _)| Companion::new(name, bytes)).collect();
+    companions.extend(setup.companions.iter().cloned());
+    let skeletons = skeletons_of(&companions, &setup.options);
+    let beside = |path: &str| {
+        let found = files.iter().find(|(name, _)| name.ends_with(path));
+        found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
+    };
+    let total = files.iter().map(|(_, bytes)| bytes.len()).sum::<usize>().max(1) as f64;
+    let mut before = 0;
+    let mut report = ReadReport { files: Vec::new(), notes };
+    for ((name, bytes), kind) in files.iter().zip(kinds) {
+        // What glTF files lean on is no motion.
+        if kind == FileKind::Unknown {
+            continue;
+        }
+        let mut scaled = |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
+        let mut file = One { name, bytes, kind }.read(setup, &skeletons, &beside, &mut scaled)?;
+        file.unpacked = Some(bytes.clone());
+        report.files.push(file);
+        before += bytes.len();
+    }
+    // A skeleton that has a motion is not looked at by itself.
+    let used: Vec<String> = (report.files.iter())
+        .filter_map(|file| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
+        .collect();
+    report.files.retain(|file| !used.contains(&file.sha256));
+    Some(report)
+}
+
+/// The skeleton files that can be read.
+fn skeletons_of<'a>(companions: &'a [Companion], options: &ImportOptions) -> Vec<(&'a Companion, AcclaimSkeleton)> {
+    let read = |companion: &'a Companion| {
+        let skeleton = acclaim::read_skeleton(&companion.name, &companion.bytes, options).ok()?;
+        Some((companion, skeleton))
+    };
+    companions.iter().filter_map(read).collect()
+}
+
+/// A file that is no archive.
+struct One<'a> {
+    name: &'a str,
+    bytes: &'a [u8],
+    kind: FileKind,
+}
+
+impl One<'_> {
+    fn read(
+        &self,
+        setup: &ReadSetup,
+        skeletons: &[(&Companion, AcclaimSkeleton)],
+        beside: &dyn Fn(&str) -> Option<Arc<[u8]>>,
+        progress: &mut dyn FnMut(usize) -> bool,
+    ) -> Option<ReadFile> {
+        let Self { name, bytes, kind } = *self;
+        let mut companion = None;
+        let imported = match kind {
+            FileKind::Amc => {
+                let named: Vec<(&str, &AcclaimSkeleton)> = skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
+                let best = acclaim::best_skeleton(name, bytes, &named).and_then(|index| skeletons.get(index));
+                match best {
+                    None => Ok(None),
+                    Some((own, skeleton)) => {
+                        companion = Some((*own).clone());
+                        let read = acclaim::read_motion_with_progress(name, bytes, skeleton, &setup.options, progress);
+                        match read {
+                            Ok(None) => return None,
+                            other => other,
+                        }
+                    }
+                }
+            }
+            FileKind::Gltf => gltf::read(name, bytes, beside, &setup.options).map(Some),
+            _ => match import_with_progress(name, bytes, &setup.options, progress) {
+                Ok(None) => return None,
+                other => other,
+            },
+        };
+        Some(ReadFile {
+            name: name.to_owned(),
+            sha256: sha256_hex(bytes),
+            size: bytes.len() as u64,
+            kind,
+            unpacked: None,
+            result: imported.map(|imported| ReadClips {
+                awaits_skeleton: imported.is_none(),
+                companion,
+                ..ReadClips::of(imported.unwrap_or_default(), setup)
+            }),
+        })
+    }
+}
+
+impl ReadClips {
+    fn of(imported: Imported, setup: &ReadSetup) -> Self {
+        Self {
             warnings: imported.warnings.iter().map(ToString::to_string).collect(),
             clips: (imported.clips.into_iter().enumerate())
                 .map(|(index, clip)| ReadClip::new(clip, setup.roles.get(&index).cloned()))
                 .collect(),
-            ..ReadClips::default()
-        }),
-        Err(error) => Err(error),
-    };
-    Some(ReadFile {
-        name: name.to_owned(),
-        sha256: sha256_hex(bytes),
-        size: bytes.len() as u64,
-        unpacked: None,
-        result,
-    })
+            ..Self::default()
+        }
+    }
+}
+
+impl Companion {
+    /// A file that was just read.
+    #[must_use]
+    pub fn new(name: &str, bytes: &[u8]) -> Self {
+        Self {
+            name: name.to_owned(),
+            sha256: sha256_hex(bytes),
+            bytes: Arc::from(bytes),
+        }
+    }
+}
+
+fn without_gz(name: &str) -> &str {
+    match name.len().checked_sub(3).and_then(|at| name.split_at_checked(at)) {
+        Some((stem, ending)) if ending.eq_ignore_ascii_case(".gz") => stem,
+        _ => name,
+    }
 }
 
 impl ReadClip {

@@ -3,7 +3,7 @@
 
 use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
-use crate::formats::ImportError;
+use crate::formats::{FileKind, ImportError};
 use crate::math::Planar;
 use crate::session::motion::Motion;
 use crate::skeleton::{Joint, Roles, Side, Skeleton, SkeletonError};
@@ -47,6 +47,7 @@ struct FileHead {
     name: String,
     sha256: String,
     size: u64,
+    kind: FileKind,
     /// How many bytes of the file itself come along.
     unpacked: Option<usize>,
     result: Result<ClipsHead, ImportError>,
@@ -167,6 +168,7 @@ impl FileHead {
             name: file.name.clone(),
             sha256: file.sha256.clone(),
             size: file.size,
+            kind: file.kind,
             unpacked: file.unpacked.as_ref().map(Vec::len),
             result: match &file.result {
                 Ok(read) => Ok(ClipsHead {
@@ -386,6 +388,7 @@ impl Incoming {
             name: head.name,
             sha256: head.sha256,
             size: head.size,
+            kind: head.kind,
             unpacked: head.unpacked.map(|_| self.unpacked),
             result,
         })

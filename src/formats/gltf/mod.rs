@@ -1,0 +1,34 @@
+//! glTF 2.0: characters and their animations from `.glb` and `.gltf` files, and clips as `.glb` files.
+//!
+//! The format (Khronos Group, "glTF 2.0 Specification") is a JSON tree of nodes with translation, rotation and scale, and binary arrays
+//! (accessors) with keys over time. Lengths are metres, +Y is up, and a character looks along +Z: as inside Segue.
+//!
+//! What is read is motion: which nodes are joints is told by the skins, and where there is none by the animations. Joints get new axes, so that
+//! at rest every rotation is the identity and offsets are what the rest pose shows, as everywhere in Segue; scales of nodes go into offsets. World
+//! positions stay what they are. Meshes, materials and images are not looked at.
+
+mod accessor;
+mod bones;
+mod characters;
+mod curve;
+mod document;
+mod node;
+mod rate;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::{GlbError, GlbOptions, write_glb};
+
+/// Whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
+#[must_use]
+pub fn is_gltf(bytes: &[u8]) -> bool {
+    let is_json = || {
+        let text = super::text::decode(bytes.get(..1 << 12).unwrap_or(bytes));
+        text.iter().find(|b| !super::text::is_space(**b)) == Some(&b'{')
+    };
+    bytes.starts_with(b"glTF") || is_json()
+}
+
+#[cfg(test)]
+mod tests;

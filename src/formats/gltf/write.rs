@@ -1,0 +1,234 @@
+use super::bones::Bones;
+use crate::clip::{Clip, Interpolation, resample};
+use crate::skeleton::{Joint, Skeleton};
+use glam::{Mat4, Quat, Vec3};
+use serde_json::{Value, json};
+use std::borrow::Cow;
+
+/// How to write a `.glb` file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GlbOptions {
+    /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
+    pub fps: Option<f64>,
+}
+
+/// Why a clip is no `.glb` file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GlbError {
+    /// The format counts bytes with 32 bits.
+    #[error("{0} bytes are more than the 4 GiB that a .glb file can hold: cut the motion into parts")]
+    TooLarge(u64),
+    /// The format counts the joints of a skin with 16 bits.
+    #[error("{0} joints are more than the 65,536 that a .glb file can hold")]
+    TooManyJoints(usize),
+}
+
+/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body of simple bones, and an
+/// animation with the rotations of all joints and the translations of the root and of joints that move.
+///
+/// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
+/// (metres) and rotations (radians) are the same to 1e-5.
+///
+/// # Errors
+/// [`GlbError`] when the clip is too large for the format.
+pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+    /// What an index of 16 bits can tell apart.
+    const MOST_JOINTS: usize = 1 << 16;
+    let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
+    let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
+    let skeleton: &Skeleton = clip.skeleton();
+    if skeleton.len() > MOST_JOINTS {
+        return Err(GlbError::TooManyJoints(skeleton.len()));
+    }
+    let mut file = File::default();
+    let mut nodes = nodes(skeleton);
+    let body = nodes.len();
+    nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
+    let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
+    let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();
+    let inverse_bind: Vec<f32> = positions
+        .iter()
+        .flat_map(|&position| Mat4::from_translation(-position).to_cols_array())
+        .collect();
+    let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
+    let primitive = primitive(&mut file, &Bones::around(skeleton, &positions), skeleton.len());
+    let mut root = json!({
+        "asset": { "version": "2.0", "generator": concat!("Segue ", env!("CARGO_PKG_VERSION")) },
+        "scene": 0,
+        "scenes": [{ "nodes": [0, body] }],
+        "nodes": nodes,
+        "skins": [{ "joints": (0..skeleton.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
+        "meshes": [{ "name": "Body", "primitives": [primitive] }],
+        "materials": [{ "name": "Clay", "pbrMetallicRoughness": { "baseColorFactor": [0.7, 0.7, 0.7, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8 } }],
+    });
+    if clip.frames() > 0 {
+        root["animations"] = json!([animation(&mut file, &clip)]);
+    }
+    file.finish(root)
+}
+
+/// A node for each joint, at its index, then one for each end site.
+fn nodes(skeleton: &Skeleton) -> Vec<Value> {
+    let joints = skeleton.joints();
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
+    let mut ends = Vec::new();
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            children[parent].push(index);
+        }
+        if let Some(end) = joint.end_site {
+            children[index].push(joints.len() + ends.len());
+            ends.push(json!({ "name": format!("{}_end", joint.name), "translation": end.to_array() }));
+        }
+    }
+    let node = |(joint, children): (&Joint, Vec<usize>)| {
+        let mut node = json!({ "name": joint.name, "translation": joint.offset.to_array() });
+        // An empty list is not valid.
+        if !children.is_empty() {
+            node["children"] = json!(children);
+        }
+        node
+    };
+    joints.iter().zip(children).map(node).chain(ends).collect()
+}
+
+fn primitive(file: &mut File, bones: &Bones, joints: usize) -> Value {
+    let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
+    let low = bones.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = bones.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let position = file.floats(&vectors(&bones.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
+    let normal = file.floats(&vectors(&bones.normals), "VEC3", None);
+    // Each vertex follows one joint alone.
+    let is_small = joints <= 1 << 8;
+    let followed = bones.joints.iter().flat_map(|&joint| {
+        let [low, high, ..] = joint.to_le_bytes();
+        if is_small {
+            [low, 0, 0, 0, 0, 0, 0, 0]
+        } else {
+            [low, high, 0, 0, 0, 0, 0, 0]
+        }
+        .into_iter()
+        .take(if is_small { 4 } else { 8 })
+    });
+    let followed: Vec<u8> = followed.collect();
+    let count = bones.joints.len();
+    let component = if is_small { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
+    let followed = file.accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
+    let weights = [255, 0, 0, 0].repeat(count);
+    let weights = file.accessor(
+        &weights,
+        json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
+    );
+    for accessor in [position, normal, followed, weights] {
+        // ARRAY_BUFFER: vertices.
+        file.views[accessor]["target"] = json!(34962);
+    }
+    json!({
+        "attributes": { "POSITION": position, "NORMAL": normal, "JOINTS_0": followed, "WEIGHTS_0": weights },
+        "material": 0,
+    })
+}
+
+fn animation(file: &mut File, clip: &Clip) -> Value {
+    let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
+    for frame in 0..clip.frames() {
+        let time = clip.time_of(frame) as f32;
+        // Times must rise, and late in a very long clip single precision does not tell frames apart.
+        times.push(times.last().map_or(time, |last| time.max(last.next_up())));
+    }
+    let ends = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let input = file.floats(&times, "SCALAR", Some((&[ends.0], &[ends.1])));
+    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+    let mut add = |node: usize, path: &str, output: usize| {
+        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
+        samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+    };
+    for joint in 0..clip.skeleton().len() {
+        let turns = (0..clip.frames()).flat_map(|frame| unit(clip.rotations(frame)[joint]).to_array());
+        add(joint, "rotation", file.floats(&turns.collect::<Vec<f32>>(), "VEC4", None));
+    }
+    let moving = clip.translations().iter().map(|track| (track.joint, track.values.as_slice()));
+    for (joint, values) in std::iter::once((0, clip.root_translations())).chain(moving) {
+        let values: Vec<f32> = values.iter().flat_map(Vec3::to_array).collect();
+        add(joint, "translation", file.floats(&values, "VEC3", None));
+    }
+    json!({ "name": clip.name(), "channels": channels, "samplers": samplers })
+}
+
+/// A quaternion as near to unit length as single precision allows.
+fn unit(q: Quat) -> Quat {
+    let q = q.as_dquat();
+    let length = q.length();
+    if length.is_finite() && length > 1e-6 {
+        (q * length.recip()).as_quat()
+    } else {
+        Quat::IDENTITY
+    }
+}
+
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const FLOAT: u32 = 5126;
+
+/// A file that grows: its binary part, and what describes that. Each accessor has a view of its own, of the same index.
+#[derive(Default)]
+struct File {
+    binary: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl File {
+    /// Adds numbers, and gives the index of their accessor.
+    fn floats(&mut self, values: &[f32], kind: &str, bounds: Option<(&[f32], &[f32])>) -> usize {
+        let width = match kind {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let mut accessor = json!({ "componentType": FLOAT, "count": values.len() / width, "type": kind });
+        if let Some((low, high)) = bounds {
+            accessor["min"] = json!(low);
+            accessor["max"] = json!(high);
+        }
+        self.accessor(&bytes, accessor)
+    }
+
+    /// Adds bytes, a multiple of four of them.
+    fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
+        let index = self.accessors.len();
+        accessor["bufferView"] = json!(index);
+        self.accessors.push(accessor);
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }));
+        self.binary.extend_from_slice(bytes);
+        index
+    }
+
+    /// The whole file: header, JSON and binary part, each of a length that is a multiple of four.
+    fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
+        root["accessors"] = Value::Array(self.accessors);
+        root["bufferViews"] = Value::Array(self.views);
+        root["buffers"] = json!([{ "byteLength": self.binary.len() }]);
+        let mut json = root.to_string().into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let length = 12 + 8 + json.len() + 8 + self.binary.len();
+        let word = |length: usize| {
+            u32::try_from(length)
+                .map(u32::to_le_bytes)
+                .map_err(|_| GlbError::TooLarge(length as u64))
+        };
+        let mut bytes = Vec::with_capacity(length);
+        bytes.extend_from_slice(b"glTF");
+        bytes.extend_from_slice(&2_u32.to_le_bytes());
+        bytes.extend_from_slice(&word(length)?);
+        for (kind, chunk) in [(b"JSON", json), (b"BIN\0", self.binary)] {
+            bytes.extend_from_slice(&word(chunk.len())?);
+            bytes.extend_from_slice(kind);
+            bytes.extend_from_slice(&chunk);
+        }
+        Ok(bytes)
+    }
+}

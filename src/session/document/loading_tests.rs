@@ -1,0 +1,179 @@
+//! Files that lean on others: motions and their skeletons, archives.
+
+use super::*;
+use crate::session::reading::Content;
+use std::io::Write as _;
+
+const ASF: &str = "\
+:version 1.10
+:name toy
+:units
+  length 1.0
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+  axis XYZ
+  position 0 0 0
+  orientation 0 0 0
+:bonedata
+  begin
+    id 1
+    name thigh
+    direction 0 -1 0
+    length 85
+    axis 0 0 0 XYZ
+    dof rx
+  end
+  begin
+    id 2
+    name spine
+    direction 0 1 0
+    length 80
+    axis 0 0 0 XYZ
+    dof rx
+  end
+:hierarchy
+  begin
+    root thigh spine
+  end
+";
+const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+
+fn bytes(text: &str) -> Arc<[u8]> {
+    Arc::from(text.as_bytes())
+}
+
+fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
+    let infos = session.clip_infos().into_iter().filter(|info| info.sha256.is_some());
+    infos.map(|info| (info.name, info.format, info.frames)).collect()
+}
+
+#[test]
+fn a_motion_waits_for_its_skeleton() {
+    let mut session = Session::new();
+    let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
+    assert!(loaded.warnings[0].contains("drop the .asf file"), "{:?}", loaded.warnings);
+    assert_eq!(files(&session), [("01_02".to_owned(), "amc", 0)]);
+    // It waits through a reload, too.
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), |_| Some(Content::Here(bytes(AMC))), None);
+    for mut session in [session, restored] {
+        session.load("01.asf", bytes(ASF)).unwrap();
+        assert_eq!(
+            files(&session),
+            [("01_02".to_owned(), "amc", 2)],
+            "and the skeleton has no row of its own"
+        );
+        assert_eq!(session.slot(Slot::A).unwrap().id, loaded.ids[0]);
+    }
+}
+
+#[test]
+fn a_skeleton_serves_all_its_motions() {
+    let mut session = Session::new();
+    session.load("01.asf", bytes(ASF)).unwrap();
+    assert_eq!(files(&session), [("01".to_owned(), "asf", 0)]);
+    session.load("01_01.amc", bytes(AMC)).unwrap();
+    let id = session
+        .load("01_02.amc", bytes(&AMC.replace("spine 2", "spine 9")))
+        .unwrap()
+        .ids
+        .remove(0);
+    assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("01_02".to_owned(), "amc", 2)]);
+    // The skeleton is stored with each, and used when the file is read again.
+    let saved = session.saved();
+    let mut restored = Session::new();
+    restored.restore(
+        &saved,
+        |sha256| {
+            let entries = session.library().entries().iter();
+            entries.clone().find_map(|entry| match &entry.origin {
+                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
+                _ => None,
+            })
+        },
+        None,
+    );
+    assert_eq!(files(&restored), files(&session));
+    let options = crate::formats::ImportOptions {
+        fps: Some(60.0),
+        ..Default::default()
+    };
+    restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+    let info = restored.clip_infos().into_iter().find(|info| info.id == id).unwrap();
+    assert_eq!((info.frames, info.fps), (2, 60.0));
+}
+
+#[test]
+fn an_archive_brings_all_its_motions() {
+    // A zip archive with stored files, by hand: the crate that reads them writes none in tests of the core.
+    let names = [
+        ("take/01.asf", ASF),
+        ("take/01_01.amc", AMC),
+        ("take/walk.bvh", BVH),
+        ("notes.txt", "hello"),
+    ];
+    let mut session = Session::new();
+    let loaded = session.load("takes.zip", Arc::from(zip(&names))).unwrap();
+    assert_eq!(loaded.ids.len(), 2, "{loaded:?}");
+    assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("walk".to_owned(), "bvh", 2)]);
+    assert!(session.notices().list().last().unwrap().text.contains("2 files"));
+    // What came out of the archive is stored file by file.
+    let mut restored = Session::new();
+    restored.restore(
+        &session.saved(),
+        |sha256| {
+            session.library().entries().iter().find_map(|entry| match &entry.origin {
+                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
+                _ => None,
+            })
+        },
+        None,
+    );
+    assert_eq!(files(&restored), files(&session));
+
+    let packed = {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(BVH.as_bytes()).unwrap();
+        encoder.finish().unwrap()
+    };
+    session.load("other.bvh.gz", Arc::from(packed)).unwrap();
+    assert!(files(&session).iter().any(|(name, ..)| name == "other"));
+    assert!(session.load("cut.zip", Arc::from(&zip(&names)[..200])).is_err());
+}
+
+const BVH: &str =
+    "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+
+/// A zip archive of files that are not packed (PKWARE's application note, 4.3).
+fn zip(files: &[(&str, &str)]) -> Vec<u8> {
+    let (mut out, mut directory) = (Vec::new(), Vec::new());
+    for (name, text) in files {
+        let mut crc = flate2::Crc::new();
+        crc.update(text.as_bytes());
+        let mut about = vec![20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        about.extend(crc.sum().to_le_bytes());
+        about.extend((text.len() as u32).to_le_bytes());
+        about.extend((text.len() as u32).to_le_bytes());
+        about.extend((name.len() as u16).to_le_bytes());
+        about.extend([0, 0]);
+        directory.extend(b"PK\x01\x02\x14\x00");
+        directory.extend(&about);
+        directory.extend([0; 10]);
+        directory.extend((out.len() as u32).to_le_bytes());
+        directory.extend(name.as_bytes());
+        out.extend(b"PK\x03\x04");
+        out.extend(&about);
+        out.extend(name.as_bytes());
+        out.extend(text.as_bytes());
+    }
+    let at = out.len() as u32;
+    out.extend(&directory);
+    out.extend(b"PK\x05\x06\0\0\0\0");
+    out.extend((files.len() as u16).to_le_bytes());
+    out.extend((files.len() as u16).to_le_bytes());
+    out.extend((directory.len() as u32).to_le_bytes());
+    out.extend(at.to_le_bytes());
+    out.extend([0, 0]);
+    out
+}

@@ -1,0 +1,102 @@
+// Whether exported files are the same motion to three.js: BVH through its BVHLoader, GLB through its GLTFLoader, against the positions that were
+// exported as CSV. A test of the page uses it (exchange.test.mjs), and `node read_back.mjs FOLDER` does for the files that the core's tests leave
+// in target/tmp/exchange, which `cargo xtask test oracles` runs.
+
+import { readFileSync } from "node:fs";
+import process from "node:process";
+import { pathToFileURL } from "node:url";
+import { PropertyBinding, Scene, Vector3 } from "three";
+import { BVHLoader } from "three/addons/loaders/BVHLoader.js";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import validator from "gltf-validator";
+
+/** A thousandth of a centimetre, metres. */
+export const AS_GOOD_AS_SAME = 1e-5;
+
+/** `{ joints, frames }`: names, and for each frame the positions of the joints in metres. */
+export function fromCsv(text) {
+  const [names, ...rows] = text.trimEnd().split("\r\n").map(cells);
+  const columns = names.flatMap((name, column) => (name.endsWith(".x_m") ? [column] : []));
+  return {
+    joints: columns.map((column) => names[column].slice(0, -".x_m".length)),
+    frames: rows.map((row) => columns.map((column) => new Vector3(...row.slice(column, column + 3).map(Number)))),
+  };
+}
+
+/** The same of a BVH file. */
+export function fromBvh(text, metresPerUnit) {
+  const { skeleton, clip } = new BVHLoader().parse(text);
+  const bones = skeleton.bones.filter((bone) => bone.name !== "ENDSITE");
+  return { joints: bones.map((bone) => bone.name), frames: frames(bones[0], bones, clip, metresPerUnit) };
+}
+
+/** The same of a GLB file, its joints in the order of its skin. Names are those that three.js makes of them. */
+export async function fromGlb(bytes) {
+  const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  const { scene, animations } = await new GLTFLoader().parseAsync(buffer, "");
+  let skin;
+  scene.traverse((object) => { if (object.isSkinnedMesh) skin = object; });
+  if (!skin || animations.length !== 1) throw new Error(`${animations.length} animations, and ${skin ? "a" : "no"} skin`);
+  return { joints: skin.skeleton.bones.map((bone) => bone.name), frames: frames(scene, skin.skeleton.bones, animations[0], 1), skin };
+}
+
+/** What Khronos' validator says of a GLB file: messages, none where it is valid. */
+export async function complaints(bytes) {
+  const { issues } = await validator.validateBytes(new Uint8Array(bytes));
+  return issues.messages.filter(({ severity }) => severity < 2).map(({ code, message, pointer }) => `${code} at ${pointer}: ${message}`);
+}
+
+/** How far a joint is from where it should be, in metres, in the worst frame. Joints are matched by `key(names, index)`. */
+export function farthest(expected, found, key = (names, index) => names[index]) {
+  if (expected.frames.length !== found.frames.length) throw new Error(`${found.frames.length} frames, not ${expected.frames.length}`);
+  if (expected.joints.length !== found.joints.length) throw new Error(`${found.joints.length} joints, not ${expected.joints.length}`);
+  const places = new Map(found.joints.map((_, index) => [key(found.joints, index), index]));
+  return expected.joints.reduce((most, _, joint) => {
+    const place = places.get(key(expected.joints, joint));
+    if (place === undefined) throw new Error(`no joint ${expected.joints[joint]}`);
+    return expected.frames.reduce((most, positions, frame) => Math.max(most, positions[joint].distanceTo(found.frames[frame][place])), most);
+  }, 0);
+}
+
+export const byIndex = (_, index) => index;
+
+/** Poses the bones by the clip's own keys, one after the other. */
+function frames(root, bones, clip, metresPerUnit) {
+  const scene = new Scene().add(root);
+  const tracks = clip.tracks.map((track) => {
+    const { nodeName, propertyName } = PropertyBinding.parseTrackName(track.name);
+    return { property: PropertyBinding.findNode(root, nodeName)[propertyName], values: track.values, size: track.getValueSize() };
+  });
+  return Array.from({ length: clip.tracks[0].times.length }, (_, frame) => {
+    for (const { property, values, size } of tracks) property.fromArray(values, frame * size);
+    scene.updateMatrixWorld(true);
+    return bones.map((bone) => bone.getWorldPosition(new Vector3()).multiplyScalar(metresPerUnit));
+  });
+}
+
+/** The cells of a line; a comma in quotation marks is none. */
+function cells(line) {
+  return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain);
+}
+
+async function main(folder) {
+  const cases = readFileSync(`${folder}/cases.txt`, "utf8").trim().split("\n").map((line) => line.split(" "));
+  let failed = false;
+  const tell = (name, metres) => {
+    console.log(`${name}: ${(100 * metres).toFixed(6)} cm apart`);
+    failed ||= !(metres < AS_GOOD_AS_SAME);
+  };
+  for (const [name, metresPerUnit] of cases) {
+    const expected = fromCsv(readFileSync(`${folder}/${name}.csv`, "utf8"));
+    tell(`${name}.bvh`, farthest(expected, fromBvh(readFileSync(`${folder}/${name}.bvh`, "utf8"), Number(metresPerUnit))));
+    const glb = readFileSync(`${folder}/${name}.glb`);
+    tell(`${name}.glb`, farthest(expected, await fromGlb(glb), byIndex));
+    for (const complaint of await complaints(glb)) {
+      console.log(`${name}.glb: ${complaint}`);
+      failed = true;
+    }
+  }
+  if (failed) throw new Error("not the same motion, or not valid");
+}
+
+if (process.argv[1] && import.meta.url === pathToFileURL(process.argv[1]).href) await main(process.argv[2]);
