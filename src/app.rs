@@ -11,7 +11,7 @@ mod picture;
 
 pub(crate) use address_bar::link_query;
 
-use crate::platform::{self, Inbox, Incoming, LargeFile, ReadNews, Reader, Storage, Vault};
+use crate::platform::{self, Inbox, Incoming, LargeFile, Pace, ReadNews, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, UiState};
 use address_bar::AddressBar;
@@ -123,8 +123,8 @@ struct Window {
     generation: u64,
     /// As the API calls it; empty before there is one.
     backend: &'static str,
-    /// Whether there is no graphics card.
-    in_software: bool,
+    /// Where there is no graphics card: what sees to it that drawing leaves room for everything else.
+    pace: Option<Pace>,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
@@ -185,7 +185,8 @@ impl Segue {
         };
         let adapter = state.adapter.get_info();
         self.window.backend = api::backend_name(adapter.backend);
-        self.window.in_software = adapter.device_type == wgpu::DeviceType::Cpu;
+        let in_software = adapter.device_type == wgpu::DeviceType::Cpu;
+        self.window.pace = in_software.then(|| Pace::new(&state.device, &state.queue));
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
         state
@@ -501,11 +502,9 @@ impl Segue {
     /// Something moves by itself: the next picture comes with the screen's next beat, or, where pictures are drawn in software, in time to leave
     /// the processor free for everything else.
     fn animate(&self, ctx: &egui::Context) {
-        if self.window.in_software {
-            let since_ms = platform::now_ms() - self.clock.frame_began;
-            ctx.request_repaint_after(Duration::from_secs_f64((SOFTWARE_FRAME_MS - since_ms).max(0.0) / 1e3));
-        } else {
-            ctx.request_repaint();
+        match &self.window.pace {
+            Some(pace) => pace.next_frame(ctx, self.clock.frame_began, SOFTWARE_FRAME_MS),
+            None => ctx.request_repaint(),
         }
     }
 

@@ -99,11 +99,9 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
                 .auto_shrink(false)
                 .show(ui, |ui| lab_panel::lab_panel_ui(session, out, ui));
         });
-    egui::CentralPanel::default()
-        .frame(Frame::new().fill(palette_of(ui).ground))
-        .show(ui, |ui| {
-            stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
-        });
+    egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
+    });
 }
 
 /// One column: bar, stage, timeline, parameters.
@@ -117,7 +115,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
     let height = ui.available_height();
     Panel::top("stage")
         .exact_size((height * 0.5).round())
-        .frame(Frame::new().fill(palette_of(ui).ground))
+        .frame(Frame::new())
         .show(ui, |ui| {
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
@@ -165,9 +163,7 @@ fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, 
     } else {
         Layout::Desk
     };
-    egui::CentralPanel::default()
-        .frame(Frame::new().fill(palette_of(ui).ground))
-        .show(ui, |ui| {
-            stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
-        });
+    egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
+    });
 }

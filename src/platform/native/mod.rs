@@ -1,10 +1,12 @@
 //! The desktop window.
 
 mod files;
+mod pace;
 mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
+pub(crate) use pace::Pace;
 pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;
 

@@ -3,6 +3,7 @@
 mod fetch;
 mod files;
 mod handle;
+mod pace;
 mod page;
 mod reader;
 mod snapshot;
@@ -11,6 +12,7 @@ mod storage;
 pub(crate) use super::address::file_name_of;
 pub(crate) use fetch::{Fetch, fetch, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};
+pub(crate) use pace::Pace;
 pub(crate) use page::{full_link, location_query, now_ms, replace_query, watch_navigation};
 pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;

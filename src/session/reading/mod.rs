@@ -147,7 +147,7 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
         }
     };
     match unpacked {
-        Ok((files, notes)) => read_several(files, notes, bytes.len(), setup, progress),
+        Ok((files, notes)) => read_several(&files, notes, bytes.len(), setup, progress),
         Err(error) => Some(ReadReport {
             files: vec![ReadFile {
                 name: name.to_owned(),
@@ -164,7 +164,7 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
 
 /// Reads what came out of an archive of `packed` bytes.
 fn read_several(
-    files: Vec<(String, Vec<u8>)>,
+    files: &[(String, Vec<u8>)],
     notes: Vec<String>,
     packed: usize,
     setup: &ReadSetup,
