@@ -91,17 +91,15 @@ impl Contacts {
         Self { planted }
     }
 
-    /// The contacts of a result that plays `outgoing` up to frame `leave`, then `window` overlapped frames, then `incoming`, which is entered at its
-    /// frame `enter`. In the window the first half of the frames has the contacts of the outgoing clip, the second those of the incoming one: the
-    /// clip that has the greater weight.
+    /// The contacts of a result that plays `outgoing`, goes over at frame `leave` to `incoming`, which is entered at its frame `enter`, and has the
+    /// greater part of `incoming` from its frame `handover` on: before it the contacts are those of the outgoing clip.
     #[must_use]
-    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, window: usize) -> Self {
-        let from_incoming = leave + window / 2;
-        let frames = (leave + incoming.frames()).saturating_sub(enter).max(from_incoming);
+    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, handover: usize) -> Self {
+        let frames = (leave + incoming.frames()).saturating_sub(enter).max(handover);
         let planted = Side::BOTH.map(|side| {
             (0..frames)
                 .map(|frame| {
-                    if frame < from_incoming {
+                    if frame < handover {
                         outgoing.planted(side, frame)
                     } else {
                         incoming.planted(side, (frame + enter).saturating_sub(leave))

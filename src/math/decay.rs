@@ -32,10 +32,7 @@ impl Response {
     /// The offset and its velocity.
     #[must_use]
     pub fn of_vec3(&self, x: Vec3, v: Vec3) -> (Vec3, Vec3) {
-        (
-            x * self.xx as f32 + v * self.xv as f32,
-            x * self.vx as f32 + v * self.vv as f32,
-        )
+        (x * self.xx as f32 + v * self.xv as f32, x * self.vx as f32 + v * self.vv as f32)
     }
 }
 
@@ -193,9 +190,56 @@ mod tests {
     #[test]
     fn a_cubic_overshoots_where_the_quintic_does_not() {
         let (x, v) = (Vec3::new(0.1, 0.0, 0.0), Vec3::new(-4.0, 0.5, 0.0));
-        let lowest = |decay: Decay| (0..100).map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x).fold(f32::MAX, f32::min);
+        let lowest = |decay: Decay| {
+            (0..100)
+                .map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x)
+                .fold(f32::MAX, f32::min)
+        };
         assert!(lowest(ALL[1]) < -0.1);
         assert!(lowest(ALL[2]) > -1e-6);
         assert_eq!(ALL[2].of_vec3(Vec3::ZERO, Vec3::ZERO, 0.1), (Vec3::ZERO, Vec3::ZERO));
+    }
+
+    #[derive(serde::Deserialize)]
+    struct Golden {
+        times: Vec<f64>,
+        decays: Vec<GoldenDecay>,
+        running_half_life: f64,
+        running: Vec<(f64, f64)>,
+    }
+
+    #[derive(serde::Deserialize)]
+    struct GoldenDecay {
+        x: f64,
+        v: f64,
+        half_life: f64,
+        period: f64,
+        spring: Vec<(f64, f64)>,
+        cubic: Vec<(f64, f64)>,
+        quintic: Option<Vec<(f64, f64)>>,
+    }
+
+    #[test]
+    fn agrees_with_scipy() {
+        let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
+        let near = |found: (f64, f64), wanted: (f64, f64)| (found.0 - wanted.0).abs() < 1e-10 && (found.1 - wanted.1).abs() < 1e-8;
+        for case in &golden.decays {
+            let (half_life_secs, blend_secs) = (case.half_life, case.period);
+            let none = vec![];
+            for (decay, wanted) in [
+                (Decay::Spring { half_life_secs }, &case.spring),
+                (Decay::Cubic { blend_secs }, &case.cubic),
+                (Decay::Quintic { blend_secs }, case.quintic.as_ref().unwrap_or(&none)),
+            ] {
+                for (&t, &wanted) in golden.times.iter().zip(wanted) {
+                    let found = decay.response(-case.v / case.x, t).of(case.x, case.v);
+                    assert!(near(found, wanted), "{decay:?} at {t}: {found:?} {wanted:?}");
+                }
+            }
+        }
+        for (&t, &wanted) in golden.times.iter().zip(&golden.running) {
+            assert!(near(spring::run_on(golden.running_half_life, t), wanted));
+        }
+        assert_eq!(golden.decays.len(), 6);
     }
 }

@@ -19,7 +19,12 @@ pub fn shorter_way(q: Quat) -> Quat {
 /// Exact near the identity, where `acos(w)` loses half of the digits.
 #[must_use]
 pub fn log(q: Quat) -> Vec3 {
-    let q = shorter_way(q);
+    log_as_given(shorter_way(q))
+}
+
+/// The rotation vector of a unit quaternion by the way that its sign stands for: at most 2π long, and continuous as long as the quaternion is.
+#[must_use]
+pub fn log_as_given(q: Quat) -> Vec3 {
     let v = Vec3::new(q.x, q.y, q.z);
     let sine = v.length();
     if sine < 1e-9 {

@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(secs_until(0.2, f64::INFINITY), 0.0);
         assert!(secs_until(0.2, 0.0) > secs_until(0.2, 1e-11));
         let (when, how_far) = peak_of_velocity(0.3);
-        assert!((how_far - 0.265_385 * 0.3).abs() < 1e-6 && (when - 0.721_348 * 0.3).abs() < 1e-6);
+        assert!((how_far - 0.265_370 * 0.3).abs() < 1e-6 && (when - 0.721_348 * 0.3).abs() < 1e-6);
         let at = |t: f64| response(0.3, t).xv;
         assert!((at(when) - how_far).abs() < 1e-12 && at(when - 1e-3) < how_far && at(when + 1e-3) < how_far);
     }
@@ -135,7 +135,10 @@ mod tests {
     fn no_half_life_is_no_time() {
         for half_life in [0.0, -1.0, f64::NAN] {
             let left = response(half_life, 1e-3);
-            assert!(left.of(1.0, 100.0).0.abs() < 1e-12 && left.of(1.0, 100.0).1.abs() < 1e-12, "{left:?}");
+            assert!(
+                left.of(1.0, 100.0).0.abs() < 1e-12 && left.of(1.0, 100.0).1.abs() < 1e-12,
+                "{left:?}"
+            );
             assert_eq!(response(half_life, 0.0).of(1.0, 2.0), (1.0, 2.0));
         }
     }
