@@ -122,6 +122,25 @@ impl Contacts {
         self.planted[side.index()].get(frame).copied().unwrap_or(false)
     }
 
+    /// Where the foot of `side` is between one touchdown and the next in `frame`: 0 at a touchdown, towards 1 before the next. Before the first and behind
+    /// the last touchdown the rhythm of the nearest stride goes on. `None` for a foot with fewer than two touchdowns.
+    #[must_use]
+    pub fn phase(&self, side: Side, frame: usize) -> Option<f32> {
+        // A foot that stands when the clip begins came down at some time before.
+        let touchdowns: Vec<usize> = self
+            .intervals(side)
+            .into_iter()
+            .map(|stance| stance.start)
+            .filter(|&at| at > 0)
+            .collect();
+        let next = touchdowns
+            .partition_point(|&at| at <= frame)
+            .clamp(1, touchdowns.len().saturating_sub(1).max(1));
+        let (from, to) = (*touchdowns.get(next - 1)?, *touchdowns.get(next)?);
+        let phase = (frame as f32 - from as f32) / (to - from) as f32;
+        Some(phase.rem_euclid(1.0))
+    }
+
     /// The frames during which the foot of `side` is on the ground, as ranges in order of time.
     #[must_use]
     pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {

@@ -6,12 +6,14 @@
 //! jumps while playing.
 
 mod concatenate;
+mod cut_points;
 mod inertialize;
 mod loop_curve;
 mod loops;
 mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
+pub use cut_points::{CutPoints, CycleSearch, find_cycle};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop};

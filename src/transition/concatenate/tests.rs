@@ -134,8 +134,8 @@ fn the_motion_goes_on_as_a_was_going() {
             }
             let step = |clip: &Clip| (clip.root_translations()[70] - clip.root_translations()[69]) * 60.0;
             let off = step(&out.clip) - step(a.clip());
-            // Unaligned, B lies metres away.
-            assert!(!place.0 || off.length() < 0.3, "{how:?} {place:?} {off}");
+            // Unaligned, B lies metres away; and a quintic that would overshoot hurries.
+            assert!(!place.0 || off.length() < 0.6, "{how:?} {place:?} {off}");
         }
         // A cut does jump.
         let cut = concatenate(&a, 70, &b, 31, &TransitionOptions::new(Method::Cut)).unwrap();
