@@ -114,7 +114,10 @@ struct Shift {
 
 #[derive(Clone, Copy, Debug)]
 struct Travel {
-    offset: Vec3,
+    /// The difference of steady velocities: it decays, and the way made meanwhile stays made.
+    steady: Vec3,
+    /// The rest of the difference: a sway, as an offset that starts at 0 and swings back to it.
+    sway: Vec3,
     from: Vec3,
 }
 
@@ -169,8 +172,10 @@ impl Inertializer {
                 velocity,
             })
             .collect();
+        let steady = playing.steady_travel - new.steady_travel;
         self.travel = Some(Travel {
-            offset: playing.travel - new.travel,
+            steady,
+            sway: playing.travel - new.travel - steady,
             from: playing.travel,
         });
         self.elapsed_secs = 0.0;
@@ -196,8 +201,9 @@ impl Inertializer {
     /// The step over the ground of a new motion that takes `dt_secs` and ends now, with what is left of the old travel: steps as in
     /// [`crate::clip::character_frames`] from one frame to the next, each in the character's frame at its start.
     ///
-    /// What decays is the difference of velocities, without a rate of its own: from a walk into a run the speed rises and never overshoots. It is
-    /// taken at the middle of the step.
+    /// What decays is the difference of steady velocities, without a rate of its own: from a walk into a run the speed rises and never overshoots.
+    /// The rest, the sway of the moment, is carried over as the velocity of an offset that comes back to 0: kept as a velocity, the quarter of a
+    /// stride's turning or swaying that was going on would lead the character off its way. Both are taken at the middle of the step.
     #[must_use]
     pub fn step(&self, step: &Planar, dt_secs: f64) -> Planar {
         let Some(old) = self.travel.filter(|_| dt_secs > 0.0) else {
@@ -230,6 +236,7 @@ impl Inertializer {
         }
         if let Some(old) = &self.travel {
             pose.travel += now.travelled(old, pose.travel);
+            pose.steady_travel += now.steadily(old, pose.steady_travel);
         }
     }
 }
@@ -334,7 +341,14 @@ impl Now {
     fn travelled(self, travel: &Travel, live: Vec3) -> Vec3 {
         match self {
             Self::Dead { weight, speed_left, .. } => (travel.from * speed_left - live) * weight,
-            _ => self.of(travel.offset, Vec3::ZERO).0,
+            _ => self.steadily(travel, live) + self.of(Vec3::ZERO, travel.sway).1,
+        }
+    }
+
+    fn steadily(self, travel: &Travel, live: Vec3) -> Vec3 {
+        match self {
+            Self::Dead { .. } => self.travelled(travel, live),
+            _ => self.of(travel.steady, Vec3::ZERO).0,
         }
     }
 }

@@ -296,6 +296,7 @@ impl View<'_> {
             rotations,
             translations,
             travel: Vec3::ZERO,
+            steady_travel: Vec3::ZERO,
         };
         for &(steps, weight) in stencil {
             let other = frame.saturating_add_signed(steps);
@@ -310,6 +311,8 @@ impl View<'_> {
             let step = self.source.frames()[frame].inverse().after(&self.source.frames()[other]);
             pose.travel += travel(&step, fps) * weight;
         }
+        // Both ends are at the same point of the stride: what differs is not sway.
+        pose.steady_travel = pose.travel;
         pose
     }
 }

@@ -15,7 +15,13 @@ pub struct MovingPose {
     pub velocities: Vec<Vec3>,
     /// How the character goes over the ground, in its own frame: (sideways m/s, yaw rate rad/s, forward m/s).
     pub travel: Vec3,
+    /// The same without the sway of the stride: its mean over about a second. What a transition hands over; sway only swings out. Equal to `travel`
+    /// where nothing sways.
+    pub steady_travel: Vec3,
 }
+
+/// A stride, seconds: over it the sway of walking and running averages out.
+const STRIDE_SECS: f64 = 1.0;
 
 /// One frame of a clip, as seen from where the character stands, or from a fixed place when `at` says so.
 pub(super) struct View<'a> {
@@ -94,8 +100,19 @@ impl View<'_> {
             translations,
             velocities: shifts.into_iter().map(|shift| shift * fps).collect(),
             travel: travel(&step, clip.fps()),
+            steady_travel: self.steady_travel(frame),
         };
         (pose, standing)
+    }
+
+    /// The mean travel over a stride around the step into `frame`; near an end of the clip, over the first or the last stride of it: a part of a stride
+    /// has a sway of its own.
+    fn steady_travel(&self, frame: usize) -> Vec3 {
+        let (fps, last) = (self.source.clip().fps(), self.source.clip().frames().saturating_sub(1));
+        let count = ((STRIDE_SECS * fps).round() as usize).clamp(1, last.max(1));
+        let first = frame.saturating_sub(count / 2).clamp(1, (last + 1).saturating_sub(count).max(1));
+        let sum: Vec3 = (first..first + count).map(|frame| travel(&self.source.step_into(frame), fps)).sum();
+        sum / count as f32
     }
 }
 

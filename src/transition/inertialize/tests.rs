@@ -28,6 +28,7 @@ impl Steady {
             translations: vec![self.place + self.velocity * secs],
             velocities: vec![self.velocity],
             travel: self.velocity,
+            steady_travel: self.velocity,
         }
     }
 }
@@ -147,6 +148,7 @@ proptest! {
 fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
     let pose = |travel: Vec3| MovingPose {
         travel,
+        steady_travel: travel,
         ..MovingPose::default()
     };
     let (old, new, dt) = (Vec3::new(0.2, -1.0, 1.4), Vec3::new(0.0, 0.5, 3.5), 1.0 / 60.0);
@@ -162,6 +164,36 @@ fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
         let last = travel(&inertia.step(&step, dt), 60.0);
         assert!((last - new).length() < 1e-4, "{how:?} {last}");
         assert_eq!(inertia.elapsed_secs(), dt + 5.0);
+    }
+}
+
+/// A sway that goes on in neither motion leaves the character where it would have been; a difference of speeds does not.
+#[test]
+fn sway_swings_out_and_speed_is_made_good() {
+    let dt = 1e-3;
+    for how in &KINDS[..3] {
+        let way = |old: MovingPose| {
+            let mut inertia = Inertializer::new(*how);
+            inertia.trigger(&old, &MovingPose::default());
+            let mut here = Planar::IDENTITY;
+            for _ in 0..3000 {
+                inertia.advance(dt);
+                here = here.after(&inertia.step(&Planar::IDENTITY, dt));
+            }
+            here
+        };
+        let swaying = way(MovingPose {
+            travel: Vec3::new(0.3, 1.0, 0.0),
+            ..MovingPose::default()
+        });
+        assert!(swaying.shift.length() < 5e-3 && swaying.yaw.abs() < 1e-3, "{how:?} {swaying:?}");
+        let walking = way(MovingPose {
+            travel: Vec3::Z,
+            steady_travel: Vec3::Z,
+            ..MovingPose::default()
+        });
+        let area = (0..3000).map(|i| how.left((f64::from(i) + 0.5) * dt) * dt).sum::<f64>();
+        assert!((walking.shift.y - area).abs() < 1e-4, "{how:?} {walking:?} {area}");
     }
 }
 
