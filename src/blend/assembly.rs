@@ -59,12 +59,11 @@ impl Assembly {
 
     fn play_tracks(&mut self, clip: &Clip, frames: Range<usize>) {
         for track in &mut self.tracks {
-            match clip.translations().iter().find(|of| of.joint == track.joint) {
-                Some(of) => track.values.extend_from_slice(&of.values[frames.clone()]),
-                None => {
-                    let rest = clip.skeleton().joints()[track.joint].offset;
-                    track.values.extend(std::iter::repeat_n(rest, frames.len()));
-                }
+            if let Some(of) = clip.translations().iter().find(|of| of.joint == track.joint) {
+                track.values.extend_from_slice(&of.values[frames.clone()]);
+            } else {
+                let rest = clip.skeleton().joints()[track.joint].offset;
+                track.values.extend(std::iter::repeat_n(rest, frames.len()));
             }
         }
     }

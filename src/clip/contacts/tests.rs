@@ -210,7 +210,9 @@ fn a_sprint_over_a_leaning_floor_has_contacts() {
 fn phases_run_from_touchdown_to_touchdown() {
     let stances = |list: &[std::ops::Range<usize>]| {
         let mut flags = vec![false; 100];
-        list.iter().for_each(|stance| flags[stance.clone()].fill(true));
+        for stance in list {
+            flags[stance.clone()].fill(true);
+        }
         flags
     };
     let contacts = Contacts {
