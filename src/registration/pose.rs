@@ -392,18 +392,19 @@ mod tests {
     fn the_same_frame_is_found_again_wherever_the_clip_lies() {
         let whole = Walk {
             frames: 300,
+            fps: 240.0,
             turning: 0.5,
             ..Walk::default()
         }
         .clip();
         let a = Arc::new(whole.crop(0..180).unwrap());
-        let b = Arc::new(whole.crop(140..300).unwrap().transformed(&Planar::new(1.9, -3.0, 8.0)));
+        let b = Arc::new(whole.crop(141..300).unwrap().transformed(&Planar::new(1.9, -3.0, 8.0)));
         let weights = PoseWeights {
             velocity: 0.3,
             ..PoseWeights::default()
         };
         let found = search(&a, &b).best(weights, &SearchOptions::new(1)).unwrap();
-        assert_eq!(found.leave, found.enter + 140, "{found:?}");
+        assert_eq!(found.leave, found.enter + 141, "{found:?}");
         assert!(found.cost < 1e-3 && found.position_cm < 0.01 && found.rotation_deg < 0.1 && found.velocity_mps < 0.01);
         assert!(!found.grown);
     }

@@ -130,3 +130,77 @@ pub(super) fn further(step: &Planar, travel: Vec3, secs: f64) -> Planar {
     let off = travel.as_dvec3() * secs;
     Planar::new(step.yaw + off.y, step.shift.x + off.x, step.shift.y + off.z)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registration::fixtures::Walk;
+    use crate::skeleton::Roles;
+    use std::sync::Arc;
+
+    #[test]
+    fn clips_go_on_beyond_their_ends_as_in_their_last_step() {
+        let clip = Walk {
+            frames: 40,
+            turning: 0.7,
+            ..Walk::default()
+        }
+        .clip();
+        let source = Source::new(Arc::new(clip.clone()), &Roles::detect(clip.skeleton()));
+        let view = View {
+            source: &source,
+            moving: &[],
+            fixed: None,
+        };
+        let dt = clip.dt_secs();
+        // The pose before a frame, one step on, is the frame; before the first frame with the step behind it, behind the last with the one before.
+        for (frame, arrives_at, step) in [
+            (0, Some(0), 1),
+            (1, Some(1), 1),
+            (25, Some(25), 25),
+            (39, Some(39), 39),
+            (40, None, 39),
+        ] {
+            let (pose, standing) = view.before(frame);
+            let stepped = standing.after(&source.step_into(step));
+            if let Some(at) = arrives_at {
+                let (rotations, translations) = view.pose(at);
+                for ((from, velocity), to) in pose.rotations.iter().zip(&pose.angular_velocities).zip(&rotations) {
+                    assert!(quat::angle_between(quat::exp(*velocity * dt) * *from, *to) < 1e-5, "{frame}");
+                }
+                assert!((pose.translations[0] + pose.velocities[0] * dt).distance(translations[0]) < 1e-5);
+                assert!(stepped.shift.distance(source.frames()[at].shift) < 1e-5, "{frame}");
+            } else {
+                assert_eq!((&pose.rotations, standing), (&view.pose(39).0, source.frames()[39]));
+                let arm = quat::log(clip.rotations(39)[3] * clip.rotations(38)[3].conjugate()) / dt;
+                assert!((pose.angular_velocities[3] - arm).length() < 1e-4);
+            }
+            assert!((pose.travel - travel(&source.step_into(step), 60.0)).length() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn steady_travel_has_no_sway() {
+        let clip = Walk {
+            frames: 400,
+            cadence: 1.0,
+            ..Walk::default()
+        }
+        .clip();
+        let source = Source::new(Arc::new(clip.clone()), &Roles::detect(clip.skeleton()));
+        let view = View {
+            source: &source,
+            moving: &[],
+            fixed: None,
+        };
+        for frame in [0, 7, 200, 395, 400] {
+            let (pose, _) = view.before(frame);
+            assert!(
+                (pose.steady_travel - Vec3::Z * 1.3).length() < 0.01,
+                "{frame} {}",
+                pose.steady_travel
+            );
+        }
+        assert!((0..60).any(|frame| (view.before(frame).0.travel.z - 1.3).abs() > 0.1));
+    }
+}

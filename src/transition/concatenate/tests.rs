@@ -171,6 +171,29 @@ fn velocity_is_continuous_in_the_limit_of_fine_frames() {
     }
 }
 
+/// A clip that is cut in two and joined again: its ends are taken to go on as they were going, so nothing but the change of a step in a frame is bridged.
+#[test]
+fn the_two_halves_of_a_clip_go_together_again() {
+    let whole = Walk {
+        frames: 200,
+        fps: 120.0,
+        turning: 0.5,
+        ..Walk::default()
+    }
+    .clip();
+    for at in [70, 93, 120] {
+        let (a, b) = (source_of(whole.crop(0..at).unwrap()), source_of(whole.crop(at..200).unwrap()));
+        for how in &KINDS[..3] {
+            let out = made(&a, at, &b, 0, *how, PLACES[0]);
+            let (distance, _) = difference(&out.clip, &whole);
+            // An arm, which swings as a sine does; knees stop dead.
+            let arm = |f: usize| quat::angle_between(out.clip.rotations(f)[3], whole.rotations(f)[3]);
+            let angle = (0..200).map(arm).fold(0.0, f32::max);
+            assert!(distance < 0.05 && angle < 0.02, "{how:?} {at} {distance} {angle}");
+        }
+    }
+}
+
 #[test]
 fn no_time_is_a_cut() {
     let (a, b) = two();

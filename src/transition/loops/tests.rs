@@ -83,6 +83,29 @@ proptest! {
     }
 }
 
+/// Rotations about all axes do not commute: one solution is not enough.
+#[test]
+fn large_differences_about_any_axis_close() {
+    let skeleton = crate::skeleton::fixtures::cmu_bvh();
+    let mut largest = 0.0_f64;
+    for seed in 0..4 {
+        let source = source_of(crate::clip::fixtures::wander_by(&skeleton, 90, seed, 2.5));
+        for (cycle, ratio) in [(3..45, 0.5), (0..30, 1.0), (20..89, 0.2)] {
+            for method in &METHODS[..2] {
+                let made = closed(&source, cycle.clone(), *method, ratio);
+                largest = largest.max(made.before.turn_deg);
+                assert!(
+                    made.seam.turn_deg < 2e-3 && made.seam.turn_dps < 0.1,
+                    "{method:?} {:?} {:?}",
+                    made.before,
+                    made.seam
+                );
+            }
+        }
+    }
+    assert!(largest > 60.0, "{largest}");
+}
+
 #[test]
 fn what_a_viewer_meets_at_the_seam() {
     let source = walk(160, 0.3);
