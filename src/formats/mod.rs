@@ -228,7 +228,7 @@ mod tests {
         let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, or .asf with .amc)"
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)"
         );
         assert!(error.hint.is_some());
         assert!(import("", b"", &options).is_err());
