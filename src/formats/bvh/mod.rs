@@ -7,6 +7,7 @@
 //! What is not in the file (the unit of length and the up axis) is found by [`super::Measure`].
 
 mod convert;
+mod decimal;
 mod euler;
 mod header;
 mod hierarchy;
@@ -14,6 +15,7 @@ mod lexer;
 mod motion;
 mod number;
 mod read;
+mod turns;
 mod write;
 
 pub use read::{read, read_with_progress};
