@@ -2,7 +2,7 @@
 
 use super::hierarchy::{Column, Hierarchy};
 use super::motion::RowSink;
-use super::turns::HalfAngles;
+use super::turns::Turns;
 use crate::formats::error::Fault;
 use crate::formats::raw::RawMotion;
 use crate::skeleton::{Channel, Joint};
@@ -40,28 +40,15 @@ enum Source {
 
 /// One character of the file, in file units and file axes.
 struct Character {
-    /// The turns of each joint, in order, as ranges of [`Converter::axes`].
-    turns: Vec<Range<usize>>,
+    turns: Turns,
     /// Where the root is, and after it each joint that has a track, in the order of the tracks.
     places: Vec<[Source; 3]>,
     raw: RawMotion,
 }
 
-impl Character {
-    /// The root's way and the tracks, in the order of the places.
-    fn tracks(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
-        std::iter::once(&mut self.raw.root_translations).chain(self.raw.tracks.iter_mut().map(|(_, values)| values))
-    }
-}
-
 /// Collects rows as rotations.
 pub(super) struct Converter {
-    /// The axes of all turns, sorted by joint.
-    axes: Vec<usize>,
-    /// The columns of the same turns.
-    columns: Vec<usize>,
     characters: Vec<Character>,
-    half_angles: HalfAngles,
     /// What the header says of the number of rows.
     declared: f64,
     /// Where the first row starts and the last one ends.
@@ -78,21 +65,19 @@ impl Converter {
     pub(super) fn new(tree: &Hierarchy, declared: f64, bytes: Range<usize>) -> Self {
         let mut positions: Vec<[Source; 3]> = tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();
         let mut moves = vec![false; tree.joints.len()];
-        // Sorting by joint keeps the order of each joint's channels.
-        let mut turning: Vec<(usize, usize, usize)> = Vec::new();
+        let mut turns: Vec<Vec<(usize, usize)>> = vec![Vec::new(); tree.joints.len()];
         let mut channels: Vec<Vec<Channel>> = vec![Vec::new(); tree.joints.len()];
         for (index, &Column { joint, channel }) in tree.columns.iter().enumerate() {
             let Some(channel) = channel else { continue };
             channels[joint].push(channel);
             match kind(channel) {
-                (true, axis) => turning.push((joint, axis, index)),
+                (true, axis) => turns[joint].push((axis, index)),
                 (false, axis) => {
                     positions[joint][axis] = Source::Column(index);
                     moves[joint] = true;
                 }
             }
         }
-        turning.sort_by_key(|&(joint, ..)| joint);
 
         let starts: Vec<usize> = (0..tree.joints.len())
             .filter(|&joint| tree.joints[joint].parent.is_none())
@@ -101,7 +86,7 @@ impl Converter {
         let mut characters = Vec::new();
         for (start, end) in starts.iter().copied().zip(ends) {
             let mut character = Character {
-                turns: Vec::with_capacity(end - start),
+                turns: Turns::new(&turns[start..end]),
                 places: Vec::new(),
                 raw: RawMotion::default(),
             };
@@ -113,8 +98,6 @@ impl Converter {
                     character.places.push(positions[index]);
                     character.raw.tracks.push((index - start, Vec::new()));
                 }
-                let first = turning.partition_point(|turn| turn.0 < index);
-                character.turns.push(first..turning.partition_point(|turn| turn.0 <= index));
                 character.raw.joints.push(Joint {
                     name: joint.name.clone(),
                     parent: joint.parent.map(|parent| parent - start),
@@ -128,10 +111,7 @@ impl Converter {
         let tracks: usize = characters.iter().map(|c| c.places.len()).sum();
         let bytes_per_row = (tree.joints.len() * size_of::<Quat>() + tracks * size_of::<Vec3>()) as u64;
         Self {
-            axes: turning.iter().map(|turn| turn.1).collect(),
-            columns: turning.iter().map(|turn| turn.2).collect(),
             characters,
-            half_angles: HalfAngles::default(),
             declared,
             rows: 0,
             room: 0,
@@ -152,8 +132,8 @@ impl Converter {
         let rows = (expected as u64).min(fits) as usize;
         let rows = rows.max(self.rows / 8).max(FIRST_ROWS.min(fits as usize)).max(1);
         for character in &mut self.characters {
-            character.raw.rotations.reserve_exact(rows * character.turns.len());
-            character.tracks().for_each(|track| track.reserve_exact(rows));
+            character.raw.rotations.reserve_exact(rows * character.raw.joints.len());
+            character.raw.translations_mut().for_each(|track| track.reserve_exact(rows));
         }
         self.room += rows;
     }
@@ -171,7 +151,7 @@ impl Converter {
     pub(super) fn finish(mut self) -> Vec<RawMotion> {
         for character in &mut self.characters {
             character.raw.rotations.shrink_to_fit();
-            character.tracks().for_each(Vec::shrink_to_fit);
+            character.raw.translations_mut().for_each(Vec::shrink_to_fit);
         }
         self.characters.into_iter().map(|character| character.raw).collect()
     }
@@ -191,16 +171,10 @@ impl RowSink for Converter {
         }
         self.rows += 1;
         let value = |column: usize| values.get(column).copied().unwrap_or_default();
-        let Self {
-            axes, columns, half_angles, ..
-        } = self;
-        half_angles.set(columns.iter().map(|&column| value(column)));
         for character in &mut self.characters {
-            let rotation = |turns: &Range<usize>| half_angles.product(turns.start, axes.get(turns.clone()).unwrap_or_default());
-            character.raw.rotations.extend(character.turns.iter().map(rotation));
             let raw = &mut character.raw;
-            let tracks = std::iter::once(&mut raw.root_translations).chain(raw.tracks.iter_mut().map(|(_, values)| values));
-            for (track, place) in tracks.zip(&character.places) {
+            character.turns.rotations_into(values, &mut raw.rotations);
+            for (track, place) in raw.translations_mut().zip(&character.places) {
                 track.push(vec3(place.map(|source| match source {
                     Source::Column(column) => value(column),
                     Source::Offset(value) => value,

@@ -2,8 +2,8 @@
 //!
 //! Eight bytes at a time in one 64-bit word, the first one lowest: whether they are digits, and what number they make, takes a handful of
 //! operations without a branch (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and Experience 51, 2021; the search for
-//! blanks after G. Langdale and D. Lemire, "Parsing gigabytes of JSON per second", VLDB Journal 28, 2019). Where the numbers start is found
-//! first, so that no number waits for the length of the one before.
+//! blanks after G. Langdale and D. Lemire, "Parsing gigabytes of JSON per second", VLDB Journal 28, 2019). Where the numbers start and end is
+//! found first, so that no number waits for the length of the one before.
 //!
 //! Whatever is not plain is left to [`super::number`], which reads the same numbers slowly.
 
@@ -12,112 +12,141 @@ const fn all(byte: u8) -> u64 {
     u64::from_le_bytes([byte; 8])
 }
 
-/// Powers of ten that a double holds exactly, as far as digits behind the point are read here.
-const TENS: [f64; 9] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8];
-
-/// [`TENS`] as integers.
-const WHOLE_TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+/// Powers of ten for up to 7 digits behind the point.
+const TENS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
 /// Larger magnitudes are overflows, not measures: they would not survive being scaled in `f32`.
 pub(super) const LARGEST: f64 = 1e30;
 
-/// The number at `at` and where it ends: the same as the slow way, to the last bit. `None` where there is none, or one that is too large to be
-/// a measure. What comes after it is not looked at.
-#[inline]
-pub(super) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
-    plain(text, at).or_else(|| {
-        let (value, length) = fast_float2::parse_partial::<f64, _>(text.get(at..)?).ok()?;
-        (value.abs() <= LARGEST).then_some((value, at + length))
-    })
+/// Any number between two offsets. `None` where there is none, or one too large to be a measure.
+#[cold]
+fn long_number(text: &[u8], start: usize, end: usize) -> Option<f64> {
+    let value = fast_float2::parse::<f64, _>(text.get(start..end)?).ok()?;
+    (value.abs() <= LARGEST).then_some(value)
 }
 
-/// A minus sign or none, at most 7 digits, and at most 7 more behind a point: those are exact.
-#[inline]
-fn plain(text: &[u8], at: usize) -> Option<(f64, usize)> {
-    let word = word(text, at)?;
-    let negative = u64::from(word as u8 == b'-');
-    // What comes in from above is no digit.
-    let word = word >> (8 * negative);
-    let digits = count_digits(word);
-    let mut end = at + negative as usize + digits;
-    let whole = value_of(word, digits)?;
-    let mut mantissa = whole;
-    let mut decimals = 0;
-    if text.get(end) == Some(&b'.') {
-        let word = self::word(text, end + 1)?;
-        decimals = count_digits(word);
-        end += 1 + decimals;
-        mantissa = whole * WHOLE_TENS.get(decimals)? + value_of(word, decimals)?;
+/// The place of the point in a number of at most 8 digits.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// Digits behind it.
+    decimals: usize,
+    /// 1, or 0 where there is no point.
+    length: usize,
+    /// What stays where it is when the point is taken out of the last eight bytes: those behind it.
+    kept: u64,
+    /// The power of ten that all digits are to be divided by.
+    divisor: f64,
+}
+
+impl Default for Point {
+    fn default() -> Self {
+        Self {
+            decimals: 0,
+            length: 0,
+            kept: !0,
+            divisor: 1.0,
+        }
     }
-    // More digits may come, or an exponent.
-    let goes_on = matches!(text.get(end), Some(b'0'..=b'9' | b'e' | b'E'));
-    if goes_on || digits + decimals == 0 {
+}
+
+impl Point {
+    /// The last point in the last eight bytes of a number of so many.
+    fn find(last: u64, length: usize) -> Self {
+        let point = last ^ all(b'.');
+        let points = !((point & all(0x7f)).wrapping_add(all(0x7f)) | point) & all(0x80);
+        let decimals = (points.leading_zeros() / 8) as usize;
+        match TENS.get(decimals) {
+            Some(&divisor) if decimals < length => Self {
+                decimals,
+                length: 1,
+                // Two shifts, since one by 64 is none.
+                kept: !0 << 8 << (56 - 8 * decimals),
+                divisor,
+            },
+            _ => Self::default(),
+        }
+    }
+}
+
+/// A number between two offsets that is made of a minus sign or none and at most 8 digits, among them perhaps a point: all of its digits, to be
+/// divided by the divisor of `point`. Both are exact, so that the quotient is the double next to the number (W. Clinger, "How to read floating
+/// point numbers accurately", 1990). `point` comes as that of the number before, since most files write all numbers alike.
+#[inline]
+fn short_number(text: &[u8], start: usize, end: usize, point: &mut Point) -> Option<f64> {
+    let bytes: &[u8; 9] = text.get(end.checked_sub(9)?..end)?.first_chunk()?;
+    let [_, last @ ..] = bytes;
+    let (last, before) = (u64::from_le_bytes(*last), u64::from_le_bytes(*bytes.first_chunk()?));
+    let length = end.wrapping_sub(start);
+    let negative = usize::from(*text.get(start)? == b'-');
+
+    if point.length == 0 || length <= point.decimals || bytes.get(8 - point.decimals) != Some(&b'.') {
+        *point = Point::find(last, length);
+    }
+    // What is before the point moves up by one.
+    let digits = last & point.kept | before & !point.kept;
+
+    let count = length.wrapping_sub(negative).wrapping_sub(point.length);
+    // What is before the number goes too: zeros stay.
+    let unused = 64_usize.wrapping_sub(8 * count);
+    if unused > 56 {
         return None;
     }
-    // Both are exact, so that the quotient is the double next to the number (W. Clinger, "How to read floating point numbers accurately", 1990).
-    let value = mantissa as i64 as f64 / TENS.get(decimals)?;
-    Some((f64::from_bits(value.to_bits() | (negative << 63)), end))
-}
-
-/// Eight bytes, the first one lowest; `None` near the end of the text.
-#[inline]
-fn word(text: &[u8], at: usize) -> Option<u64> {
-    text.get(at..)?.first_chunk().map(|bytes| u64::from_le_bytes(*bytes))
-}
-
-/// How many digits a word starts with.
-#[inline]
-fn count_digits(word: u64) -> usize {
-    // Digits become 0 to 9, and everything else 10 or more: its highest bit is then set. Carries only go to bytes behind the first that is none.
-    let values = word ^ all(b'0');
-    let none = (values.wrapping_add(all(0x76)) | values) & all(0x80);
-    (none.trailing_zeros() / 8) as usize
-}
-
-/// The number that the first `digits` bytes of a word make, fewer than 8.
-#[inline]
-fn value_of(word: u64, digits: usize) -> Option<u64> {
-    // Digits go to the upper end, so that zeros are in front of them. Two shifts, since one by 64 is none.
-    let free = 56_u32.checked_sub(8 * digits as u32)?;
-    let digits = (word ^ all(b'0')) << 8 << free;
+    let digits = (digits ^ all(b'0')) >> unused << unused;
+    // Digits are 0 to 9 now, and the highest bit is set for anything else. A carry would come from such a byte.
+    if (digits.wrapping_add(all(0x76)) | digits) & all(0x80) != 0 {
+        return None;
+    }
     // Neighbours become pairs, pairs fours, fours all eight.
     let pairs = digits.wrapping_mul(10).wrapping_add(digits >> 8);
     let low = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(100 + (1_000_000 << 32));
     let high = ((pairs >> 16) & 0x0000_00ff_0000_00ff).wrapping_mul(1 + (10_000 << 32));
-    Some(low.wrapping_add(high) >> 32)
+    let digits = f64::from((low.wrapping_add(high) >> 32) as u32);
+    Some(f64::from_bits(digits.to_bits() | (negative as u64) << 63))
 }
 
-/// Where the numbers of a line start.
+/// Reads lines of plain numbers.
 #[derive(Debug, Default)]
-pub(super) struct Starts(Vec<usize>);
+pub(super) struct Lines {
+    /// Where the numbers of a line start and end, one after the other.
+    bounds: Vec<usize>,
+    /// What the digits of each number are to be divided by: all at once, since one division takes as long as the rest of a number.
+    divisors: Vec<f64>,
+    /// That of the last number.
+    point: Point,
+}
 
-impl Starts {
+impl Lines {
     /// Reads a line of `row.len()` plain numbers with blanks between them into `row`, and returns the offset of the line's end.
     ///
-    /// `None` when there is anything else in it; `row` then holds the numbers before that, and is otherwise as it was.
+    /// `None` when there is anything else in it: what stands in `row` for the numbers before that is then of no use, and the rest is as it was.
     pub(super) fn line(&mut self, text: &[u8], at: usize, row: &mut [f64]) -> Option<usize> {
         let rest = text.get(at..)?;
-        let line = rest.get(..memchr::memchr2(b'\n', b'\r', rest)?)?;
+        let length = memchr::memchr2(b'\n', b'\r', rest)?;
+        let line = rest.get(..length)?;
         if line.iter().fold(false, |odd, &b| odd | (b < b' ' && b != b'\t')) {
             return None;
         }
-        self.find(line, at, row.len());
-        if self.0.len() != row.len() {
+        self.find(line, at, 2 * row.len());
+        if self.bounds.len() != 2 * row.len() {
             return None;
         }
-        for (slot, &start) in row.iter_mut().zip(&self.0) {
-            let (value, end) = number(text, start)?;
-            if *text.get(end)? > b' ' {
-                return None;
-            }
-            *slot = value;
+        self.divisors.resize(row.len(), 1.0);
+        let (bounds, _) = self.bounds.as_chunks();
+        let mut point = self.point;
+        for ((digits, divisor), &[start, end]) in row.iter_mut().zip(&mut self.divisors).zip(bounds) {
+            (*digits, *divisor) = match short_number(text, start, end, &mut point) {
+                Some(digits) => (digits, point.divisor),
+                None => (long_number(text, start, end)?, 1.0),
+            };
         }
-        Some(at + line.len())
+        self.point = point;
+        row.iter_mut().zip(&self.divisors).for_each(|(digits, divisor)| *digits /= divisor);
+        Some(at + length)
     }
 
-    /// Finds the bytes that follow a blank, and stops soon after there are more than `most`. `at` is where the line starts.
+    /// Finds where blanks and other bytes meet, and stops soon after there are more than `most` of these. `at` is where the line starts.
     fn find(&mut self, line: &[u8], at: usize, most: usize) {
-        self.0.clear();
+        self.bounds.clear();
         // Whether the byte before the block is a blank.
         let mut blank_before = 1;
         let (blocks, rest) = line.as_chunks::<64>();
@@ -127,14 +156,15 @@ impl Starts {
         }
         for (block, at) in blocks.iter().chain(std::iter::once(&last)).zip((at..).step_by(64)) {
             let blanks = blanks(block);
-            let mut starts = !blanks & (blanks << 1 | blank_before);
+            let mut bounds = blanks ^ (blanks << 1 | blank_before);
             blank_before = blanks >> 63;
-            if self.0.len() > most {
-                break;
+            self.bounds.reserve(64);
+            while bounds != 0 {
+                self.bounds.push(at + bounds.trailing_zeros() as usize);
+                bounds &= bounds - 1;
             }
-            while starts != 0 {
-                self.0.push(at + starts.trailing_zeros() as usize);
-                starts &= starts - 1;
+            if self.bounds.len() > most {
+                break;
             }
         }
     }
@@ -161,45 +191,50 @@ mod tests {
     use crate::formats::bvh::number::{Scan, scan};
     use proptest::prelude::*;
 
-    /// What the slow way reads, where it reads a number that a blank follows.
-    fn slow(text: &[u8]) -> Option<(u64, usize)> {
-        match scan(text, 0, false) {
-            Scan::Value { value, end, glued: false } => Some((value.to_bits(), end)),
-            _ => None,
-        }
+    fn short(text: &str, start: usize, end: usize, mut point: Point) -> Option<f64> {
+        let digits = short_number(text.as_bytes(), start, end, &mut point)?;
+        Some(digits / point.divisor)
     }
 
-    fn fast(text: &[u8]) -> Option<(u64, usize)> {
-        let ends = |end: usize| matches!(text.get(end), None | Some(b' ' | b'\n'));
-        number(text, 0)
-            .filter(|&(_, end)| ends(end))
-            .map(|(value, end)| (value.to_bits(), end))
+    /// Where the point of any number before may have been.
+    fn any_point() -> impl Strategy<Value = Point> {
+        "0000(0000|[0-9]{0,7}\\.[0-9]{0,7})".prop_map(|text| Point::find(word(&format!("0000{text}")), text.len()))
+    }
+
+    /// The last eight bytes.
+    fn word(text: &str) -> u64 {
+        u64::from_le_bytes(*text.as_bytes().last_chunk().unwrap())
+    }
+
+    /// What the slow way reads, where it reads one number.
+    fn slow(text: &str) -> Option<u64> {
+        match scan(text.as_bytes(), 0, false) {
+            Scan::Value { value, end, glued: false } if end == text.len() => Some(value.to_bits()),
+            _ => None,
+        }
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn numbers_are_those_of_the_slow_way(text in "[-+]{0,2}[0-9]{0,10}[.,]{0,2}[0-9]{0,18}([eE][-+]?[0-9]{0,3})?[ \n]{0,9}") {
-            prop_assert_eq!(fast(text.as_bytes()), slow(text.as_bytes()));
+        fn numbers_are_those_of_the_slow_way(
+            before in "[-0-9. ]{0,9}",
+            text in "[-+]{0,2}[0-9]{0,10}[.,]{0,2}[0-9]{0,18}([eE][-+]?[0-9]{0,3})?",
+            after in "[ 0-9.]{0,9}",
+            point in any_point(),
+        ) {
+            let all = format!("{before}{text}{after}");
+            let (start, end) = (before.len(), before.len() + text.len());
+            let found = short(&all, start, end, point).or_else(|| long_number(all.as_bytes(), start, end));
+            prop_assert_eq!(found.map(f64::to_bits), slow(&text));
         }
 
         #[test]
-        fn usual_numbers_are_plain(text in "-?([0-9]{1,7}(\\.[0-9]{0,7})?|\\.[0-9]{1,7})") {
-            let padded = format!("{text}         ");
-            let (value, end) = plain(padded.as_bytes(), 0).unwrap();
-            prop_assert_eq!((value.to_bits(), end), (text.parse::<f64>().unwrap().to_bits(), text.len()));
-        }
-
-        #[test]
-        fn words_are_counted_and_read(bytes: [u8; 8], digits in "[0-9]{0,7}") {
-            let mut word = bytes;
-            word[..digits.len()].copy_from_slice(digits.as_bytes());
-            let expected = word.iter().take_while(|b| b.is_ascii_digit()).count();
-            let word = u64::from_le_bytes(word);
-            prop_assert_eq!(count_digits(word), expected);
-            prop_assert_eq!(value_of(word, digits.len()), Some(digits.parse().unwrap_or(0)));
-            prop_assert_eq!(value_of(word, 8), None);
+        fn usual_numbers_are_short(before in "[-0-9. ]{10}", text in "-?([0-9]{1,8}|[0-9]{0,4}\\.[0-9]{1,4}|[0-9]{0,2}\\.[0-9]{6}|[0-9]{1,8}\\.)", point in any_point()) {
+            let all = format!("{before}{text}");
+            let found = short(&all, before.len(), all.len(), point);
+            prop_assert_eq!(found.map(f64::to_bits), slow(&text));
         }
 
         #[test]
@@ -213,10 +248,10 @@ mod tests {
         fn a_line_is_its_words(words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40), gap in "[ \t]{1,70}", indent in "[ \t]{0,3}") {
             let text = format!("{indent}{}\n\n         ", words.join(&gap));
             let mut row = vec![0.0; words.len()];
-            let end = Starts::default().line(text.as_bytes(), 0, &mut row);
+            let end = Lines::default().line(text.as_bytes(), 0, &mut row);
             prop_assert_eq!(end, text.find('\n'));
             prop_assert_eq!(row, words.iter().map(|word| word.parse::<f64>().unwrap()).collect::<Vec<_>>());
-            prop_assert_eq!(Starts::default().line(text.as_bytes(), 0, &mut vec![0.0; words.len() + 1]), None);
+            prop_assert_eq!(Lines::default().line(text.as_bytes(), 0, &mut vec![0.0; words.len() + 1]), None);
         }
     }
 
@@ -227,7 +262,7 @@ mod tests {
         ] {
             let text = format!("{line}{}", if line == "1 2" { "" } else { "\n         " });
             let mut row = [7.0, 8.0];
-            assert_eq!(Starts::default().line(text.as_bytes(), 0, &mut row), None, "{line}");
+            assert_eq!(Lines::default().line(text.as_bytes(), 0, &mut row), None, "{line}");
             assert_eq!(row[1], 8.0, "{line}");
         }
     }

@@ -1,6 +1,6 @@
 //! The rows of the MOTION section: one pass over the bytes, one row in memory.
 
-use super::decimal::{Starts, number};
+use super::decimal::{Lines, LARGEST};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
 use crate::formats::error::Fault;
@@ -38,7 +38,7 @@ pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl R
         values: 0,
         row: first_row,
         reported: lexer.at,
-        starts: Starts::default(),
+        lines: Lines::default(),
         lexer,
     };
     reader.lexer.skip_blank();
@@ -66,7 +66,7 @@ struct Rows<'l, 'a> {
     not_finite: u64,
     first_not_finite: usize,
     reported: usize,
-    starts: Starts,
+    lines: Lines,
 }
 
 impl Rows<'_, '_> {
@@ -163,10 +163,10 @@ impl Rows<'_, '_> {
 
     /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
     fn plain_line(&mut self) -> bool {
-        // A number that is read twice is the same again; those behind the first odd one are not touched.
+        // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
         let end = match self.lexer.commas {
             true => None,
-            false => self.starts.line(self.lexer.text, self.lexer.at, &mut self.row),
+            false => self.lines.line(self.lexer.text, self.lexer.at, &mut self.row),
         };
         if let Some(end) = end {
             self.lexer.at = end;
@@ -190,9 +190,14 @@ impl Rows<'_, '_> {
                 _ if is_space(b) => at += 1,
                 _ => {
                     // The common case: a plain number with white space after it.
-                    match number(text, at) {
-                        Some((value, end)) if !self.lexer.commas && text.get(end).is_none_or(|&next| is_space(next)) => {
-                            at = end;
+                    let rest = text.get(at..).unwrap_or_default();
+                    match fast_float2::parse_partial::<f64, _>(rest) {
+                        Ok((value, length))
+                            if !self.lexer.commas
+                                && value.abs() <= LARGEST
+                                && rest.get(length).is_none_or(|&next| is_space(next)) =>
+                        {
+                            at += length;
                             if let Some(slot) = self.row.get_mut(*column) {
                                 *slot = value;
                             }
