@@ -23,8 +23,8 @@ fn take() -> Vec<u8> {
         Some(here.join("../shared/data")),
         Some(here.join("../../shared/data")),
     ];
-    let paths = places.into_iter().flatten().map(|place| place.join("cmu/01_01.bvh"));
-    paths.filter_map(|path| std::fs::read(path).ok()).next().unwrap_or_else(|| made(SMALL))
+    let read = |place: PathBuf| std::fs::read(place.join("cmu/01_01.bvh")).ok();
+    places.into_iter().flatten().find_map(read).unwrap_or_else(|| made(SMALL))
 }
 
 /// A minute of walking in six decimals, over and over.

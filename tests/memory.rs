@@ -10,6 +10,9 @@ use segue::synth::{Action, Params, synthesize};
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
+/// What the header says of the number of frames, in words, and made from that number.
+type Header = (&'static str, fn(usize) -> String);
+
 /// 100 MB where the build is optimised; what counts is the ratio.
 const BYTES: usize = if cfg!(debug_assertions) { 12_000_000 } else { 100_000_000 };
 
@@ -29,7 +32,7 @@ fn file(header: impl Fn(usize) -> String) -> Vec<u8> {
 
 #[test]
 fn the_peak_is_at_most_three_times_the_file() {
-    let headers: [(&str, fn(usize) -> String); 4] = [
+    let headers: [Header; 4] = [
         ("right", |frames| format!("Frames: {frames}")),
         ("far too many", |_| "Frames: 4000000000".to_owned()),
         ("a few too many", |frames| format!("Frames: {}", frames + frames / 12)),

@@ -40,7 +40,8 @@ fn fuzz(target: &str, minutes: u32) -> Result<()> {
     let mut fuzz = command("rustup", &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"]);
     // A link is short; a file of a few rows shows all there is. Ten seconds for either are a finding.
     let length = if target == "url" { 600 } else { 8192 };
-    fuzz.arg(format!("-max_total_time={}", minutes * 60)).arg(format!("-max_len={length}"));
+    fuzz.arg(format!("-max_total_time={}", minutes * 60))
+        .arg(format!("-max_len={length}"));
     fuzz.args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1"]);
     // This command's own cargo and its pinned compiler are not for the nightly one.
     fuzz.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");

@@ -1,6 +1,6 @@
 //! The rows of the MOTION section: one pass over the bytes, one row in memory.
 
-use super::decimal::{Lines, LARGEST};
+use super::decimal::{LARGEST, Lines};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
 use crate::formats::error::Fault;
@@ -88,12 +88,11 @@ impl Rows<'_, '_> {
             }
             self.report(progress)?;
             let mut column = 0;
-            let end = match self.plain_line() {
-                true => {
-                    column = width;
-                    End::Line
-                }
-                false => self.numbers(&mut column, width, false)?,
+            let end = if self.plain_line() {
+                column = width;
+                End::Line
+            } else {
+                self.numbers(&mut column, width, false)?
             };
             if let (true, End::Line) = (column == width, &end) {
                 sink.row(&self.row, self.lexer.at).map_err(|fault| Fault { at: start, ..fault })?;
@@ -164,10 +163,10 @@ impl Rows<'_, '_> {
     /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
     fn plain_line(&mut self) -> bool {
         // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
-        let end = match self.lexer.commas {
-            true => None,
-            false => self.lines.line(self.lexer.text, self.lexer.at, &mut self.row),
-        };
+        if self.lexer.commas {
+            return false;
+        }
+        let end = self.lines.line(self.lexer.text, self.lexer.at, &mut self.row);
         if let Some(end) = end {
             self.lexer.at = end;
             self.values += self.row.len() as u64;
@@ -193,9 +192,7 @@ impl Rows<'_, '_> {
                     let rest = text.get(at..).unwrap_or_default();
                     match fast_float2::parse_partial::<f64, _>(rest) {
                         Ok((value, length))
-                            if !self.lexer.commas
-                                && value.abs() <= LARGEST
-                                && rest.get(length).is_none_or(|&next| is_space(next)) =>
+                            if !self.lexer.commas && value.abs() <= LARGEST && rest.get(length).is_none_or(|&next| is_space(next)) =>
                         {
                             at += length;
                             if let Some(slot) = self.row.get_mut(*column) {

@@ -40,13 +40,15 @@ impl Turns {
     /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of its turns.
     pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) {
         self.degrees.clear();
-        self.degrees.extend(self.columns.iter().map(|&column| row.get(column).copied().unwrap_or_default()));
+        self.degrees
+            .extend(self.columns.iter().map(|&column| row.get(column).copied().unwrap_or_default()));
         self.half_angles.set(&mut self.degrees);
         let (mut sines, mut cosines) = (self.half_angles.sines.as_slice(), self.half_angles.cosines.as_slice());
         for run in &self.runs {
             self.product.start(run.joints);
             for (place, &axis) in run.axes.iter().enumerate() {
-                let (Some((s, later_sines)), Some((c, later_cosines))) = (sines.split_at_checked(run.joints), cosines.split_at_checked(run.joints))
+                let (Some((s, later_sines)), Some((c, later_cosines))) =
+                    (sines.split_at_checked(run.joints), cosines.split_at_checked(run.joints))
                 else {
                     break;
                 };
@@ -78,7 +80,9 @@ impl HalfAngles {
     fn set(&mut self, degrees: &mut [f64]) {
         // Far beyond what turns, the whole turns go first, at the cost of a division.
         if !degrees.iter().fold(true, |small, angle| small & (angle.abs() < 1e9)) {
-            degrees.iter_mut().for_each(|angle| *angle %= 720.0);
+            for angle in degrees.iter_mut() {
+                *angle %= 720.0;
+            }
         }
         self.rests.resize(degrees.len(), 0.0);
         self.quarters.resize(degrees.len(), 0);
