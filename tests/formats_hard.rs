@@ -98,6 +98,7 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
             }
             "24_rot_first_root.bvh" => {
                 // Zrotation Xrotation Yrotation Xposition Yposition Zposition = 2 90.5 10 0 0 12 in the third frame.
+                assert_eq!(clip.frames(), 4);
                 assert_near(clip.rotations(2)[0], zxy(2.0, 90.5, 10.0), name);
                 assert!(clip.root_translations()[2].distance(Vec3::new(0.0, 0.0, 0.12)) < 1e-6);
                 assert_eq!(clip.skeleton().joints()[0].channels[..2], [Channel::ZRotation, Channel::XRotation]);
@@ -166,6 +167,7 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
             _ => panic!("{name} has no expectation"),
         }
         check_skeleton(name, clip, names, has_end_site);
+        assert_eq!(clip.fps(), 30.0, "{name}");
         assert_eq!(warnings, expected_warnings, "{name}");
     }
 }

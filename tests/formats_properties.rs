@@ -243,6 +243,20 @@ proptest! {
     }
 
     #[test]
+    fn plain_rows_are_read_as_any_others_are(clip in clip(), edits in prop::collection::vec((any::<prop::sample::Index>(), "[-+0-9.,e \tn#\n]"), 0..4)) {
+        let mut text = write(&clip, &WriteOptions::default());
+        let rows = text.find("Frame Time").unwrap();
+        for (at, piece) in edits {
+            let at = rows + at.index(text.len() - rows);
+            text.insert_str(at, &piece);
+        }
+        // White space like any other, but no line is plain then.
+        let slow = text.replace('\n', "\x0b\n");
+        let read = |text: &str| import("clip.bvh", text.as_bytes(), &ImportOptions::default()).map_err(|error| (error.line, error.expected));
+        prop_assert_eq!(read(&text), read(&slow));
+    }
+
+    #[test]
     fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200), tail in "[ -~\n\r\t{}0-9.,eE+-]{0,80}") {
         for text in [bytes.clone(), tail.clone().into_bytes(), format!("ROOT a {{ CHANNELS 2 Xrotation Yposition }} MOTION {tail}").into_bytes()] {
             if let Err(error) = import("any.bvh", &text, &ImportOptions::default()) {

@@ -53,6 +53,8 @@ fn byte_order_marks_utf16_comments_and_padding() {
     let text = chain(4);
     assert_eq!(same(format!("\u{feff}{text}")), [""; 0]);
     assert_eq!(same(utf16(&text)), [""; 0]);
+    let swapped: Vec<u8> = utf16(&text).chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect();
+    assert_eq!(same(swapped), [""; 0]);
     assert_eq!(same(utf16(&text.replace('\n', "\r\n"))), [""; 0]);
     assert_eq!(same(format!("# by hand\n// and # twice\n{text}")), [""; 0]);
     assert_eq!(same(text.replace("MOTION\n", "# here it comes\nMOTION // now\n")), [""; 0]);
@@ -169,6 +171,12 @@ fn names_are_kept_as_written() {
     );
     assert_eq!(names(named("腰", "Größe").as_bytes())[..2], ["腰", "Größe"]);
     assert_eq!(names(named("twin", "twin").as_bytes())[..2], ["twin", "twin"]);
+    // Joints are known by their place: what they are called changes nothing in their motion.
+    let twins = one(chain(4).replace("Pelvis", "twin").replace("Torso", "twin")).0.clip;
+    assert_eq!(
+        (twins.rotations(3), twins.skeleton().joints()[2].parent),
+        (plain().rotations(3), Some(1))
+    );
     assert_eq!(names(named("", "// #1").as_bytes())[..2], ["", "// #1"]);
     let latin1: Vec<u8> = named("Hüfte", "b").chars().map(|c| c as u8).collect();
     assert_eq!(names(&latin1)[0], "Hüfte");
@@ -211,6 +219,46 @@ fn any_number_of_channels_on_any_joint() {
     let joints = found.clip.skeleton().joints();
     assert_eq!(joints[0].channels.len(), 6, "scales are no channels of a clip");
     assert_eq!(joints[1].channels, [Channel::YRotation, Channel::XRotation]);
+}
+
+#[test]
+fn channels_in_any_order() {
+    // Rotations before positions, positions between rotations, and the axes of either in any order: the order of rotations is that of the product.
+    let text = CHAIN
+        .replace(
+            "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
+            "CHANNELS 6 Yrotation Zposition Xrotation Xposition Zrotation Yposition",
+        )
+        .replacen(
+            "CHANNELS 3 Zrotation Xrotation Yrotation",
+            "CHANNELS 3 Xrotation Yrotation Zrotation",
+            1,
+        )
+        .replacen(
+            "CHANNELS 3 Zrotation Xrotation Yrotation",
+            "CHANNELS 3 Yrotation Xrotation Yrotation",
+            1,
+        );
+    let text = format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n10 3 20 1 30 2 40 50 60 70 80 90\n");
+    // A single frame, bent double: which way is up is not to be guessed from it.
+    let options = ImportOptions {
+        up: Some(UpAxis::Y),
+        metres_per_unit: Some(0.01),
+        ..ImportOptions::default()
+    };
+    let imported = import("test.bvh", text.as_bytes(), &options).unwrap();
+    assert_eq!(imported.warnings, []);
+    let found = &imported.clips[0];
+    let turn = |axis: Vec3, degrees: f32| Quat::from_axis_angle(axis, degrees.to_radians());
+    let expected = [
+        turn(Vec3::Y, 10.0) * turn(Vec3::X, 20.0) * turn(Vec3::Z, 30.0),
+        turn(Vec3::X, 40.0) * turn(Vec3::Y, 50.0) * turn(Vec3::Z, 60.0),
+        turn(Vec3::Y, 70.0) * turn(Vec3::X, 80.0) * turn(Vec3::Y, 90.0),
+    ];
+    for (found, expected) in found.clip.rotations(0).iter().zip(expected) {
+        assert!((*found - expected).length() < 1e-6, "{found} {expected}");
+    }
+    assert!(found.clip.root_translations()[0].distance(Vec3::new(0.01, 0.02, 0.03)) < 1e-7);
 }
 
 #[test]

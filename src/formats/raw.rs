@@ -32,6 +32,11 @@ impl RawMotion {
         self.root_translations.len()
     }
 
+    /// The root's way, and then the tracks.
+    pub(super) fn translations_mut(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
+        std::iter::once(&mut self.root_translations).chain(self.tracks.iter_mut().map(|(_, values)| values))
+    }
+
     /// The local rotations of one frame; empty for one that there is not.
     pub(super) fn pose(&self, frame: usize) -> &[Quat] {
         let joints = self.joints.len();
@@ -54,8 +59,7 @@ impl RawMotion {
     /// Leaves out the first frame.
     pub(super) fn drop_first_frame(&mut self) {
         self.rotations.drain(..self.joints.len().min(self.rotations.len()));
-        self.root_translations.drain(..1.min(self.root_translations.len()));
-        for (_, values) in &mut self.tracks {
+        for values in self.translations_mut() {
             values.drain(..1.min(values.len()));
         }
     }
@@ -97,8 +101,7 @@ impl RawMotion {
             joint.offset = length(joint.offset);
             joint.end_site = joint.end_site.map(length);
         }
-        self.root_translations.iter_mut().for_each(|v| *v = length(*v));
-        self.tracks.iter_mut().flat_map(|(_, values)| values).for_each(|v| *v = length(*v));
+        self.translations_mut().flatten().for_each(|v| *v = length(*v));
         if up == UpAxis::Z {
             for q in &mut self.rotations {
                 let v = y_up_from_z_up(Vec3::new(q.x, q.y, q.z));

@@ -57,14 +57,10 @@ pub(super) fn is_space(b: u8) -> bool {
 /// Line and column (in characters), both from 1, of a byte offset.
 pub(super) fn position(text: &[u8], at: usize) -> (usize, usize) {
     let before = &text[..at.min(text.len())];
-    let (mut line, mut start) = (1, 0);
-    for (index, &b) in before.iter().enumerate() {
-        // Of CRLF only the LF counts.
-        if b == b'\n' || (b == b'\r' && text.get(index + 1) != Some(&b'\n')) {
-            line += 1;
-            start = index + 1;
-        }
-    }
+    // Of CRLF only the LF counts.
+    let ends_line = |&index: &usize| text.get(index) == Some(&b'\n') || text.get(index + 1) != Some(&b'\n');
+    let line = 1 + memchr::memchr2_iter(b'\n', b'\r', before).filter(ends_line).count();
+    let start = memchr::memrchr2_iter(b'\n', b'\r', before).find(ends_line).map_or(0, |end| end + 1);
     // Continuation bytes of UTF-8 are no characters of their own.
     let column = before[start..].iter().filter(|&&b| b & 0xc0 != 0x80).count() + 1;
     (line, column)

@@ -2,6 +2,7 @@
 
 mod check;
 mod dist;
+mod fuzz;
 mod server;
 mod shell;
 mod tools;
@@ -28,6 +29,10 @@ cargo xtask test [PART …]
     web         the release build that `serve` makes
     browser     that build in Chromium, on WebGL2 and on WebGPU
 
+cargo xtask fuzz [TARGET …] [--minutes N]
+    Feeds the readers of outside bytes with random ones (20 minutes each unless told), with a nightly compiler and cargo-fuzz.
+    Targets are the files of fuzz/fuzz_targets; all of them unless some are named. What breaks one is left in fuzz/artifacts.
+
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
@@ -40,6 +45,7 @@ fn main() -> ExitCode {
     let outcome = match args.split_first() {
         Some((&"serve", rest)) => serve(rest),
         Some((&"test", rest)) => check::run(rest),
+        Some((&"fuzz", rest)) => fuzz::run_targets(rest),
         Some((&"docs", _)) => docs(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");

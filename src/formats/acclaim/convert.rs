@@ -2,7 +2,7 @@
 
 use super::asf::Dof;
 use super::skeleton::{AcclaimSkeleton, Motor};
-use crate::formats::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE, half_angle_sin_cos, turned};
+use crate::formats::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE};
 use crate::formats::error::Fault;
 use crate::formats::raw::RawMotion;
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -100,13 +100,12 @@ fn value(motor: &Motor, own: &[f64], wanted: Dof) -> f64 {
 
 /// The turns of a bone one after the other about fixed axes, M.
 fn turn(motor: &Motor, own: &[f64], radians: bool) -> DQuat {
-    let mut q = [0.0, 0.0, 0.0, 1.0];
-    // `turned` multiplies from the right: the last turn comes first.
-    for (dof, &value) in motor.dofs.iter().zip(own).rev() {
-        if let Dof::Turn(axis) = dof {
-            let (sin, cos) = half_angle_sin_cos(if radians { value.to_degrees() } else { value });
-            q = turned(q, *axis, sin, cos);
+    let turns = motor.dofs.iter().zip(own).filter_map(|(dof, &value)| {
+        let angle = if radians { value } else { value.to_radians() };
+        match dof {
+            Dof::Turn(axis) => Some(DQuat::from_axis_angle(DVec3::AXES[*axis], angle)),
+            _ => None,
         }
-    }
-    DQuat::from_array(q)
+    });
+    turns.fold(DQuat::IDENTITY, |before, turn| turn * before)
 }

@@ -7,6 +7,7 @@
 //! What is not in the file (the unit of length and the up axis) is found by [`super::Measure`].
 
 mod convert;
+mod decimal;
 mod euler;
 mod header;
 mod hierarchy;
@@ -14,10 +15,11 @@ mod lexer;
 mod motion;
 mod number;
 mod read;
+mod turns;
 mod write;
 
 // What reading text takes in any format.
-pub(super) use convert::{MEMORY_FLOOR, MEMORY_PER_BYTE, half_angle_sin_cos, turned};
+pub(super) use convert::{MEMORY_FLOOR, MEMORY_PER_BYTE};
 pub(super) use hierarchy::MAX_DEPTH;
 pub(super) use number::{Scan, scan};
 

@@ -1,5 +1,6 @@
 //! The rows of the MOTION section: one pass over the bytes, one row in memory.
 
+use super::decimal::{LARGEST, Lines};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
 use crate::formats::error::Fault;
@@ -11,8 +12,8 @@ const PROGRESS_STEP: usize = 1 << 18;
 
 /// Where complete rows go.
 pub(super) trait RowSink {
-    /// Takes one row; an error says why no more can be taken.
-    fn row(&mut self, values: &[f64]) -> Result<(), Fault>;
+    /// Takes one row, which ends at `end`; an error says why no more can be taken.
+    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
 }
 
 /// Called now and then with the bytes read so far; `false` stops.
@@ -37,6 +38,7 @@ pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl R
         values: 0,
         row: first_row,
         reported: lexer.at,
+        lines: Lines::default(),
         lexer,
     };
     reader.lexer.skip_blank();
@@ -64,6 +66,7 @@ struct Rows<'l, 'a> {
     not_finite: u64,
     first_not_finite: usize,
     reported: usize,
+    lines: Lines,
 }
 
 impl Rows<'_, '_> {
@@ -85,9 +88,14 @@ impl Rows<'_, '_> {
             }
             self.report(progress)?;
             let mut column = 0;
-            let end = self.numbers(&mut column, width, false)?;
+            let end = if self.plain_line() {
+                column = width;
+                End::Line
+            } else {
+                self.numbers(&mut column, width, false)?
+            };
             if let (true, End::Line) = (column == width, &end) {
-                sink.row(&self.row).map_err(|fault| Fault { at: start, ..fault })?;
+                sink.row(&self.row, self.lexer.at).map_err(|fault| Fault { at: start, ..fault })?;
                 count += 1;
                 continue;
             }
@@ -118,7 +126,7 @@ impl Rows<'_, '_> {
             let mut column = 0;
             let end = self.numbers(&mut column, width, true)?;
             if column == width && matches!(end, End::Line) {
-                sink.row(&self.row).map_err(|fault| Fault { at: start, ..fault })?;
+                sink.row(&self.row, self.lexer.at).map_err(|fault| Fault { at: start, ..fault })?;
                 count += 1;
                 continue;
             }
@@ -152,6 +160,20 @@ impl Rows<'_, '_> {
         Ok(())
     }
 
+    /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
+    fn plain_line(&mut self) -> bool {
+        // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
+        if self.lexer.commas {
+            return false;
+        }
+        let end = self.lines.line(self.lexer.text, self.lexer.at, &mut self.row);
+        if let Some(end) = end {
+            self.lexer.at = end;
+            self.values += self.row.len() as u64;
+        }
+        end.is_some()
+    }
+
     /// Reads numbers into the row: up to the end of the line, or, `across_lines`, until the row is full. A line is read no further than one
     /// number too many.
     #[inline]
@@ -170,7 +192,7 @@ impl Rows<'_, '_> {
                     let rest = text.get(at..).unwrap_or_default();
                     match fast_float2::parse_partial::<f64, _>(rest) {
                         Ok((value, length))
-                            if !self.lexer.commas && value.abs() <= 1e30 && rest.get(length).is_none_or(|&next| is_space(next)) =>
+                            if !self.lexer.commas && value.abs() <= LARGEST && rest.get(length).is_none_or(|&next| is_space(next)) =>
                         {
                             at += length;
                             if let Some(slot) = self.row.get_mut(*column) {
@@ -284,7 +306,7 @@ mod tests {
     struct Kept(Vec<Vec<f64>>);
 
     impl RowSink for Kept {
-        fn row(&mut self, values: &[f64]) -> Result<(), Fault> {
+        fn row(&mut self, values: &[f64], _end: usize) -> Result<(), Fault> {
             self.0.push(values.to_vec());
             Ok(())
         }

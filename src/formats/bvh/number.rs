@@ -1,9 +1,7 @@
 //! One number of a BVH file, as people and programs write them.
 
+use super::decimal::LARGEST;
 use crate::formats::text::is_space;
-
-/// Larger magnitudes are overflows, not measures: they would not survive being scaled in `f32`.
-const LARGEST: f64 = 1e30;
 
 /// What stands at a place where a number should.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -60,9 +60,10 @@ fn parse(name: &str, text: &[u8], options: &ImportOptions, commas: bool, progres
         None if header.present => header.fps(&mut lexer),
         None => DEFAULT_FPS,
     };
-    let mut converter = Converter::new(&tree, text.len());
-    let bytes_left = text.len().saturating_sub(lexer.at);
-    converter.reserve(header.declared_frames().unwrap_or(0.0), bytes_left, tree.columns.len());
+    let declared = header.declared_frames().unwrap_or(f64::INFINITY);
+    lexer.skip_blank();
+    let first_row_at = lexer.at;
+    let mut converter = Converter::new(&tree, declared, first_row_at..text.len());
     let found = rows(&mut lexer, Converter::first_row(&tree), &mut converter, progress)?;
     match &header.frames {
         Some((declared, at)) if header.declared_frames() != Some(found as f64) => {
@@ -79,19 +80,10 @@ fn parse(name: &str, text: &[u8], options: &ImportOptions, commas: bool, progres
     if found == 0 {
         lexer.tally.add(WarningKind::NoFrames, None);
     }
-    let first_row_at = first_row_at(text, bytes_left);
     assemble(name, converter.finish(), fps, options, None, &mut lexer.tally, first_row_at)
         .map(|clips| Imported {
             clips,
             warnings: std::mem::take(&mut lexer.tally).into_warnings(text),
         })
         .map_err(Stop::Fault)
-}
-
-/// Where the first row stands.
-fn first_row_at(text: &[u8], bytes_left: usize) -> usize {
-    let mut lexer = Lexer::new(text, false);
-    lexer.at = text.len() - bytes_left;
-    lexer.skip_blank();
-    lexer.at
 }

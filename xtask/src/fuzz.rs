@@ -1,0 +1,76 @@
+//! `cargo xtask fuzz`: feeds readers with bytes until one of them breaks, or time is up.
+
+use std::fs;
+
+use crate::shell::{Result, command, fail, on_path, output, root, run, step};
+
+/// How long each target runs unless told.
+const MINUTES: u32 = 20;
+
+pub fn run_targets(args: &[&str]) -> Result<()> {
+    let known = targets()?;
+    let mut chosen = Vec::new();
+    let mut minutes = MINUTES;
+    let mut args = args.iter();
+    while let Some(&arg) = args.next() {
+        match arg {
+            "--minutes" => match args.next().map(|number| number.parse()) {
+                Some(Ok(number)) => minutes = number,
+                _ => return fail("--minutes is followed by a whole number"),
+            },
+            name if known.iter().any(|target| target == name) => chosen.push(name.to_owned()),
+            other => return fail(format!("there is no target `{other}`, only {}", known.join(", "))),
+        }
+    }
+    if chosen.is_empty() {
+        chosen = known;
+    }
+    tools()?;
+    for target in chosen {
+        step(format!("{target}, {minutes} minutes"), || fuzz(&target, minutes))?;
+    }
+    Ok(())
+}
+
+fn fuzz(target: &str, minutes: u32) -> Result<()> {
+    // The first folder takes what the fuzzer finds on its way, the second one holds where it starts.
+    let found = format!("fuzz/corpus/{target}");
+    let seeds = format!("fuzz/corpus-seeds/{target}");
+    fs::create_dir_all(root().join(&found))?;
+    let mut fuzz = command("rustup", &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"]);
+    // A link is short; a file of a few rows shows all there is. Ten seconds for either are a finding.
+    let length = if target == "url" { 600 } else { 8192 };
+    fuzz.arg(format!("-max_total_time={}", minutes * 60))
+        .arg(format!("-max_len={length}"));
+    fuzz.args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1"]);
+    // This command's own cargo and its pinned compiler are not for the nightly one.
+    fuzz.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
+    run(&mut fuzz)
+}
+
+/// The targets by name.
+fn targets() -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(root().join("fuzz/fuzz_targets"))? {
+        if let Some(name) = entry?.path().file_stem() {
+            names.push(name.to_string_lossy().into_owned());
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Finds or installs what is needed: sanitizers are a matter of the nightly compiler.
+fn tools() -> Result<()> {
+    if output("rustup", &["run", "nightly", "rustc", "--version"]).is_none() {
+        step("installing a nightly compiler (about a minute)", || {
+            run(&mut command("rustup", &["toolchain", "install", "nightly", "--profile", "minimal"]))
+        })?;
+    }
+    if !on_path("cargo-fuzz") {
+        step("installing cargo-fuzz (about a minute)", || {
+            run(&mut command("cargo", &["install", "--quiet", "--locked", "cargo-fuzz"]))
+        })?;
+    }
+    Ok(())
+}
