@@ -466,7 +466,7 @@ impl Segue {
         let whole_ms = frame.info().cpu_usage.map(|secs| secs * 1e3);
         let millis = if self.window.within_event { None } else { whole_ms }.unwrap_or(self.clock.frame_took as f32);
         if self.frames.count() > 0 {
-            self.frames.took(millis);
+            self.frames.took(self.clock.frame_took as f32, millis);
         }
         self.window.within_event = ctx.input(|input| {
             let computed_at_once = |event: &egui::Event| {

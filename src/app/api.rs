@@ -86,7 +86,10 @@ pub(crate) struct JobInfo {
 pub(crate) struct Stats {
     backend: &'static str,
     frames: u64,
+    /// Input, panels and scene.
     frame_ms: FrameTimes,
+    /// The same with the commands for the graphics device.
+    draw_ms: FrameTimes,
     jobs: Vec<JobInfo>,
     wasm_bytes: u64,
 }
@@ -346,7 +349,7 @@ impl Segue {
     fn result_name(&self) -> String {
         let params = self.session.params();
         match params.text(Key::Lab) {
-            "blend" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
+            "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
             "make" => params.text(Key::Gait).to_owned(),
             _ => params.text(Key::A).to_owned(),
         }
@@ -369,6 +372,7 @@ impl Segue {
             backend: self.window.backend,
             frames: self.frames.count(),
             frame_ms: self.frames.times(),
+            draw_ms: self.frames.whole_times(),
             jobs: self.jobs(),
             wasm_bytes,
         }

@@ -3,11 +3,20 @@
 /// How many frames are remembered: four seconds at 60 Hz.
 const REMEMBERED: usize = 240;
 
-/// The work that recent frames took the processor, in milliseconds: input, panels, scene and drawing commands, without waiting for the screen.
+/// The work that recent frames took the processor, in milliseconds, without waiting for the screen.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frames {
     count: u64,
-    recent: Vec<f32>,
+    recent: Vec<Took>,
+}
+
+/// What one frame took, milliseconds.
+#[derive(Clone, Copy, Debug)]
+struct Took {
+    /// Input, panels and scene.
+    thinking: f32,
+    /// All of it, with the commands for the graphics device.
+    whole: f32,
 }
 
 /// A summary of recent frames, milliseconds.
@@ -27,12 +36,12 @@ impl Frames {
         self.count += 1;
     }
 
-    /// Remembers how long a frame took.
-    pub(crate) fn took(&mut self, millis: f32) {
+    /// Remembers how long a frame took: input, panels and scene, and with them the commands for the graphics device.
+    pub(crate) fn took(&mut self, thinking: f32, whole: f32) {
         if self.recent.len() >= REMEMBERED {
             self.recent.remove(0);
         }
-        self.recent.push(millis);
+        self.recent.push(Took { thinking, whole });
     }
 
     /// How many frames have been drawn since the start.
@@ -40,9 +49,18 @@ impl Frames {
         self.count
     }
 
-    /// The recent ones; zeros before the first.
+    /// Input, panels and scene of the recent ones; zeros before the first.
     pub(crate) fn times(&self) -> FrameTimes {
-        let mut sorted = self.recent.clone();
+        self.summary(|took| took.thinking)
+    }
+
+    /// The same with the commands for the graphics device.
+    pub(crate) fn whole_times(&self) -> FrameTimes {
+        self.summary(|took| took.whole)
+    }
+
+    fn summary(&self, part: impl Fn(&Took) -> f32) -> FrameTimes {
+        let mut sorted: Vec<f32> = self.recent.iter().map(part).collect();
         sorted.sort_by(f32::total_cmp);
         let rank = |share: f32| {
             let index = (share * sorted.len() as f32).ceil() as usize;
@@ -64,8 +82,9 @@ mod tests {
     fn ranks_are_those_of_the_recent_frames() {
         let mut frames = Frames::default();
         assert_eq!(frames.times(), FrameTimes::default());
-        (0..1000).for_each(|_| frames.took(500.0));
-        (1..=REMEMBERED).rev().for_each(|millis| frames.took(millis as f32));
+        (0..1000).for_each(|_| frames.took(500.0, 600.0));
+        (1..=REMEMBERED).rev().for_each(|millis| frames.took(millis as f32, 300.0));
+        assert_eq!(frames.whole_times().p50, 300.0);
         assert_eq!(
             frames.times(),
             FrameTimes {

@@ -1,13 +1,13 @@
-use super::params::{Key, Kind, Value, ValueError, format_number};
+use super::params::{Key, Kind, Value, ValueError};
 use std::fmt;
 
-/// Two to four values of one numeric parameter, each in a pane of its own: `blend_window:30,15,10`.
+/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`, `method:inertialize,smooth`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
     /// The parameter in which the panes differ.
     pub key: Key,
     /// Its value in each pane, in order.
-    pub values: Vec<f64>,
+    pub values: Vec<Value>,
 }
 
 /// How many panes fit side by side.
@@ -28,14 +28,14 @@ impl Compare {
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
         let key = Key::from_name(name.trim())
             .filter(|key| key.param().is_comparable())
-            .ok_or_else(|| refuse(format!("a numeric parameter of a lab before the colon, not `{name}`")))?;
+            .ok_or_else(|| refuse(format!("a number or a choice of a lab before the colon, not `{name}`")))?;
         let values = list
             .split(',')
             .map(|value| match key.param().parse(value.trim())? {
-                Value::Number(number) => Ok(number),
-                _ => Err(refuse(format!("a number for each pane, not `{value}`"))),
+                Value::Auto => Err(refuse(format!("a value for each pane, not `{value}`"))),
+                value => Ok(value),
             })
-            .collect::<Result<Vec<f64>, ValueError>>()?;
+            .collect::<Result<Vec<Value>, ValueError>>()?;
         if !(2..=MAX_PANES).contains(&values.len()) {
             return Err(refuse(format!("2 to {MAX_PANES} values, not {}", values.len())));
         }
@@ -50,8 +50,8 @@ impl Compare {
             return None;
         };
         let values = [1.0, 2.0, 3.0].map(|share| match key.param().check(Value::Number((full / share).clamp(min, max))) {
-            Ok(Value::Number(number)) => number,
-            _ => full,
+            Ok(value) => value,
+            Err(_) => Value::Number(full),
         });
         key.param().is_comparable().then(|| Self {
             key,
@@ -63,10 +63,7 @@ impl Compare {
 impl fmt::Display for Compare {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let param = self.key.param();
-        let Kind::Number { step, .. } = param.kind else {
-            return f.write_str(param.name);
-        };
-        let values: Vec<String> = self.values.iter().map(|&value| format_number(value, step)).collect();
+        let values: Vec<String> = self.values.iter().map(|value| param.format(value)).collect();
         write!(f, "{}:{}", param.name, values.join(","))
     }
 }
@@ -80,6 +77,8 @@ mod tests {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
         assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0), Some(compare));
+        let methods = Compare::parse("method:inertialize, smooth,dead").unwrap();
+        assert_eq!(methods.to_string(), "method:inertialize,smooth,dead");
     }
 
     #[test]
@@ -88,6 +87,7 @@ mod tests {
             ("blend_window", "key:value"),
             ("align:1,2", "not `align`"),
             ("speed:1,2", "not `speed`"),
+            ("method:cut,leap", "expected inertialize"),
             ("blend_window:30", "2 to 4 values, not 1"),
             ("blend_window:1,2,3,4,5", "not 5"),
             ("leave_a:auto,1", "not `auto`"),

@@ -15,6 +15,7 @@ pub enum Group {
     View,
     Make,
     Blend,
+    Transition,
 }
 
 impl Group {
@@ -29,6 +30,7 @@ impl Group {
             Self::View => "view",
             Self::Make => "make",
             Self::Blend => "blend",
+            Self::Transition => "transition",
         }
     }
 
@@ -187,12 +189,27 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
     }
 }
 
-const LABS: &[Choice] = &[choice("view", "View"), choice("make", "Make"), choice("blend", "Blend")];
+const LABS: &[Choice] = &[
+    choice("view", "View"),
+    choice("make", "Make"),
+    choice("blend", "Blend"),
+    choice("transition", "Transition"),
+];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
     choice("linear", "linear"),
     choice("smoother", "smoother"),
 ];
+const METHODS: &[Choice] = &[
+    choice("inertialize", "inertialize"),
+    choice("cubic", "cubic"),
+    choice("quintic", "quintic"),
+    choice("dead", "dead blend"),
+    choice("smooth", "dissolve, smooth"),
+    choice("linear", "dissolve, linear"),
+    choice("cut", "cut"),
+];
+const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -219,6 +236,17 @@ parameters! {
     WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that feet slide less.";
+
+    Method "method" "Method" Transition Kind::Choice(METHODS), Start::Word("inertialize"), "", "How A goes over into B.";
+    HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How lazily the difference to A dies away: half of it is left after 1.2 half-lives.";
+    BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left: for cubic, quintic and dead blend.";
+    ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Transition logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
+    MixFrameA "mix_frame_a" "Leave A at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over.";
+    MixFrameB "mix_frame_b" "Enter B at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then.";
+    MatchBy "match_by" "Match by" Transition Kind::Choice(MATCHES), Start::Word("pose"), "", "What the best match compares: two poses, or windows of the whole body.";
+    MatchPosition "match_position" "Weight of positions" Transition number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
+    MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
+    MatchVelocity "match_velocity" "Weight of velocities" Transition number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
@@ -383,6 +411,19 @@ impl Param {
         }
     }
 
+    /// A value as it is said on screen.
+    #[must_use]
+    pub fn spoken(&self, value: &Value) -> String {
+        let word = self.format(value);
+        match self.kind {
+            Kind::Choice(choices) => choices
+                .iter()
+                .find(|choice| choice.key == word)
+                .map_or(word, |choice| choice.label.to_owned()),
+            _ => word,
+        }
+    }
+
     /// Reads the value from a link.
     ///
     /// # Errors
@@ -457,7 +498,8 @@ impl Param {
     /// Whether compare can make panes of it: a number that changes the result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. }) && matches!(self.group, Group::View | Group::Make | Group::Blend)
+        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_))
+            && matches!(self.group, Group::View | Group::Make | Group::Blend | Group::Transition)
     }
 }
 

@@ -6,6 +6,7 @@ use super::param_row::{Detail, param_row_ui};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
+use segue::math::spring;
 use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
@@ -14,6 +15,7 @@ pub(crate) fn lab_panel_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     match params.text(Key::Lab) {
         "make" => make_ui(session, out, ui),
         "blend" => blend_ui(session, out, ui),
+        "transition" => transition_ui(session, out, ui),
         _ => view_ui(session, out, ui),
     }
     ui.add_space(space::L);
@@ -130,6 +132,89 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
+/// What the methods of the lab have to set, and what they share.
+fn transition_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(lab_label(session), ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    slot_row_ui(Slot::B, session, out, ui);
+    ui.add_space(space::S);
+    let fps = session.main_outcome().map_or(60.0, |outcome| outcome.motion.clip.fps());
+    let params = session.params();
+    param_row_ui(Key::Method, &Detail::default(), session, out, ui);
+    // With several methods side by side, what each of them has to set is there.
+    let methods: Vec<String> = match session.compare().filter(|compare| compare.key == Key::Method) {
+        Some(compare) => compare.values.iter().map(|value| Key::Method.param().format(value)).collect(),
+        None => vec![params.text(Key::Method).to_owned()],
+    };
+    let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
+    if any(&["inertialize"]) {
+        param_row_ui(Key::HalfLife, &Detail::default(), session, out, ui);
+        half_life_ruler_ui(params.number(Key::HalfLife), fps, ui);
+        compare_ui(Key::HalfLife, session, out, ui);
+    }
+    if any(&["cubic", "quintic", "dead"]) {
+        param_row_ui(Key::BlendTime, &Detail::default(), session, out, ui);
+    }
+    if any(&["dead"]) {
+        param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
+    }
+    if any(&["smooth", "linear"]) {
+        let secondary = format!("{:.2} s", params.number(Key::BlendWindow) / fps);
+        let detail = Detail {
+            secondary,
+            ..Detail::default()
+        };
+        param_row_ui(Key::BlendWindow, &detail, session, out, ui);
+    }
+    let shoot_out = session.compare().is_some_and(|compare| compare.key == Key::Method);
+    if kit::button_ui(Button::new(text::SHOOT_OUT).selected(shoot_out), ui).clicked() {
+        let query = if shoot_out { "" } else { text::SHOOT_OUT_QUERY };
+        out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    }
+    ui.add_space(space::S);
+    let last_frame = |slot| {
+        let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
+        motion.map(|motion| motion.clip.frames().saturating_sub(1) as f64)
+    };
+    for (key, slot) in [(Key::MixFrameA, Slot::A), (Key::MixFrameB, Slot::B)] {
+        let automatic = params.optional(key).is_none();
+        let said_below = key == Key::MixFrameA && params.optional(Key::MixFrameB).is_none();
+        let detail = Detail {
+            max: last_frame(slot),
+            help: Some(match (automatic, said_below) {
+                (false, _) => text::BY_HAND.to_owned(),
+                (true, true) => String::new(),
+                (true, false) => found_sentence(session),
+            }),
+            ..Detail::default()
+        };
+        param_row_ui(key, &detail, session, out, ui);
+    }
+    param_row_ui(Key::MatchBy, &Detail::default(), session, out, ui);
+    if params.text(Key::MatchBy) == "pose" {
+        for key in [Key::MatchPosition, Key::MatchRotation, Key::MatchVelocity] {
+            param_row_ui(key, &Detail::default(), session, out, ui);
+        }
+    }
+    ui.add_space(space::XS);
+    param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    if kit::button_ui(Button::new(text::EXPORT_RESULT).icon(Icon::Download), ui).clicked() {
+        out.actions.push(Action::SaveBvh("result".to_owned()));
+    }
+}
+
+/// How long a half-life really lasts, and the dissolve that feels alike.
+fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
+    for (label, share) in [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)] {
+        let secs = spring::secs_until(half_life_secs, share);
+        kit::value_row_ui(label, &format!("{secs:.2}"), "s", ui);
+    }
+    let alike = spring::alike_window_secs(half_life_secs) * fps;
+    kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), "frames", ui);
+}
+
 /// How the place was found, with its distance where that is known.
 fn found_sentence(session: &Session) -> String {
     if session.jobs().iter().any(|job| job.task.is_none()) {
@@ -205,6 +290,7 @@ fn lab_label(session: &Session) -> &'static str {
     match session.params().text(Key::Lab) {
         "make" => "Make",
         "blend" => "Blend",
+        "transition" => "Transition",
         _ => "View",
     }
 }
@@ -214,7 +300,7 @@ fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     let named = session.params().changed().map(|(param, _)| param);
     let named = named
-        .filter(|param| matches!(param.group, Group::Make | Group::Blend))
+        .filter(|param| matches!(param.group, Group::Make | Group::Blend | Group::Transition))
         .map(|param| param.key);
     named.chain(
         compared

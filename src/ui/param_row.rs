@@ -83,7 +83,10 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let marks: Vec<Mark> = compare
         .iter()
         .flat_map(|compare| &compare.values)
-        .map(|&value| Mark { value, color })
+        .filter_map(|value| match value {
+            Value::Number(value) => Some(Mark { value: *value, color }),
+            _ => None,
+        })
         .collect();
     let help = detail.help.as_deref().unwrap_or(param.help);
     let mut row = SliderRow::new(param.label, min..=max, default)

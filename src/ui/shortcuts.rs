@@ -68,7 +68,12 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if pressed(none, Keyboard::C) {
         toggle_compare(session, out);
     }
-    for (keyboard, lab) in [(Keyboard::Num1, "view"), (Keyboard::Num2, "make"), (Keyboard::Num3, "blend")] {
+    for (keyboard, lab) in [
+        (Keyboard::Num1, "view"),
+        (Keyboard::Num2, "make"),
+        (Keyboard::Num3, "blend"),
+        (Keyboard::Num4, "transition"),
+    ] {
         if pressed(none, keyboard) {
             out.set_once(Key::Lab, Value::Choice(lab));
         }

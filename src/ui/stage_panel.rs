@@ -8,7 +8,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::math::Planar;
 use segue::scene::{camera_of, resting_point};
-use segue::session::{Key, Kind, Outcome, Pane, Session, Value, format_number};
+use segue::session::{Key, Outcome, Pane, Session, Value};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -218,16 +218,14 @@ struct Words {
 /// What a pane says of itself: the value in which it differs, or what it shows.
 fn pane_words(pane: &Pane, session: &Session) -> Words {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
-    if let Some((key, value)) = pane.variant {
+    if let Some((key, value)) = &pane.variant {
         let param = key.param();
-        let step = if let Kind::Number { step, .. } = param.kind { step } else { 1.0 };
-        let secondary = if param.unit == "frames" {
-            format!("{:.2} s", value / fps)
-        } else {
-            String::new()
+        let secondary = match value {
+            Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
+            _ => String::new(),
         };
         return Words {
-            strong: format_number(value, step),
+            strong: param.spoken(value),
             text: param.unit.to_owned(),
             secondary,
         };
@@ -243,6 +241,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: format!("{} frames", session.params().number(Key::BlendWindow)),
+        },
+        "transition" => Words {
+            strong: name(Key::A),
+            text: format!("→ {}", name(Key::B)),
+            secondary: Key::Method.param().spoken(session.params().get(Key::Method)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),

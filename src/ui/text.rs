@@ -61,7 +61,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("[ ]", "slower, faster"),
     ("L", "loop"),
     ("C", "compare full, half, third"),
-    ("1 2 3", "View, Make, Blend"),
+    ("1 2 3 4", "View, Make, Blend, Transition"),
     ("T", "from above"),
     ("F", "frame everything"),
     ("G", "camera follows or stands"),
@@ -83,3 +83,16 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("seam_deg", "jump"),
     ("penetration_cm", "sunk cm"),
 ];
+
+/// Several methods on the same transition.
+pub(crate) const SHOOT_OUT: &str = "Shoot-out of methods";
+/// What the button opens.
+pub(crate) const SHOOT_OUT_QUERY: &str = "method:inertialize,smooth,dead";
+/// The rows of the half-life ruler.
+pub(crate) const HALF_LEFT: &str = "Half is left after";
+/// Likewise.
+pub(crate) const TENTH_LEFT: &str = "A tenth";
+/// Likewise.
+pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
+/// The dissolve with as much of A in it.
+pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";

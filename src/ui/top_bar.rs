@@ -129,10 +129,10 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         out.set_once(Key::Compare, Value::Text(String::new()));
         return;
     }
-    let key = if session.params().text(Key::Lab) == "make" {
-        Key::GaitSpeed
-    } else {
-        Key::BlendWindow
+    let key = match session.params().text(Key::Lab) {
+        "make" => Key::GaitSpeed,
+        "transition" => Key::HalfLife,
+        _ => Key::BlendWindow,
     };
     out.commands.push(Command::CompareThirds(key));
     if session.params().text(Key::Lab) == "view" {

@@ -55,6 +55,7 @@ async function measure(backend) {
     "frames/s, 3 panes": millis((playing.frames - start.frames) / Number(values.seconds)),
     "p50 ms": millis(playing.frame_ms.p50),
     "p95 ms": millis(playing.frame_ms.p95),
+    "drawing p95 ms": millis(playing.draw_ms.p95),
     "wasm MB": millis(playing.wasm_bytes / 1e6),
     "set p50 ms": millis(set[set.length >> 1]),
     "set max ms": millis(set.at(-1)),

@@ -334,11 +334,19 @@ impl Session {
         match key {
             Key::LeaveA => transition.map(|t| t.leave_a_secs),
             Key::EnterB => transition.map(|t| t.enter_b_secs),
+            Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
+            Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
             Key::GaitSpeed => Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps)),
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
         }
+    }
+
+    /// The frame of a slot's clip at a time, at its own rate.
+    fn frame_in(&self, slot: Slot, secs: f64) -> Option<f64> {
+        let motion = self.slot(slot)?.motion.as_ref()?;
+        Some((secs * motion.clip.fps()).round())
     }
 
     fn remember(&mut self, key: Option<Key>) {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
-    pub variant: Option<(Key, f64)>,
+    pub variant: Option<(Key, Value)>,
     /// The last good result.
     pub outcome: Option<Arc<Outcome>>,
     /// Why there is no newer one: what is missing and what to do.
@@ -134,13 +134,13 @@ impl Session {
         self.revision += 1;
         let compare = self
             .compare()
-            .filter(|compare| lab_of(&self.params) == Some(compare.key.param().group));
-        let variants: Vec<Option<(Key, f64)>> = match &compare {
+            .filter(|compare| belongs_to(compare.key.param().group, self.params.text(Key::Lab)));
+        let variants: Vec<Option<(Key, Value)>> = match &compare {
             Some(compare) => compare
                 .values
                 .iter()
                 .take(MAX_PANES)
-                .map(|&value| Some((compare.key, value)))
+                .map(|value| Some((compare.key, value.clone())))
                 .collect(),
             None => vec![None],
         };
@@ -148,15 +148,15 @@ impl Session {
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
             let mut pane = old.next().unwrap_or(Pane {
-                variant,
+                variant: None,
                 outcome: None,
                 problem: None,
                 inputs: None,
             });
-            pane.variant = variant;
+            pane.variant.clone_from(&variant);
             let mut params = self.params.clone();
             if let Some((key, value)) = variant {
-                let result = params.set(key, Value::Number(value));
+                let result = params.set(key, value);
                 debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
             }
             self.refresh_pane(&mut pane, &params, match_window);
@@ -201,13 +201,14 @@ impl Session {
     }
 }
 
-/// The group of parameters of the lab that is open.
-fn lab_of(params: &Params) -> Option<Group> {
-    match params.text(Key::Lab) {
-        "view" => Some(Group::View),
-        "make" => Some(Group::Make),
-        "blend" => Some(Group::Blend),
-        _ => None,
+/// Whether a lab depends on the parameters of a group. A transition can be a dissolve, and takes its window from there.
+fn belongs_to(group: Group, lab: &str) -> bool {
+    match lab {
+        "view" => group == Group::View,
+        "make" => group == Group::Make,
+        "blend" => group == Group::Blend,
+        "transition" => matches!(group, Group::Blend | Group::Transition),
+        _ => false,
     }
 }
 
@@ -216,7 +217,10 @@ fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
     let windows = compare
         .filter(|compare| compare.key == Key::BlendWindow)
         .map(|compare| compare.values.as_slice());
-    let widest = windows.unwrap_or(&[]).iter().copied().fold(0.0, f64::max);
+    let widest = windows.unwrap_or(&[]).iter().fold(0.0, |widest: f64, value| match value {
+        Value::Number(frames) => widest.max(*frames),
+        _ => widest,
+    });
     if widest > 0.0 {
         widest as usize
     } else {

@@ -20,7 +20,10 @@ fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
     for pane in session.panes() {
         assert_eq!(pane.problem, None);
         let outcome = pane.outcome.as_ref().unwrap();
-        let window = pane.variant.unwrap().1 as usize;
+        let Some((Key::BlendWindow, Value::Number(window))) = pane.variant else {
+            panic!()
+        };
+        let window = window as usize;
         assert_eq!(outcome.transition.unwrap().window_frames, window);
         assert_eq!(outcome.sources.len(), 2);
         assert!(outcome.metrics.iter().any(|metric| metric.value.is_some()));
@@ -324,4 +327,62 @@ fn reading_can_be_given_up() {
     assert!(session.take_requests().contains(&Request::StopReading(task)));
     assert!(session.finish_reading(task, Err("stopped".into())).is_none());
     assert_eq!(session.clip_infos(), clips);
+}
+
+#[test]
+fn methods_are_compared_on_one_transition() {
+    let mut session = Session::new();
+    session
+        .apply(Command::OpenLink(
+            "lab=transition&compare=method:inertialize,smooth,dead,cut".into(),
+        ))
+        .unwrap();
+    settle(&mut session);
+    let outcomes: Vec<_> = session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
+    assert!(session.panes().iter().all(|pane| pane.problem.is_none()));
+    let places: Vec<_> = outcomes.iter().map(|outcome| outcome.transition.unwrap()).collect();
+    assert!(
+        places
+            .windows(2)
+            .all(|pair| (pair[0].leave_a_secs, pair[0].enter_b_secs) == (pair[1].leave_a_secs, pair[1].enter_b_secs))
+    );
+    let seam = |outcome: &Arc<Outcome>| {
+        outcome
+            .metrics
+            .iter()
+            .find(|metric| metric.id == "seam_deg")
+            .unwrap()
+            .value
+            .unwrap()
+    };
+    assert!(
+        seam(&outcomes[3]) > 4.0 * seam(&outcomes[0]),
+        "a cut jumps, inertialization does not"
+    );
+    // What the slider changes shows at once, and the match stays.
+    session.apply(Command::OpenLink("lab=transition".into())).unwrap();
+    settle(&mut session);
+    let before = Arc::clone(session.main_outcome().unwrap());
+    session.apply(Command::Set(vec![(Key::HalfLife, Value::Number(0.6))])).unwrap();
+    let after = session.main_outcome().unwrap();
+    assert!(after.transition.unwrap().end_secs > before.transition.unwrap().end_secs + 0.5);
+    assert_eq!(after.transition.unwrap().leave_a_secs, before.transition.unwrap().leave_a_secs);
+}
+
+#[test]
+fn mix_frames_are_frames_of_each_clip() {
+    let mut session = Session::new();
+    session
+        .apply(Command::OpenLink(
+            "lab=transition&mix_frame_a=90&mix_frame_b=12&method=cubic".into(),
+        ))
+        .unwrap();
+    settle(&mut session);
+    let outcome = session.main_outcome().unwrap();
+    let fps = outcome.motion.clip.fps();
+    let place = outcome.transition.unwrap();
+    assert_eq!(
+        ((place.leave_a_secs * fps).round(), (place.enter_b_secs * fps).round()),
+        (90.0, 12.0)
+    );
 }

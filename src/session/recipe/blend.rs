@@ -1,11 +1,12 @@
 use super::{Outcome, Slot, Source, Transition};
-use crate::blend::{self, DissolveOptions, RootBlend, WeightLaw};
+use crate::blend::{self, RootBlend, WeightLaw};
 use crate::clip::{Contacts, Interpolation, resample, retarget};
-use crate::math::Planar;
+use crate::math::{Decay, Planar};
 use crate::metrics::{Profile, Subject, TransitionMetrics};
-use crate::registration::{Region, SearchOptions, TransitionSearch, limb_weights};
+use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
+use crate::transition::{Inertialization, Method, TransitionOptions, concatenate};
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -13,7 +14,7 @@ use std::sync::Arc;
 pub(in crate::session) struct BlendInputs {
     pair: Arc<Pair>,
     place: Place,
-    options: DissolveOptions,
+    options: TransitionOptions,
 }
 
 impl PartialEq for BlendInputs {
@@ -71,11 +72,51 @@ impl Pair {
     }
 }
 
+/// The method of the Transition lab; `window` is that of its dissolves.
+fn method_of(params: &Params, window: usize) -> Method {
+    let blend_secs = params.number(Key::BlendTime);
+    match params.text(Key::Method) {
+        "cut" => Method::Cut,
+        "linear" => Method::Dissolve {
+            window,
+            law: WeightLaw::Linear,
+        },
+        "smooth" => Method::Dissolve {
+            window,
+            law: WeightLaw::Smooth,
+        },
+        "cubic" => Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs })),
+        "quintic" => Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs })),
+        "dead" => Method::Inertialize(Inertialization::DeadBlend {
+            blend_secs,
+            extrapolation_half_life_secs: params.number(Key::ExtrapolationHalfLife),
+        }),
+        _ => Method::Inertialize(Inertialization::Offset(Decay::Spring {
+            half_life_secs: params.number(Key::HalfLife),
+        })),
+    }
+}
+
+impl Pair {
+    fn pose_search(&self) -> Result<PoseSearch, String> {
+        let skeleton = self.a.clip.skeleton();
+        let search = PoseSearch::new(
+            (&self.a.clip, &self.a.ground_frames),
+            (&self.incoming.clip, &self.incoming.ground_frames),
+            &limb_weights(skeleton),
+            self.a.roles.body_height(skeleton).into(),
+        );
+        search.map_err(|error| error.to_string())
+    }
+}
+
 /// Makes blends, and keeps what does not change from one to the next: the pair of clips and the distances between their frames.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Blender {
     pair: Option<Arc<Pair>>,
     search: Option<TransitionSearch>,
+    /// Begun when a lab asks for it.
+    poses: Option<PoseSearch>,
     progress: f32,
 }
 
@@ -96,19 +137,37 @@ impl Blender {
         let pair = self.pair(a, b)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let window = (params.number(Key::BlendWindow) as usize).min(frames_a).min(frames_b);
+        let in_transition = params.text(Key::Lab) == "transition";
+        let method = if in_transition {
+            method_of(params, window)
+        } else {
+            let law = match params.text(Key::WeightLaw) {
+                "linear" => WeightLaw::Linear,
+                "smoother" => WeightLaw::Smoother,
+                _ => WeightLaw::Smooth,
+            };
+            Method::Dissolve { window, law }
+        };
         let fps = pair.a.clip.fps();
-        let frame = |key, frames: usize| {
-            params
-                .optional(key)
-                .map(|secs| ((secs * fps).round() as usize).min(frames.saturating_sub(window)))
+        let given = if in_transition {
+            [
+                params.optional(Key::MixFrameA),
+                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip.fps() * fps),
+            ]
+        } else {
+            [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
         };
+        // A dissolve needs its window behind both frames, the other methods one frame of B.
+        let behind = if let Method::Dissolve { window, .. } = method { window } else { 1 };
+        let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)]
+            .map(|(frame, frames)| frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind))));
         let match_window = match_window.min(frames_a).min(frames_b);
-        let place = self.place(&pair, match_window, frame(Key::LeaveA, frames_a), frame(Key::EnterB, frames_b))?;
-        let law = match params.text(Key::WeightLaw) {
-            "linear" => WeightLaw::Linear,
-            "smoother" => WeightLaw::Smoother,
-            _ => WeightLaw::Smooth,
-        };
+        let weights = (in_transition && params.text(Key::MatchBy) == "pose").then(|| PoseWeights {
+            position: params.number(Key::MatchPosition),
+            rotation: params.number(Key::MatchRotation),
+            velocity: params.number(Key::MatchVelocity),
+        });
+        let place = self.place(&pair, match_window, leave, enter, weights)?;
         let root = if params.is_on(Key::RootBlend) {
             RootBlend::Velocity
         } else {
@@ -117,9 +176,8 @@ impl Blender {
         Ok(BlendInputs {
             pair,
             place,
-            options: DissolveOptions {
-                window,
-                law,
+            options: TransitionOptions {
+                method,
                 align: params.is_on(Key::Align),
                 root,
             },
@@ -144,24 +202,40 @@ impl Blender {
         );
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(&pair));
+        self.poses = None;
         self.compare_rows(ROWS_AT_ONCE);
         Ok(pair)
     }
 
     fn compare_rows(&mut self, rows: usize) {
-        if let Some(search) = &mut self.search {
-            let progress = search.advance(rows);
-            self.progress = if progress.is_complete() {
-                1.0
-            } else {
-                progress.done as f32 / progress.total.max(1) as f32
-            };
-        }
+        // The windows first; where poses are asked for, they follow.
+        let windows = self.search.as_mut().map(|search| search.advance(rows));
+        let poses = match (&windows, &mut self.poses) {
+            (Some(progress), Some(search)) if progress.is_complete() => Some(search.advance(rows)),
+            _ => None,
+        };
+        let share = |done: usize, total: usize| done as f32 / total.max(1) as f32;
+        self.progress = match (windows, poses) {
+            (Some(progress), None) | (_, Some(progress)) if !progress.is_complete() => share(progress.done, progress.total),
+            _ => 1.0,
+        };
     }
 
     /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
-    fn place(&self, pair: &Pair, window: usize, leave: Option<usize>, enter: Option<usize>) -> Result<Place, String> {
-        let search = self.search.as_ref().ok_or("there are no clips to match")?;
+    ///
+    /// With `weights` the best match is that of single poses, else that of windows.
+    fn place(
+        &mut self,
+        pair: &Pair,
+        window: usize,
+        leave: Option<usize>,
+        enter: Option<usize>,
+        weights: Option<PoseWeights>,
+    ) -> Result<Place, String> {
+        if weights.is_some() && self.poses.is_none() {
+            self.poses = Some(pair.pose_search()?);
+            self.compare_rows(ROWS_AT_ONCE);
+        }
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let mut options = SearchOptions::new(window);
         if let Some(frame) = leave {
@@ -178,11 +252,21 @@ impl Blender {
             };
             return Ok(place);
         }
-        let best = search.best(&options).map_err(|error| error.to_string())?;
+        let (best_leave, best_enter, distance_cm) = match (weights, &self.poses, &self.search) {
+            (Some(weights), Some(search), _) => {
+                let best = search.best(weights, &options).map_err(|error| error.to_string())?;
+                (best.leave, best.enter, best.position_cm)
+            }
+            (_, _, Some(search)) => {
+                let best = search.best(&options).map_err(|error| error.to_string())?;
+                (best.leave, best.enter, best.rms_cm)
+            }
+            _ => return Err("there are no clips to match".to_owned()),
+        };
         Ok(Place {
-            leave: leave.unwrap_or(best.leave),
-            enter: enter.unwrap_or(best.enter),
-            distance_cm: best.rms_cm as f32,
+            leave: leave.unwrap_or(best_leave),
+            enter: enter.unwrap_or(best_enter),
+            distance_cm: distance_cm as f32,
         })
     }
 
@@ -211,7 +295,7 @@ impl BlendInputs {
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let Self { pair, place, options } = self;
         let [a, b] = &pair.profiles;
-        let made = blend::dissolve(a.source(), place.leave, b.source(), place.enter, options).map_err(|error| error.to_string())?;
+        let made = concatenate(a.source(), place.leave, b.source(), place.enter, options).map_err(|error| error.to_string())?;
         let fps = made.clip.fps();
         let secs = |frame: usize| frame as f64 / fps;
         let window = made.transition.clone();
