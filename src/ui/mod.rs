@@ -1,14 +1,18 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
+mod clip_panel;
 pub(crate) mod kit;
 mod lab_panel;
 mod library_panel;
 mod out;
 mod overlays;
 mod param_row;
+mod save_rows;
 mod shortcuts;
 mod stage_panel;
 mod state;
+#[cfg(all(test, feature = "ui-tests"))]
+mod tests;
 mod text;
 pub(crate) mod theme;
 mod timeline_panel;
@@ -16,7 +20,7 @@ mod top_bar;
 
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
-pub(crate) use state::UiState;
+pub(crate) use state::{Filming, UiState};
 pub(crate) use text::LINK_COPIED;
 pub(crate) use timeline_panel::CurveCache;
 
@@ -41,6 +45,7 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
 /// Draws the page. `paint` draws the 3D picture into the stage.
 pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCache, paint: Paint<'_>, ui: &mut Ui) -> Out {
     let mut out = Out::default();
+    state.joints_open = false;
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     if session.params().is_on(Key::Embed) {
@@ -97,7 +102,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
             }
             ScrollArea::vertical()
                 .auto_shrink(false)
-                .show(ui, |ui| lab_panel::lab_panel_ui(session, out, ui));
+                .show(ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
         });
     egui::CentralPanel::default()
         .frame(Frame::new().fill(palette_of(ui).ground))
@@ -139,7 +144,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
                         state.library_open = false;
                     }
                 } else {
-                    lab_panel::lab_panel_ui(session, out, ui);
+                    lab_panel::lab_panel_ui(session, state, out, ui);
                 }
             });
         });
