@@ -66,6 +66,27 @@ fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
         .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
 
+/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does not lie on numbers and units.
+fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
+    let mut frame = panel_frame(ui, horizontal, vertical);
+    frame.inner_margin.right = BAR_MARGIN as i8;
+    frame
+}
+
+/// What scrolls inside of a [`scrolling_frame`], as wide as in a panel that does not.
+fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let margin = Margin {
+            right: (horizontal - BAR_MARGIN) as i8,
+            ..Margin::ZERO
+        };
+        Frame::new().inner_margin(margin).show(ui, content);
+    });
+}
+
+/// Between the bar of a panel that scrolls and the panel's edge, points.
+const BAR_MARGIN: f32 = 3.0;
+
 fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
     let height = ui.available_height();
@@ -93,16 +114,14 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
     }
     Panel::right("lab")
         .exact_size(288.0 * scale)
-        .frame(panel_frame(ui, space::L, space::M))
+        .frame(scrolling_frame(ui, space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
             if layout == Layout::Tablet {
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
+            scrolled_ui(space::L, ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
         });
     egui::CentralPanel::default()
         .frame(Frame::new().fill(palette_of(ui).ground))
@@ -133,9 +152,9 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
             timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
         });
     egui::CentralPanel::default()
-        .frame(panel_frame(ui, space::L, space::M))
+        .frame(scrolling_frame(ui, space::L, space::M))
         .show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            scrolled_ui(space::L, ui, |ui| {
                 if state.library_open {
                     library_panel::drop_ui(session, state, out, ui);
                     library_panel::library_list_ui(session, state, out, ui);

@@ -63,7 +63,11 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
                 ui.painter()
                     .add(Shape::gradient_rect(stage, egui::Direction::TopDown, [colors.sky, colors.horizon]));
             };
-            let out = show(&page.session, &mut page.state, &mut page.curves, &mut paint, ui);
+            let whole = egui::UiBuilder::new().max_rect(ui.ctx().content_rect());
+            let Page {
+                session, state, curves, ..
+            } = page;
+            let out = ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
             for command in &out.commands {
                 if page.obeys {
                     page.session.apply(command.clone()).unwrap();
@@ -76,6 +80,14 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     );
     harness.run();
     harness
+}
+
+/// Brings something into sight and presses it.
+fn press(label: &str, harness: &mut Harness<'_, Page>) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run();
+    harness.get_by_label(label).click();
+    harness.run();
 }
 
 /// Writes a picture where pictures were asked for. They are to be looked at, not compared: rasterisers differ.
@@ -157,8 +169,7 @@ fn the_clip_panel_tells_what_was_read() {
         harness.get_by_label(&format!("Joints: {joints} "));
         harness.get_by_label_contains("Root: position X Y Z");
         harness.get_by_label_contains("read as centimetres");
-        harness.get_by_label("Joints").click();
-        harness.run();
+        press("Joints", &mut harness);
         assert!(harness.state().state.joints_open);
         harness.get_by_label("Joints").scroll_to_me();
         harness.run();
@@ -176,10 +187,8 @@ fn what_is_said_by_hand_reads_the_file_again() {
     };
     let mut harness = harness(DESK, DARK, page);
     let mut choose = |row: &str, item: &str| {
-        harness.get_by_label(row).click();
-        harness.run();
-        harness.get_by_label(item).click();
-        harness.run();
+        press(row, &mut harness);
+        press(item, &mut harness);
         match harness.state_mut().out.commands.pop() {
             Some(Command::Reimport(_, options)) => options,
             other => panic!("{row}: {other:?}"),
@@ -189,18 +198,15 @@ fn what_is_said_by_hand_reads_the_file_again() {
     assert_eq!(choose("Up axis", "Z").up, Some(segue::clip::UpAxis::Z));
     assert_eq!(choose("Frame rate", "25").fps, Some(25.0));
     assert!(!options.drop_t_pose || options == Default::default());
-    harness.get_by_label("Leave out the T-pose").click();
-    harness.run();
+    press("Leave out the T-pose", &mut harness);
     let command = harness.state_mut().out.commands.pop();
     assert!(
         matches!(command, Some(Command::Reimport(_, options)) if !options.drop_t_pose),
         "{command:?}"
     );
     // A rate that is in no list is typed.
-    harness.get_by_label("Frame rate").click();
-    harness.run();
-    harness.get_by_label("other…").click();
-    harness.run();
+    press("Frame rate", &mut harness);
+    press("other…", &mut harness);
     harness.get_by_label("Frames per second").type_text("50");
     harness.run();
     harness.key_press(Keyboard::Enter);
@@ -215,8 +221,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
 #[test]
 fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
     let mut harness = harness(DESK, DARK, with_file("lab=view&play=off&joint=tail"));
-    harness.get_by_label("Joints").click();
-    harness.run();
+    press("Joints", &mut harness);
     let chosen = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Joint).to_owned();
     let tail = harness.get_by_label("Tail");
     assert_eq!(tail.accesskit_node().is_selected(), Some(true));
@@ -257,8 +262,7 @@ fn the_library_opens_the_same_panel_under_the_row() {
         page.state.library_open = true;
         let mut harness = harness(size, theme, page);
         harness.get_by_label("Up axis");
-        harness.get_by_label("Joints").click();
-        harness.run();
+        press("Joints", &mut harness);
         assert!(harness.state().state.joints_open);
         picture(name, &mut harness);
     }
@@ -272,26 +276,17 @@ fn a_motion_is_saved_as_it_is_wanted() {
         films: true,
         secs: Some(67.4),
     };
-    harness.get_by_label("Result").click();
-    harness.run();
-    harness.get_by_label("15 frames").click();
-    harness.run();
-    harness.get_by_label("File options").click();
-    harness.run();
-    harness.get_by_label("Rotation order").click();
-    harness.run();
-    harness.get_by_label("X Y Z").click();
-    harness.run();
+    press("Result", &mut harness);
+    press("15 frames", &mut harness);
+    press("File options", &mut harness);
+    press("Rotation order", &mut harness);
+    press("X Y Z", &mut harness);
     picture("save-desk-dark", &mut harness);
-    harness.get_by_label("Save the file").click();
-    harness.run();
-    harness.get_by_label("GLB").click();
-    harness.run();
-    harness.get_by_label("Save the file").click();
-    harness.run();
+    press("Save the file", &mut harness);
+    press("GLB", &mut harness);
+    press("Save the file", &mut harness);
     harness.get_by_label("End the recording and save it").click();
-    harness.get_by_label("Save the stage as a picture").click();
-    harness.run();
+    press("Save the stage as a picture", &mut harness);
     harness.get_by_label("Recording, 1:07");
     let actions = &harness.state().out.actions;
     let [Action::Save { which, how }, Action::Save { how: glb, .. }, rest @ ..] = actions.as_slice() else {

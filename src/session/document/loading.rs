@@ -291,7 +291,7 @@ impl Session {
                 self.read_again(file.clone());
             } else if let Err(error) = self.read_at_once(file) {
                 self.say(Level::Error, error.to_string());
-            } else {
+            } else if self.library.find(&entry.id).is_some_and(|entry| entry.motion.is_some()) {
                 self.offer(&entry.id);
             }
         }

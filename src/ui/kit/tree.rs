@@ -62,9 +62,10 @@ pub(crate) fn tree_ui(tree: &Tree<'_>, row_of: impl Fn(usize) -> TreeRow, ui: &m
         ui.spacing_mut().item_spacing.y = 0.0;
         let area = ScrollArea::vertical()
             .id_salt(id)
+            .min_scrolled_height(tree.max_height)
             .max_height(tree.max_height)
             .auto_shrink([false, true]);
-        area.show_rows(ui, height, rows.len(), |ui, range| {
+        let shown = area.show_rows(ui, height, rows.len(), |ui, range| {
             ui.response().widget_info(|| WidgetInfo::labeled(Role::Tree, true, tree.label));
             let (_, space) = ui.allocate_space(vec2(ui.available_width(), height * range.len() as f32));
             let place = |index: usize| {
@@ -87,6 +88,10 @@ pub(crate) fn tree_ui(tree: &Tree<'_>, row_of: impl Fn(usize) -> TreeRow, ui: &m
                 ui.scroll_to_rect_animation(place(index), None, ScrollAnimation::none());
             }
         });
+        if matches!(event, Some(Event::Choose(_))) {
+            // The panel around it, too.
+            ui.scroll_to_rect_animation(shown.inner_rect, None, ScrollAnimation::none());
+        }
     });
     match event? {
         Event::Fold(item) => {
