@@ -13,7 +13,7 @@ pub(crate) use address_bar::link_query;
 
 use crate::platform::{self, Inbox, Incoming, LargeFile, Pace, ReadNews, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
-use crate::ui::{self, Action, CurveCache, UiState};
+use crate::ui::{self, Action, CurveCache, Filming, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
 use eframe::{egui, wgpu};
@@ -98,6 +98,8 @@ pub(crate) struct Segue {
     panels: UiState,
     curves: CurveCache,
     picture: Picture,
+    /// The film that is being made of the page.
+    film: Option<platform::Film>,
 }
 
 /// What listeners know already.
@@ -170,6 +172,7 @@ impl Segue {
             panels: UiState::default(),
             curves: CurveCache::default(),
             picture: Picture::default(),
+            film: None,
         }
     }
 
@@ -407,6 +410,11 @@ impl Segue {
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.fetching = self.downloads.under_way().collect();
+        self.panels.filming = Filming {
+            pictures: platform::can_take_pictures(),
+            films: platform::can_film(),
+            secs: self.film.as_ref().map(platform::Film::secs),
+        };
         let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
         for command in out.commands {
             self.obey(command);
@@ -417,6 +425,7 @@ impl Segue {
         // Only now: what a slider has just changed is in this picture, not in the next.
         let theme = ui::theme::theme_of(ui);
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
+        self.picture.mark_joint(self.panels.joints_open);
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();
@@ -445,11 +454,38 @@ impl Segue {
             Action::OpenFiles => platform::open_files(&self.inbox),
             Action::StopFetching(name) => self.stop_fetching(name),
             Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
-            Action::SaveBvh(which) => match self.export(which, "bvh") {
+            Action::Save { which, how } => match self.export_as(which, how) {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
-                Err(reason) => self.session.say(Level::Error, reason),
+                Err(reason) => self.session.say(Level::Error, format!("The file could not be saved: {reason}.")),
+            },
+            Action::SavePicture => {
+                if let Some(stage) = self.picture.place() {
+                    platform::save_picture(&api::file_name(&self.result_name(), "png"), stage, &self.inbox);
+                }
+            }
+            Action::Record => match self.film.take() {
+                Some(film) => film.save(&self.result_name(), &self.inbox),
+                None => {
+                    if let Err(reason) = self.begin_film() {
+                        self.session.say(Level::Error, format!("The page could not be recorded: {reason}."));
+                    }
+                }
             },
         }
+    }
+
+    /// Begins to film the page.
+    pub(crate) fn begin_film(&mut self) -> Result<(), String> {
+        if self.film.is_some() {
+            return Err("a recording is under way".to_owned());
+        }
+        self.film = Some(platform::Film::begin()?);
+        Ok(())
+    }
+
+    /// Ends the film under way.
+    pub(crate) fn end_film(&mut self) -> Result<platform::Film, String> {
+        self.film.take().ok_or_else(|| "no recording is under way".to_owned())
     }
 
     /// Takes the addresses of a file out of the link: it is not fetched any longer.
@@ -487,6 +523,8 @@ impl Segue {
             self.address.tend(&self.session, dragging, now_ms),
             self.keeper.tend(&self.session, &self.vault, now_ms),
             self.session.notices().next_change_secs().map(|secs| secs * 1e3),
+            // The next second of a film.
+            self.film.as_ref().map(|film| (1.0 - film.secs().fract()) * 1e3),
         ];
         if let Some(wait) = waits.into_iter().flatten().min_by(f64::total_cmp) {
             ctx.request_repaint_after(Duration::from_secs_f64((wait / 1e3).max(0.0)));

@@ -6,11 +6,11 @@ use super::link_query;
 use crate::platform::{self, LargeFile};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
-use segue::formats::bvh;
 use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
-use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, PARAMS, Pane, Param, Value, frame_at};
+use segue::session::export::{ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, Outcome, PARAMS, Pane, Param, Value, frame_at};
 use segue::skeleton::Side;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -92,6 +92,14 @@ pub(crate) struct Stats {
     draw_ms: FrameTimes,
     jobs: Vec<JobInfo>,
     wasm_bytes: u64,
+}
+
+/// What the API asks a motion of.
+enum Subject<'a> {
+    /// A clip of the library.
+    Clip(&'a Arc<Motion>),
+    /// What a pane shows.
+    Result(&'a Pane, &'a Outcome),
 }
 
 /// A file to hand to the user.
@@ -255,8 +263,8 @@ impl Segue {
         self.session.now_secs()
     }
 
-    /// The motion that a clip's id, `result`, or `result:1` (the second pane) names.
-    fn motion(&self, which: &str) -> Result<Arc<Motion>, String> {
+    /// What a clip's id, `result`, or `result:1` (the second pane) names.
+    fn subject(&self, which: &str) -> Result<Subject<'_>, String> {
         let pane = match which.strip_prefix("result") {
             Some("") => Some(0),
             Some(rest) => rest.strip_prefix(':').map(|index| index.parse::<usize>().unwrap_or(usize::MAX)),
@@ -267,19 +275,27 @@ impl Segue {
             let entry = self.session.library().find(which);
             let entry =
                 entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
-            return entry
-                .motion
-                .clone()
+            let motion = entry.motion.as_ref();
+            return motion
+                .map(Subject::Clip)
                 .ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
         };
         let pane = panes
             .get(index)
             .ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
         match (&pane.outcome, &pane.problem) {
-            (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
+            (Some(outcome), _) => Ok(Subject::Result(pane, outcome)),
             (None, Some(problem)) => Err(format!("there is no result: {problem}")),
             (None, None) => Err("there is no result yet".to_owned()),
         }
+    }
+
+    /// The motion of [`Self::subject`].
+    fn motion(&self, which: &str) -> Result<Arc<Motion>, String> {
+        Ok(match self.subject(which)? {
+            Subject::Clip(motion) => Arc::clone(motion),
+            Subject::Result(_, outcome) => Arc::clone(&outcome.motion),
+        })
     }
 
     /// A pose in the world.
@@ -326,27 +342,44 @@ impl Segue {
         main.metrics.iter().map(|metric| (metric.id, info(metric))).collect()
     }
 
-    /// A motion as a file. `which` as in [`Self::pose`].
+    /// A motion as a file of that format. `which` as in [`Self::pose`].
     pub(crate) fn export(&self, which: &str, format: &str) -> Result<ExportedFile, String> {
-        if format != "bvh" {
-            return Err(format!("found `{format}`, expected bvh"));
-        }
-        let motion = self.motion(which)?;
-        let text = bvh::write(&motion.clip, &bvh::WriteOptions::default());
-        let stem = if which.starts_with("result") {
-            self.result_name()
-        } else {
-            motion.clip.name().to_owned()
+        let format = ExportFormat::from_name(format).ok_or_else(|| {
+            let names = ExportFormat::ALL.map(ExportFormat::name).join(", ");
+            format!("found `{format}`, expected one of {names}")
+        })?;
+        self.export_as(
+            which,
+            &ExportOptions {
+                format,
+                ..ExportOptions::default()
+            },
+        )
+    }
+
+    /// A motion as a file, in the way that a person wants it.
+    pub(crate) fn export_as(&self, which: &str, how: &ExportOptions) -> Result<ExportedFile, String> {
+        let params = self.session.params();
+        let (motion, curves, stem) = match self.subject(which)? {
+            Subject::Clip(motion) => (motion, plotted_of_clip(motion, params), motion.clip.name().to_owned()),
+            Subject::Result(pane, outcome) => {
+                let value = pane.variant.as_ref().map(|(key, value)| {
+                    let param = key.param();
+                    format!(" {} {}", param.format(value), param.unit)
+                });
+                let stem = self.result_name() + &value.unwrap_or_default();
+                (&outcome.motion, plotted_of_result(outcome, params), stem)
+            }
         };
         Ok(ExportedFile {
-            name: file_name(&stem, "bvh"),
-            mime: "text/plain",
-            bytes: text.into_bytes(),
+            name: file_name(&stem, how.format.name()),
+            mime: how.format.mime(),
+            bytes: export(motion, &curves, how).map_err(|error| error.to_string())?,
         })
     }
 
     /// What a result is called as a file: what it was made from.
-    fn result_name(&self) -> String {
+    pub(super) fn result_name(&self) -> String {
         let params = self.session.params();
         match params.text(Key::Lab) {
             "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
@@ -390,7 +423,7 @@ impl Segue {
 }
 
 /// A file's name that every system takes.
-fn file_name(stem: &str, ending: &str) -> String {
+pub(crate) fn file_name(stem: &str, ending: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') {
             c
@@ -517,7 +550,10 @@ mod tests {
         let loaded = segue.load_file(&file.name, Arc::from(file.bytes)).unwrap();
         assert_eq!(loaded.clips.len(), 1);
         assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
-        assert_eq!(segue.export("result", "csv").unwrap_err(), "found `csv`, expected bvh");
+        assert_eq!(
+            segue.export("result", "fbx").unwrap_err(),
+            "found `fbx`, expected one of bvh, csv, glb"
+        );
         assert!(
             segue
                 .load_file("x.bvh", Arc::from(&b"HIERARCHY oops"[..]))
@@ -525,6 +561,30 @@ mod tests {
                 .starts_with("x.bvh:1:")
         );
         assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
+    }
+
+    #[test]
+    fn every_clip_and_every_pane_is_exported_in_every_format() {
+        let segue = open("compare=blend_window:30,10&joint=left%20foot");
+        for (which, stem) in [
+            ("walk", "Walk"),
+            ("result", "walk to run 30 frames"),
+            ("result:1", "walk to run 10 frames"),
+        ] {
+            for (format, mime) in [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")] {
+                let file = segue.export(which, format).unwrap();
+                assert_eq!(
+                    (file.name.to_lowercase(), file.mime),
+                    (format!("{}.{format}", stem.to_lowercase()), mime)
+                );
+                assert!(file.bytes.len() > 1000);
+            }
+        }
+        let table = String::from_utf8(segue.export("result:1", "csv").unwrap().bytes).unwrap();
+        let header = table.lines().next().unwrap();
+        assert!(header.ends_with("left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"));
+        let frames = segue.motion("result:1").unwrap().clip.frames();
+        assert_eq!(table.lines().count(), frames + 1);
     }
 
     #[test]

@@ -49,6 +49,11 @@ impl Place {
 }
 
 impl Picture {
+    /// Whether the chosen joint is marked in what is drawn from now on.
+    pub(crate) fn mark_joint(&mut self, on: bool) {
+        self.director.mark_joint(on);
+    }
+
     /// Draws the session's present state into the place that was kept.
     pub(crate) fn finish(&mut self, place: Place, session: &Session, palette: &Palette, look: Look, ui: &Ui) {
         let now_ms = now_ms();

@@ -79,7 +79,44 @@ fn too_large(name: &str, bytes: u64) -> Option<String> {
     })
 }
 
+/// How the names of motion files end. A file that is dropped by itself is looked into whatever its name; of a folder these are taken.
+const MOTION_ENDINGS: [&str; 7] = ["bvh", "asf", "amc", "glb", "gltf", "zip", "gz"];
+
+/// More files of one folder are not read: the library is a list that a person looks through.
+const MOST_FILES_OF_FOLDER: usize = 2000;
+
+/// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like the files it adds it for.
+fn is_motion_file(name: &str) -> bool {
+    let known = |own: &str| MOTION_ENDINGS.iter().any(|ending| own.eq_ignore_ascii_case(ending));
+    !name.starts_with('.') && name.rsplit_once('.').is_some_and(|(_, own)| known(own))
+}
+
+/// What is said of a folder without such files.
+fn no_motion_in(folder: &str) -> String {
+    format!("{folder} has no motion files (.{}).", MOTION_ENDINGS.join(", ."))
+}
+
+/// What is said of a folder with more files than are read.
+fn too_many_in(folder: &str) -> String {
+    format!("{folder} has more than {MOST_FILES_OF_FOLDER} motion files: the first {MOST_FILES_OF_FOLDER} are read.")
+}
+
 /// The name of a file without the folders before it.
 fn last_part(path: &str) -> &str {
     path.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_files_are_known_by_their_ending() {
+        assert!(["a.bvh", "A.BVH", "x.tar.gz", "01.AMC"].into_iter().all(is_motion_file));
+        assert!(
+            ![".bvh", "._a.bvh", "bvh", "notes.txt", "a.bvh.bak", ""]
+                .into_iter()
+                .any(is_motion_file)
+        );
+    }
 }

@@ -8,7 +8,8 @@ use eframe::wgpu::naga;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
-use segue::scene::{Body, Bounds, Camera, Layer, Lens, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
+use segue::scene::{Body, Bounds, Camera, Colors, Director, Layer, Lens, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
+use segue::session::{Command, Session};
 use segue::skeleton::{Joint, Roles, Skeleton, world_pose};
 use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
@@ -219,6 +220,44 @@ fn three_panes_in_both_themes_and_on_a_phone() {
         assert_eq!(image.pixel(20, 0), Some(expected));
         assert_eq!(image.pixel(1300, 0), Some(expected));
         gpu.draw(&format!("phone-{theme}"), &stage(&actors, [780, 800], 1, light, 2.0), [780, 800]);
+    }
+}
+
+#[test]
+fn the_chosen_joint_is_marked_over_the_body() {
+    let Some(mut gpu) = gpu() else { return };
+    let colors = |theme: usize| Colors {
+        a: rgb(A[theme]),
+        b: rgb(B[theme]),
+        result: rgb(RESULT[theme]),
+        bad: rgb(0xff_7a_6b),
+        ghost_alpha: 0.4,
+    };
+    let size = [700, 600];
+    let shown = [(
+        0,
+        Viewport {
+            width: size[0],
+            height: size[1],
+            ..Viewport::default()
+        },
+    )];
+    for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
+        let mut session = Session::new();
+        let link = "lab=view&a=walk&t=0.4&joint=left%20hand&trail=off&contacts=off".to_owned();
+        session.apply(Command::OpenLink(link)).unwrap();
+        let mut director = Director::default();
+        let mut accent = |marked: bool| {
+            director.mark_joint(marked);
+            let stage = director.stage(&session, &shown, 1.0, look, &colors(theme), 0.0);
+            let image = gpu.draw(&format!("joint-{theme}-{marked}"), &stage, size);
+            let green = |p: &&[u8]| i32::from(p[1]) - i32::from(p[0]) > 60;
+            image.rgba.chunks_exact(4).filter(green).count()
+        };
+        assert_eq!(accent(false), 0);
+        // A ring and a dot of a few points.
+        let marked = accent(true);
+        assert!((40..400).contains(&marked), "{marked}");
     }
 }
 

@@ -26,6 +26,7 @@ pub struct Colors {
 pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
+    marks_joint: bool,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
@@ -33,6 +34,8 @@ pub struct Director {
 const GHOST_FADE_SECS: f64 = 0.3;
 /// A planted foot that moves faster than this slides.
 const SLIDE_MPS: f32 = 0.08;
+/// The ring about the chosen joint, as a share of the distance that it is seen from: it is of one size wherever the camera stands.
+const MARK_RADIUS: f32 = 0.011;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
 /// A camera that nothing is followed with comes to a new view this fast.
@@ -70,10 +73,21 @@ impl Director {
                 };
                 self.draw(outcome, &world, params, now, &look, colors, pane);
                 self.aim(index, outcome, &world, params, now, dt_secs, pane);
+                if self.marks_joint
+                    && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
+                    && let Some(&at) = world.positions.get(joint)
+                {
+                    add_mark(at, colors.result, pane);
+                }
             }
         }
         Arc::make_mut(&mut self.stage).panes = panes;
         Arc::clone(&self.stage)
+    }
+
+    /// Whether the chosen joint is marked from now on.
+    pub fn mark_joint(&mut self, on: bool) {
+        self.marks_joint = on;
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -306,6 +320,24 @@ fn add_joint_trail(motion: &Motion, joint: usize, now: f64, color: Color, pane: 
         Some((*world.positions.get(joint)?, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
     });
     pane.add_path(points, 1.75, Layer::Space);
+}
+
+/// A dot in a ring over everything, turned to the camera.
+fn add_mark(at: Vec3, color: Color, pane: &mut Pane) {
+    const CORNERS: u16 = 28;
+    let [right, up, _] = pane.camera.axes();
+    let seen_from = match pane.camera.lens {
+        Lens::Perspective => (at - pane.camera.eye()).length(),
+        Lens::Orthographic => pane.camera.distance,
+    };
+    let radius = MARK_RADIUS * seen_from;
+    // The dot is a line so short that only its round ends are seen.
+    pane.add_line(at, at + right * (radius * 1e-3), color, 5.0, Layer::Over);
+    let corner = |index: u16| {
+        let angle = std::f32::consts::TAU * f32::from(index) / f32::from(CORNERS);
+        (at + (right * angle.cos() + up * angle.sin()) * radius, color)
+    };
+    pane.add_path((0..=CORNERS).map(corner), 1.75, Layer::Over);
 }
 
 fn add_bones(skeleton: &Skeleton, world: &WorldPose, color: Color, pane: &mut Pane) {

@@ -6,6 +6,7 @@
 mod command;
 mod compare;
 mod document;
+pub mod export;
 mod library;
 pub mod link;
 mod motion;
@@ -21,8 +22,8 @@ pub use command::{Command, CommandError, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Job, Loaded, Pane, Session};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
-pub use motion::{Motion, frame_at, joint_of};
+pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
-pub use recipe::{Outcome, Slot, Source, Transition};
+pub use recipe::{Outcome, Retargeted, Slot, Source, Transition};
 pub use saved::{Saved, SavedEntry};

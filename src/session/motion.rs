@@ -1,4 +1,4 @@
-use crate::clip::{Clip, ContactOptions, Contacts, character_frames};
+use crate::clip::{Clip, ContactOptions, Contacts, CurveKind, character_frames};
 use crate::math::Planar;
 use crate::skeleton::{Role, Roles};
 use std::sync::Arc;
@@ -45,6 +45,25 @@ pub fn joint_of(motion: &Motion, name: &str) -> Option<usize> {
             .iter()
             .position(|joint| joint.name.eq_ignore_ascii_case(name))
     })
+}
+
+/// What a person calls a joint, and [`joint_of`] understands: its body part, else its own name.
+#[must_use]
+pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
+    match motion.roles.role_of(joint) {
+        Some(role) => role.name(),
+        None => motion.clip.skeleton().joints().get(joint).map_or("", |joint| joint.name.as_str()),
+    }
+}
+
+/// The curve that a word of the parameter `curve` means.
+#[must_use]
+pub fn curve_kind(word: &str) -> CurveKind {
+    match word {
+        "height" => CurveKind::Height,
+        "turn" => CurveKind::AngularSpeed,
+        _ => CurveKind::Speed,
+    }
 }
 
 /// The frame that is nearest to a time. 0 for a clip without frames.

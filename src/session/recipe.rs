@@ -61,6 +61,13 @@ pub struct Transition {
     pub distance_cm: f32,
 }
 
+/// How B came onto a skeleton that is not its own.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Retargeted {
+    /// The joints of A's skeleton that nothing of B moves, by name, parents first: they keep their rest pose.
+    pub unmatched: Vec<String>,
+}
+
 /// A result: a motion, and what is known about how it came to be.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -70,6 +77,8 @@ pub struct Outcome {
     pub sources: Vec<Source>,
     /// Where the transition is; `None` where there is none.
     pub transition: Option<Transition>,
+    /// How B came onto the skeleton of A; `None` where both have the same one.
+    pub retargeted: Option<Arc<Retargeted>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -81,6 +90,7 @@ impl Outcome {
             motion,
             sources: Vec::new(),
             transition: None,
+            retargeted: None,
             metrics: Vec::new(),
         }
     }

@@ -70,6 +70,12 @@ impl Retargeting {
         &self.map
     }
 
+    /// Whether anything of the source moves a joint of the target: a joint that drives it, or the bend that it shares with its neighbours.
+    #[must_use]
+    pub fn moves(&self, target_joint: usize) -> bool {
+        self.map.source_of(target_joint).is_some() || self.shares.get(target_joint).is_some_and(Option::is_some)
+    }
+
     /// By how much lengths of the source are multiplied on the target.
     #[must_use]
     pub fn scale(&self) -> f32 {

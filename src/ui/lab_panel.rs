@@ -1,8 +1,11 @@
 //! The parameters of the lab that is open, and below them those of the stage.
 
+use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, Icon};
-use super::out::{Action, Out};
+use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
+use super::save_rows::save_rows_ui;
+use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
@@ -10,47 +13,28 @@ use segue::math::spring;
 use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
-pub(crate) fn lab_panel_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     match params.text(Key::Lab) {
-        "make" => make_ui(session, out, ui),
-        "blend" => blend_ui(session, out, ui),
-        "transition" => transition_ui(session, out, ui),
-        _ => view_ui(session, out, ui),
+        "make" => make_ui(session, state, out, ui),
+        "blend" => blend_ui(session, state, out, ui),
+        "transition" => transition_ui(session, state, out, ui),
+        _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);
-    folded_ui(text::STAGE, Group::Stage, session, out, ui);
-    folded_ui(text::CAMERA, Group::Camera, session, out, ui);
+    group_ui(text::STAGE, Group::Stage, session, out, ui);
+    group_ui(text::CAMERA, Group::Camera, session, out, ui);
 }
 
-fn view_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     slot_row_ui(Slot::A, session, out, ui);
-    if let Some(entry) = session.slot(Slot::A)
-        && let Some(motion) = &entry.motion
-    {
-        let clip = &motion.clip;
-        let height = motion.roles.body_height(clip.skeleton());
-        let speed = segue::clip::ground_speed(&motion.ground_frames, clip.fps());
-        let facts = [
-            ("Length", format!("{:.2}", clip.duration_secs()), "s"),
-            ("Frames", clip.frames().to_string(), ""),
-            ("Frame rate", segue::session::format_number(clip.fps(), 0.01), "fps"),
-            ("Joints", clip.skeleton().len().to_string(), ""),
-            ("Body height", format!("{height:.2}"), "m"),
-            ("Mean speed", format!("{speed:.2}"), "m/s"),
-        ];
-        for (label, value, unit) in facts {
-            kit::value_row_ui(label, &value, unit, ui);
-        }
-        ui.add_space(space::S);
-        if kit::button_ui(Button::new(text::EXPORT_BVH).icon(Icon::Download), ui).clicked() {
-            out.actions.push(Action::SaveBvh(entry.id.clone()));
-        }
+    if let Some(entry) = session.slot(Slot::A) {
+        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, session, state, out, ui));
     }
 }
 
-fn make_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
         let detail = match (param.key, session.params().text(Key::Gait)) {
@@ -74,15 +58,13 @@ fn make_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).primary(), ui).clicked() {
         out.commands.push(Command::KeepMade);
     }
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
 }
 
-fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
-    slot_row_ui(Slot::A, session, out, ui);
-    slot_row_ui(Slot::B, session, out, ui);
-    ui.add_space(space::S);
-    let outcome = session.main_outcome();
-    let fps = outcome.map_or(60.0, |outcome| outcome.motion.clip.fps());
+    let fps = pair_ui(session, out, ui);
     let duration = |slot| {
         session
             .slot(slot)
@@ -127,18 +109,51 @@ fn blend_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
-    if kit::button_ui(Button::new(text::EXPORT_RESULT).icon(Icon::Download), ui).clicked() {
-        out.actions.push(Action::SaveBvh("result".to_owned()));
+    save_result_ui(session, state, out, ui);
+}
+
+/// `30 frames`.
+fn value_in_words((key, value): &(Key, Value)) -> String {
+    format!("{} {}", key.param().spoken(value), key.param().unit)
+}
+
+/// Saves the result; which one, where several stand side by side.
+fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let panes = session.panes();
+    state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
+    let names: Vec<String> = panes
+        .iter()
+        .map(|pane| pane.variant.as_ref().map_or_else(String::new, value_in_words))
+        .collect();
+    if panes.len() > 1 {
+        let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
+        if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
+            state.saved_pane = pane;
+        }
     }
+    save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
+}
+
+/// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.
+fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
+    slot_row_ui(Slot::A, session, out, ui);
+    slot_row_ui(Slot::B, session, out, ui);
+    let outcome = session.main_outcome();
+    if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
+        let words = egui::RichText::new(text::retargeted(retargeted)).font(theme_of(ui).font(Type::Small));
+        let line = ui.label(words.color(palette_of(ui).muted));
+        if !retargeted.unmatched.is_empty() {
+            line.on_hover_text(retargeted.unmatched.join(", "));
+        }
+    }
+    ui.add_space(space::S);
+    outcome.map_or(60.0, |outcome| outcome.motion.clip.fps())
 }
 
 /// What the methods of the lab have to set, and what they share.
-fn transition_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
-    slot_row_ui(Slot::A, session, out, ui);
-    slot_row_ui(Slot::B, session, out, ui);
-    ui.add_space(space::S);
-    let fps = session.main_outcome().map_or(60.0, |outcome| outcome.motion.clip.fps());
+    let fps = pair_ui(session, out, ui);
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);
     // With several methods side by side, what each of them has to set is there.
@@ -200,9 +215,7 @@ fn transition_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
-    if kit::button_ui(Button::new(text::EXPORT_RESULT).icon(Icon::Download), ui).clicked() {
-        out.actions.push(Action::SaveBvh("result".to_owned()));
-    }
+    save_result_ui(session, state, out, ui);
 }
 
 /// How long a half-life really lasts, and the dissolve that feels alike.
@@ -262,13 +275,8 @@ fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-fn folded_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let open = egui::CollapsingHeader::new(
-        egui::RichText::new(title)
-            .font(theme_of(ui).font(Type::Strong))
-            .color(palette_of(ui).muted),
-    );
-    open.id_salt(title).show(ui, |ui| {
+fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::folded_ui(title, ui, |ui| {
         for param in PARAMS
             .iter()
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))

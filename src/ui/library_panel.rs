@@ -1,15 +1,14 @@
 //! The left panel: the clips that there are.
 
+use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
 use super::out::{Action, Out};
-use super::state::{Renaming, UiState};
+use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
-use segue::clip::UpAxis;
-use segue::formats::ImportOptions;
-use segue::session::{Command, Entry, Key, Motion, Origin, Session, Slot};
-use segue::skeleton::Role;
+use segue::session::export::{ExportFormat, ExportOptions};
+use segue::session::{Command, Entry, Key, Origin, Session, Slot};
 
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -117,8 +116,8 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
 
 /// `3.9 s · 468 frames · 30 joints`.
 fn facts(entry: &Entry) -> String {
-    match (&entry.motion, &entry.origin) {
-        (Some(motion), _) => {
+    match &entry.motion {
+        Some(motion) => {
             let clip = &motion.clip;
             format!(
                 "{:.1} s · {} frames · {} joints",
@@ -127,17 +126,16 @@ fn facts(entry: &Entry) -> String {
                 clip.skeleton().len()
             )
         }
-        (None, Origin::Sample(_)) => text::LOADING.to_owned(),
-        (None, _) => String::new(),
+        None => text::status(entry).to_owned(),
     }
 }
 
 fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(renaming) = state.renaming.as_mut().filter(|renaming| renaming.id == entry.id) {
-        let field = kit::text_field_ui(text::RENAME, &entry.name, &mut renaming.name, ui);
+        let field = kit::text_field_ui(text::RENAME, &entry.name, &mut renaming.text, ui);
         field.response.request_focus();
         if field.committed {
-            out.commands.push(Command::Rename(entry.id.clone(), renaming.name.clone()));
+            out.commands.push(Command::Rename(entry.id.clone(), renaming.text.clone()));
         }
         if field.committed || ui.input(|input| input.key_pressed(Keyboard::Escape)) {
             state.renaming = None;
@@ -166,9 +164,9 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     match response.action {
         Some(0) => state.details = if open { None } else { Some(entry.id.clone()) },
         Some(1) => {
-            state.renaming = Some(Renaming {
+            state.renaming = Some(Typing {
                 id: entry.id.clone(),
-                name: entry.name.clone(),
+                text: entry.name.clone(),
             });
         }
         Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
@@ -195,78 +193,33 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
                 out.commands.push(Command::Assign(slot, entry.id.clone()));
             }
         }
-        let save = MenuItem {
-            text: text::EXPORT_BVH,
-            icon: Some(Icon::Download),
-            ..MenuItem::default()
-        };
-        if kit::menu_item_ui(save, ui).clicked() {
-            out.actions.push(Action::SaveBvh(entry.id.clone()));
-        }
-    });
-    if open && let Some(motion) = &entry.motion {
-        details_ui(entry, motion, out, ui);
-    }
-}
-
-/// What was odd in the file, how it measures, and which joint is what.
-fn details_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.indent("details", |ui| {
-        ui.spacing_mut().item_spacing.y = space::XS;
-        for warning in &entry.warnings {
-            ui.label(RichText::new(warning).font(theme.font(Type::Small)).color(palette.warning));
-        }
-        if let Origin::File(file) = &entry.origin {
-            units_ui(entry, motion, &file.options, out, ui);
-        }
-        ui.add_space(space::XS);
-        ui.label(RichText::new(text::JOINTS).font(theme.font(Type::Strong)));
-        ui.label(RichText::new(text::JOINTS_HELP).font(theme.font(Type::Small)).color(palette.muted));
-        let skeleton = motion.clip.skeleton();
-        let mut options = vec![(None, text::NOBODY)];
-        options.extend(
-            skeleton
-                .joints()
-                .iter()
-                .enumerate()
-                .map(|(index, joint)| (Some(index), joint.name.as_str())),
-        );
-        for role in Role::ALL {
-            if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles.get(role), &options, ui) {
-                out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
+        for format in ExportFormat::ALL {
+            let words = format!("{} {}", text::SAVE_AS, text::format(format));
+            let save = MenuItem {
+                text: &words,
+                icon: Some(Icon::Download),
+                ..MenuItem::default()
+            };
+            if kit::menu_item_ui(save, ui).clicked() {
+                let how = ExportOptions { format, ..state.export };
+                out.actions.push(Action::Save {
+                    which: entry.id.clone(),
+                    how,
+                });
             }
         }
     });
-}
-
-/// Metres per unit of length that files come in.
-const UNITS: [(&str, f64); 5] = [
-    ("m", 1.0),
-    ("cm", 0.01),
-    ("mm", 0.001),
-    ("inch", 0.0254),
-    ("CMU (0.45 inch)", 0.0254 / 0.45),
-];
-
-fn units_ui(entry: &Entry, motion: &Motion, options: &ImportOptions, out: &mut Out, ui: &mut Ui) {
-    let provenance = motion.clip.provenance();
-    let now = UNITS
-        .iter()
-        .position(|(_, metres)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6)
-        .unwrap_or(usize::MAX);
-    let names: Vec<(usize, &str)> = UNITS.iter().enumerate().map(|(index, (name, _))| (index, *name)).collect();
-    if let Some(index) = kit::choice_row_ui(text::UNIT, now, &names, ui) {
-        let options = ImportOptions {
-            metres_per_unit: Some(UNITS[index].1),
-            ..*options
-        };
-        out.commands.push(Command::Reimport(entry.id.clone(), options));
-    }
-    let axes = [(UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
-    if let Some(up) = kit::choice_row_ui(text::UP_AXIS, provenance.up, &axes, ui) {
-        out.commands
-            .push(Command::Reimport(entry.id.clone(), ImportOptions { up: Some(up), ..*options }));
+    if open {
+        let card = Frame::new().inner_margin(Margin {
+            left: 10,
+            right: 4,
+            top: 6,
+            bottom: 10,
+        });
+        card.show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::XS;
+            clip_panel_ui(entry, session, state, out, ui);
+        });
     }
 }
 

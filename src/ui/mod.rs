@@ -1,14 +1,18 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
+mod clip_panel;
 pub(crate) mod kit;
 mod lab_panel;
 mod library_panel;
 mod out;
 mod overlays;
 mod param_row;
+mod save_rows;
 mod shortcuts;
 mod stage_panel;
 mod state;
+#[cfg(all(test, feature = "ui-tests"))]
+mod tests;
 mod text;
 pub(crate) mod theme;
 mod timeline_panel;
@@ -16,7 +20,7 @@ mod top_bar;
 
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
-pub(crate) use state::UiState;
+pub(crate) use state::{Filming, UiState};
 pub(crate) use text::LINK_COPIED;
 pub(crate) use timeline_panel::CurveCache;
 
@@ -41,6 +45,7 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
 /// Draws the page. `paint` draws the 3D picture into the stage.
 pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCache, paint: Paint<'_>, ui: &mut Ui) -> Out {
     let mut out = Out::default();
+    state.joints_open = false;
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     if session.params().is_on(Key::Embed) {
@@ -60,6 +65,27 @@ fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
         .fill(palette_of(ui).panel)
         .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
+
+/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does not lie on numbers and units.
+fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
+    let mut frame = panel_frame(ui, horizontal, vertical);
+    frame.inner_margin.right = BAR_MARGIN as i8;
+    frame
+}
+
+/// What scrolls inside of a [`scrolling_frame`], as wide as in a panel that does not.
+fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let margin = Margin {
+            right: (horizontal - BAR_MARGIN) as i8,
+            ..Margin::ZERO
+        };
+        Frame::new().inner_margin(margin).show(ui, content);
+    });
+}
+
+/// Between the bar of a panel that scrolls and the panel's edge, points.
+const BAR_MARGIN: f32 = 3.0;
 
 fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
@@ -88,16 +114,14 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
     }
     Panel::right("lab")
         .exact_size(288.0 * scale)
-        .frame(panel_frame(ui, space::L, space::M))
+        .frame(scrolling_frame(ui, space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
             if layout == Layout::Tablet {
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| lab_panel::lab_panel_ui(session, out, ui));
+            scrolled_ui(space::L, ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
         });
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
         stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
@@ -126,9 +150,9 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
             timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
         });
     egui::CentralPanel::default()
-        .frame(panel_frame(ui, space::L, space::M))
+        .frame(scrolling_frame(ui, space::L, space::M))
         .show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            scrolled_ui(space::L, ui, |ui| {
                 if state.library_open {
                     library_panel::drop_ui(session, state, out, ui);
                     library_panel::library_list_ui(session, state, out, ui);
@@ -137,7 +161,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
                         state.library_open = false;
                     }
                 } else {
-                    lab_panel::lab_panel_ui(session, out, ui);
+                    lab_panel::lab_panel_ui(session, state, out, ui);
                 }
             });
         });

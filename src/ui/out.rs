@@ -1,5 +1,6 @@
 //! What the panels ask for. They change nothing themselves.
 
+use segue::session::export::ExportOptions;
 use segue::session::{Command, Key, Value};
 
 /// What only the platform can do.
@@ -11,8 +12,17 @@ pub(crate) enum Action {
     CopyLink,
     /// Stop fetching a file, by its name.
     StopFetching(String),
-    /// Save a motion as a BVH file: a clip's id, or `result`.
-    SaveBvh(String),
+    /// Save a motion as a file.
+    Save {
+        /// A clip's id, `result`, or `result:1` for the second pane.
+        which: String,
+        /// As what, and how.
+        how: ExportOptions,
+    },
+    /// Save the stage as a picture.
+    SavePicture,
+    /// Begin to film the page, or end it and save the film.
+    Record,
 }
 
 /// What was asked for in one frame.

@@ -1,8 +1,8 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
-use super::out::Out;
-use super::state::{Layout, UiState};
+use super::out::{Action, Out};
+use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
@@ -292,6 +292,37 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
             frame_everything(session, state, out);
         }
     });
+    if !params.is_on(Key::Embed) {
+        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 2.0 * side + space::XS));
+        filming_ui(state.filming, below, out, ui);
+    }
+}
+
+/// A picture of the stage, and a film of the page: the film under way says so, and how long it is.
+fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
+    let builder = UiBuilder::new().id_salt("filming").max_rect(rect);
+    let recorded = ui.scope_builder(builder, |ui| {
+        ui.spacing_mut().item_spacing.y = space::XS;
+        if filming.pictures && kit::button_ui(Button::icon_only(Icon::Picture, text::SAVE_PICTURE).quiet(), ui).clicked() {
+            out.actions.push(Action::SavePicture);
+        }
+        if !filming.films {
+            return None;
+        }
+        let name = if filming.secs.is_some() {
+            text::STOP_RECORDING
+        } else {
+            text::RECORD
+        };
+        let button = kit::button_ui(Button::icon_only(Icon::Record, name).quiet().selected(filming.secs.is_some()), ui);
+        if button.clicked() {
+            out.actions.push(Action::Record);
+        }
+        Some(button.rect)
+    });
+    if let (Some(button), Some(secs)) = (recorded.inner, filming.secs) {
+        kit::recording_ui(text::RECORDING, secs, button.left_center() - vec2(space::XS, 0.0), ui);
+    }
 }
 
 /// Degrees that the camera turns when the pointer moves by a point.

@@ -1,6 +1,7 @@
 //! What the interface remembers that is nobody else's business.
 
 use eframe::egui::Rect;
+use segue::session::export::ExportOptions;
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,13 +28,24 @@ impl Layout {
     }
 }
 
-/// A name that is being typed.
+/// Something of a clip that is being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Renaming {
+pub(crate) struct Typing {
     /// The clip's id.
     pub(crate) id: String,
-    /// The name so far.
-    pub(crate) name: String,
+    /// The text so far.
+    pub(crate) text: String,
+}
+
+/// Pictures and films of what is seen: whether they can be made here, and the one under way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Filming {
+    /// A picture can be saved.
+    pub(crate) pictures: bool,
+    /// A film can be made.
+    pub(crate) films: bool,
+    /// How long the film under way is by now, seconds.
+    pub(crate) secs: Option<f64>,
 }
 
 /// The state of the interface.
@@ -49,9 +61,19 @@ pub(crate) struct UiState {
     /// The pane that a phone shows.
     pub(crate) shown_pane: usize,
     /// The clip whose name is being typed.
-    pub(crate) renaming: Option<Renaming>,
+    pub(crate) renaming: Option<Typing>,
+    /// The clip whose frame rate is being typed.
+    pub(crate) typed_fps: Option<Typing>,
     /// The clip whose details are open.
     pub(crate) details: Option<String>,
+    /// A tree of joints was shown in the last frame: the chosen one is marked on the stage.
+    pub(crate) joints_open: bool,
+    /// How motions are saved.
+    pub(crate) export: ExportOptions,
+    /// The pane whose result is saved.
+    pub(crate) saved_pane: usize,
+    /// What pictures can be taken here.
+    pub(crate) filming: Filming,
     /// The line that says what to look at; gone once somebody touched something.
     pub(crate) hint: bool,
     /// Where the stage was drawn, points.
@@ -68,7 +90,12 @@ impl Default for UiState {
             help_open: false,
             shown_pane: 0,
             renaming: None,
+            typed_fps: None,
             details: None,
+            joints_open: false,
+            export: ExportOptions::default(),
+            saved_pane: 0,
+            filming: Filming::default(),
             hint: true,
             stage: Rect::NOTHING,
             fetching: Vec::new(),

@@ -1,9 +1,12 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
+use segue::session::export::ExportFormat;
+use segue::session::{Entry, Origin, Retargeted};
+
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
 pub(crate) const SAMPLES: &str = "samples";
-pub(crate) const DROP_HERE: &str = "Drop BVH files";
+pub(crate) const DROP_HERE: &str = "Drop BVH, ASF + AMC, GLB, a zip or a folder";
 pub(crate) const OPEN_FILES: &str = "open…";
 pub(crate) const DROP_NOW: &str = "Drop to open";
 pub(crate) const COMPARE: &str = "Compare";
@@ -23,8 +26,17 @@ pub(crate) const REDO: &str = "Redo";
 pub(crate) const REMOVE: &str = "Remove";
 pub(crate) const RENAME: &str = "Rename";
 pub(crate) const DETAILS: &str = "Details";
-pub(crate) const EXPORT_BVH: &str = "Save as BVH";
-pub(crate) const EXPORT_RESULT: &str = "Save the result as BVH";
+pub(crate) const SAVE_AS: &str = "Save as";
+pub(crate) const SAVE: &str = "Save the file";
+pub(crate) const SAVE_OPTIONS: &str = "File options";
+pub(crate) const SAVED_PANE: &str = "Result";
+pub(crate) const SAVE_UNIT: &str = "Unit of length";
+pub(crate) const ROTATION_ORDER: &str = "Rotation order";
+pub(crate) const FILE_FORMAT: &str = "File format";
+pub(crate) const SAVE_PICTURE: &str = "Save the stage as a picture";
+pub(crate) const RECORD: &str = "Record a video of the page";
+pub(crate) const STOP_RECORDING: &str = "End the recording and save it";
+pub(crate) const RECORDING: &str = "Recording";
 pub(crate) const USE_AS_A: &str = "Use as A";
 pub(crate) const USE_AS_B: &str = "Use as B";
 pub(crate) const LOADING: &str = "loading…";
@@ -36,10 +48,27 @@ pub(crate) const STAGE: &str = "Stage";
 pub(crate) const CAMERA: &str = "Camera";
 pub(crate) const CURVES: &str = "curves";
 pub(crate) const RESULT: &str = "result";
-pub(crate) const JOINTS: &str = "Body parts";
-pub(crate) const JOINTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
-pub(crate) const UNIT: &str = "Unit of the file";
-pub(crate) const UP_AXIS: &str = "Up axis of the file";
+pub(crate) const LENGTH: &str = "Length";
+pub(crate) const FRAMES: &str = "Frames";
+pub(crate) const FRAME_RATE: &str = "Frame rate";
+pub(crate) const BODY_HEIGHT: &str = "Body height";
+pub(crate) const MEAN_SPEED: &str = "Mean speed";
+pub(crate) const JOINTS: &str = "Joints";
+pub(crate) const JOINT_TREE: &str = "Joints of the clip";
+pub(crate) const ROOT: &str = "Root";
+pub(crate) const POSITION: &str = "position";
+pub(crate) const ROTATION: &str = "rotation";
+pub(crate) const BODY_PARTS: &str = "Body parts";
+pub(crate) const BODY_PARTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
+pub(crate) const UNIT: &str = "Unit";
+pub(crate) const UP_AXIS: &str = "Up axis";
+pub(crate) const FOUND_WORD: &str = "found";
+pub(crate) const AS_FOUND: &str = "as found";
+pub(crate) const AS_FILE: &str = "as in the file";
+pub(crate) const AS_IT_IS: &str = "as it is";
+pub(crate) const OTHER: &str = "other…";
+pub(crate) const TYPED_RATE: &str = "Frames per second";
+pub(crate) const DROP_T_POSE: &str = "Leave out the T-pose";
 pub(crate) const NOBODY: &str = "none";
 pub(crate) const FOUND: &str = "Found automatically";
 pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find the best match again.";
@@ -50,6 +79,61 @@ pub(crate) const WELCOME_HINT: &str =
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
 pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";
+
+pub(crate) const READING: &str = "being read…";
+pub(crate) const AWAITS_SKELETON: &str = "waits for its skeleton: drop the .asf file";
+
+/// What keeps a clip from being played; empty where nothing does.
+pub(crate) fn status(entry: &Entry) -> &'static str {
+    match (&entry.motion, &entry.origin) {
+        (Some(_), _) | (None, Origin::Preset | Origin::Made) => "",
+        (None, Origin::Sample(_)) => LOADING,
+        (None, Origin::File(_)) if entry.awaits_skeleton() => AWAITS_SKELETON,
+        (None, Origin::File(_)) => READING,
+    }
+}
+
+/// The name of a file format on screen.
+pub(crate) fn format(format: ExportFormat) -> &'static str {
+    match format {
+        ExportFormat::Bvh => "BVH",
+        ExportFormat::Csv => "CSV",
+        ExportFormat::Glb => "GLB",
+    }
+}
+
+/// A note as a sentence.
+pub(crate) fn sentence(note: &str) -> String {
+    let mut letters = note.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// So many joints have other channels.
+pub(crate) fn others(count: usize) -> String {
+    match count {
+        1 => "1 has others".to_owned(),
+        count => format!("{count} have others"),
+    }
+}
+
+/// That B was moved onto A's skeleton, and what was not matched.
+pub(crate) fn retargeted(retargeted: &Retargeted) -> String {
+    /// More names would be a list that nobody reads.
+    const NAMED: usize = 4;
+    let unmatched = &retargeted.unmatched;
+    let moved = "B's motion is moved onto A's skeleton";
+    if unmatched.is_empty() {
+        return format!("{moved}.");
+    }
+    let named = unmatched.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if unmatched.len() > NAMED {
+        format!("{moved}; not matched: {named}, … ({}).", unmatched.len())
+    } else {
+        format!("{moved}; not matched: {named}.")
+    }
+}
 
 /// The shortcuts, in the order of the list under `?`.
 pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
@@ -96,3 +180,23 @@ pub(crate) const TENTH_LEFT: &str = "A tenth";
 pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
 /// The dissolve with as much of A in it.
 pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_matched_is_named_and_counted() {
+        let told = |names: &[&str]| {
+            retargeted(&Retargeted {
+                unmatched: names.iter().map(|name| (*name).to_owned()).collect(),
+            })
+        };
+        assert_eq!(told(&[]), "B's motion is moved onto A's skeleton.");
+        assert_eq!(told(&["Tail"]), "B's motion is moved onto A's skeleton; not matched: Tail.");
+        assert_eq!(
+            told(&["a", "b", "c", "d", "e"]),
+            "B's motion is moved onto A's skeleton; not matched: a, b, c, d, … (5)."
+        );
+    }
+}

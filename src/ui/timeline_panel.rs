@@ -7,7 +7,7 @@ use super::text;
 use super::theme::palette_of;
 use eframe::egui::{RectAlign, Ui};
 use segue::clip::joint_curve;
-use segue::session::{Command, Key, Kind, Motion, Outcome, Session, Slot, Value, frame_at, joint_of};
+use segue::session::{Command, Key, Kind, Motion, Outcome, Session, Slot, Value, curve_kind, frame_at, joint_of};
 use segue::skeleton::Role;
 use std::sync::Arc;
 
@@ -196,12 +196,7 @@ impl CurveCache {
 
 fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> Vec<[f64; 2]> {
     let Some(joint) = joint_of(motion, joint) else { return Vec::new() };
-    let kind = match quantity {
-        "height" => segue::clip::CurveKind::Height,
-        "turn" => segue::clip::CurveKind::AngularSpeed,
-        _ => segue::clip::CurveKind::Speed,
-    };
-    let values = joint_curve(&motion.clip, joint, kind);
+    let values = joint_curve(&motion.clip, joint, curve_kind(quantity));
     let stride = values.len().div_ceil(CURVE_POINTS).max(1);
     let fps = motion.clip.fps();
     values

@@ -53,6 +53,8 @@ export function makeApi(handle, { stopped, onLost }) {
     metrics: () => call("metrics"),
     export: (which, format) => call("exportClip", which, format),
     snapshot: () => callAsync("snapshot"),
+    record: () => call("record"),
+    stopRecording: () => callAsync("stopRecording"),
     stats: () => call("stats"),
     on(event, listener) {
       const set = listeners.get(event);

@@ -1,7 +1,9 @@
 //! Files of the user: into the window and out of it. Reading and asking happen on threads of their own, so that the picture goes on.
 
 use super::LargeFile;
-use crate::platform::{Inbox, Incoming, last_part, too_large};
+use crate::platform::{
+    Inbox, Incoming, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in, too_large, too_many_in,
+};
 use eframe::egui::DroppedFileHandle;
 use segue::session::reading::LARGE_BYTES;
 use std::path::{Path, PathBuf};
@@ -10,7 +12,7 @@ use std::sync::Arc;
 /// Lets the user choose files.
 pub(crate) fn open_files(inbox: &Inbox) {
     let asked = rfd::AsyncFileDialog::new()
-        .add_filter("Motion files", &["bvh", "asf", "amc", "zip", "gz"])
+        .add_filter("Motion files", &MOTION_ENDINGS)
         .add_filter("All files", &["*"])
         .pick_files();
     let inbox = inbox.clone();
@@ -51,20 +53,64 @@ pub(super) fn is_query(argument: &str) -> bool {
     argument.starts_with('?') || (argument.contains('=') && !Path::new(argument).exists())
 }
 
+/// Reads a file, or the motion files in and below a folder.
 fn read_path(path: &Path, inbox: &Inbox) {
     let shown = path.to_string_lossy().into_owned();
     let name = last_part(&shown).to_owned();
-    let unreadable = |error: std::io::Error| format!("{name} cannot be read: {error}.");
-    let bytes = if path.is_dir() {
-        Err(format!("{name} is a folder. Drop the files in it."))
-    } else {
-        match std::fs::metadata(path) {
-            Ok(metadata) => match too_large(&name, metadata.len()) {
-                Some(reason) => Err(reason),
-                None => std::fs::read(path).map_err(unreadable),
-            },
-            Err(error) => Err(unreadable(error)),
+    if !path.is_dir() {
+        read_file(path, name, inbox);
+        return;
+    }
+    let say = |reason| inbox.push(Incoming::Failed { reason });
+    match motion_files(path, &name, MOST_FILES_OF_FOLDER) {
+        Err(error) => say(format!("{name} cannot be read: {error}.")),
+        Ok((files, _)) if files.is_empty() => say(no_motion_in(&name)),
+        Ok((files, more)) => {
+            if more {
+                say(too_many_in(&name));
+            }
+            for (path, name) in files {
+                read_file(&path, name, inbox);
+            }
         }
+    }
+}
+
+/// The first `most` motion files in and below a folder in the order of their paths, with the names that they get, and whether there are more.
+fn motion_files(folder: &Path, name: &str, most: usize) -> std::io::Result<(Vec<(PathBuf, String)>, bool)> {
+    let mut files = Vec::new();
+    // What is still to be looked at; the next one last. Links are not followed: they may lead round in a circle.
+    let mut waiting = vec![(folder.to_path_buf(), name.to_owned(), true)];
+    while let Some((path, name, is_folder)) = waiting.pop() {
+        if is_folder {
+            let mut children = Vec::new();
+            for child in std::fs::read_dir(&path)? {
+                let child = child?;
+                let own = child.file_name().to_string_lossy().into_owned();
+                let kind = child.file_type()?;
+                if kind.is_dir() || (kind.is_file() && is_motion_file(&own)) {
+                    children.push((child.path(), format!("{name}/{own}"), kind.is_dir()));
+                }
+            }
+            children.sort_by(|x, y| y.1.cmp(&x.1));
+            waiting.extend(children);
+        } else if files.len() == most {
+            return Ok((files, true));
+        } else {
+            files.push((path, name));
+        }
+    }
+    Ok((files, false))
+}
+
+fn read_file(path: &Path, name: String, inbox: &Inbox) {
+    let unreadable = |error: std::io::Error| format!("{name} cannot be read: {error}.");
+    let bytes = match std::fs::metadata(path) {
+        Ok(metadata) => match too_large(&name, metadata.len()) {
+            Some(reason) => Err(reason),
+            None => std::fs::read(path).map_err(unreadable),
+        },
+        Err(error) => Err(unreadable(error)),
     };
     inbox.push(match bytes {
         Ok(bytes) if bytes.len() as u64 > LARGE_BYTES => Incoming::Large {
@@ -103,21 +149,43 @@ mod tests {
         assert!(!is_query("walk.bvh"));
     }
 
+    fn told(inbox: &Inbox) -> Vec<String> {
+        let told = |incoming| match incoming {
+            Incoming::Failed { reason } => reason,
+            Incoming::File { name, .. } | Incoming::Large { name, .. } => name,
+            other => format!("{other:?}"),
+        };
+        inbox.take().into_iter().map(told).collect()
+    }
+
     #[test]
-    fn folders_and_missing_files_are_told() {
+    fn of_a_folder_the_motion_files_are_read_in_order() {
+        let folder = std::env::temp_dir().join(format!("segue-folder-test-{}", std::process::id()));
+        std::fs::remove_dir_all(&folder).ok();
+        std::fs::create_dir_all(folder.join("takes/b")).unwrap();
+        std::fs::create_dir_all(folder.join("empty")).unwrap();
+        for path in [
+            "takes/c.bvh",
+            "takes/b/2.amc",
+            "takes/b/1.ASF",
+            "takes/a.zip",
+            "takes/notes.txt",
+            "takes/._a.zip",
+        ] {
+            std::fs::write(folder.join(path), "x").unwrap();
+        }
         let inbox = Inbox::default();
-        read_path(Path::new(env!("CARGO_MANIFEST_DIR")), &inbox);
+        read_path(&folder.join("takes"), &inbox);
+        assert_eq!(told(&inbox), ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]);
+        let (files, more) = motion_files(&folder.join("takes"), "takes", 3).unwrap();
+        assert_eq!((files.len(), more), (3, true));
+        let (files, more) = motion_files(&folder.join("takes"), "takes", 4).unwrap();
+        assert_eq!((files.len(), more), (4, false));
+        read_path(&folder.join("empty"), &inbox);
         read_path(Path::new("/nowhere/walk.bvh"), &inbox);
-        let reasons: Vec<String> = (inbox.take().into_iter())
-            .map(|incoming| {
-                if let Incoming::Failed { reason } = incoming {
-                    reason
-                } else {
-                    String::new()
-                }
-            })
-            .collect();
-        assert!(reasons[0].ends_with("is a folder. Drop the files in it."), "{reasons:?}");
+        let reasons = told(&inbox);
+        assert_eq!(reasons[0], "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .zip, .gz).");
         assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -28,9 +28,12 @@ pub(crate) fn open_files(inbox: &Inbox) {
         document.body().ok_or("no body")?.append_child(&input)?;
         let (chosen, inbox) = (input.clone(), inbox.clone());
         listen(Some(&input), "change", move |_| {
-            let files = chosen
-                .files()
-                .map(|list| (0..list.length()).filter_map(|index| list.get(index)).collect());
+            let files = chosen.files().map(|list| {
+                (0..list.length())
+                    .filter_map(|index| list.get(index))
+                    .map(|file| (file.name(), file))
+                    .collect()
+            });
             chosen.remove();
             spawn_local(read(files.unwrap_or_default(), inbox.clone()));
         });
@@ -44,10 +47,9 @@ pub(crate) fn open_files(inbox: &Inbox) {
     }
 }
 
-/// Reads files one after the other, so that they arrive in order.
-async fn read(files: Vec<File>, inbox: Inbox) {
-    for file in files {
-        let name = file.name();
+/// Reads files, each with its name, one after the other, so that they arrive in order.
+pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
+    for (name, file) in files {
         if let Some(reason) = too_large(&name, file.size() as u64) {
             inbox.push(Incoming::Failed { reason });
             continue;
@@ -109,31 +111,33 @@ fn path_text(path: &Path) -> String {
 
 /// Hands a file to the user.
 pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox) {
-    let handed = (|| -> Result<(), JsValue> {
-        let document = document().ok_or("no document")?;
-        let options = BlobPropertyBag::new();
-        options.set_type(mime);
-        let blob = Blob::new_with_u8_array_sequence_and_options(&Array::of1(&Uint8Array::from(bytes)), &options)?;
-        let url = Url::create_object_url_with_blob(&blob)?;
-        let anchor: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
-        anchor.set_href(&url);
-        anchor.set_download(file_name);
-        anchor.set_hidden(true);
-        document.body().ok_or("no body")?.append_child(&anchor)?;
-        anchor.click();
-        anchor.remove();
-        // The browser reads the blob after the click; a minute is more than it needs.
-        spawn_local(async move {
-            super::page::sleep(60_000).await;
-            Url::revoke_object_url(&url).ok();
-        });
-        Ok(())
-    })();
-    if let Err(error) = handed {
+    let options = BlobPropertyBag::new();
+    options.set_type(mime);
+    let blob = Blob::new_with_u8_array_sequence_and_options(&Array::of1(&Uint8Array::from(bytes)), &options);
+    if let Err(error) = blob.and_then(|blob| hand_over(file_name, &blob)) {
         inbox.push(Incoming::Failed {
             reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
         });
     }
+}
+
+/// Has the browser save a blob under that name.
+pub(super) fn hand_over(file_name: &str, blob: &Blob) -> Result<(), JsValue> {
+    let document = document().ok_or("no document")?;
+    let url = Url::create_object_url_with_blob(blob)?;
+    let anchor: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
+    anchor.set_href(&url);
+    anchor.set_download(file_name);
+    anchor.set_hidden(true);
+    document.body().ok_or("no body")?.append_child(&anchor)?;
+    anchor.click();
+    anchor.remove();
+    // The browser reads the blob after the click; a minute is more than it needs.
+    spawn_local(async move {
+        super::page::sleep(60_000).await;
+        Url::revoke_object_url(&url).ok();
+    });
+    Ok(())
 }
 
 /// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser refuses, the text itself is shown.

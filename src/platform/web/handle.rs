@@ -1,8 +1,9 @@
 //! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
 
+use super::folders::watch_folders;
 use super::page::{listen, next_frame, sleep, wanted_backend, watch_hiding};
 use super::reader::{LargeFile, workers_are_made_by};
-use super::snapshot::snapshot;
+use super::snapshot::{area_of, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -56,6 +57,7 @@ impl SegueHandle {
             listener: Rc::default(),
         };
         handle.run(canvas).await?;
+        watch_folders(&handle.inbox);
         let weak = Rc::downgrade(&handle.segue);
         watch_hiding(move || {
             if let Some(segue) = weak.upgrade()
@@ -215,11 +217,23 @@ impl SegueHandle {
         let canvas = self.canvas.borrow().clone();
         let frames = || self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn());
         let area = || {
-            let scale = f64::from(self.inbox.ctx()?.pixels_per_point());
             let place = self.segue.try_borrow().ok()?.stage_place()?;
-            Some([place.left(), place.top(), place.width(), place.height()].map(|points| (f64::from(points) * scale).round()))
+            Some(area_of(place, self.inbox.ctx()?.pixels_per_point()))
         };
         snapshot(&canvas, frames, || self.inbox.wake(), area).await
+    }
+
+    /// Begins to film the page.
+    pub fn record(&self) -> Result<(), JsValue> {
+        self.change(|segue| segue.begin_film().map_err(|reason| format!("record: {reason}")))
+    }
+
+    /// Ends the film; all of it as a Blob.
+    #[wasm_bindgen(js_name = stopRecording)]
+    pub async fn stop_recording(&self) -> Result<Blob, JsValue> {
+        let film = self.borrow_mut()?.end_film();
+        self.changed();
+        film.map_err(|reason| error(format!("stopRecording: {reason}")))?.end().await
     }
 
     /// How the app is doing.

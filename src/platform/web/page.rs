@@ -6,7 +6,7 @@ use js_sys::{Function, Promise};
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::JsFuture;
-use web_sys::{Document, EventTarget, Window};
+use web_sys::{Document, EventTarget, HtmlCanvasElement, Window};
 
 pub(super) fn window() -> Option<Window> {
     web_sys::window()
@@ -14,6 +14,11 @@ pub(super) fn window() -> Option<Window> {
 
 pub(super) fn document() -> Option<Document> {
     window()?.document()
+}
+
+/// The canvas that the app is drawn on.
+pub(super) fn canvas() -> Option<HtmlCanvasElement> {
+    document()?.get_element_by_id("segue")?.dyn_into().ok()
 }
 
 /// Milliseconds since some fixed moment; never goes back.
@@ -90,11 +95,20 @@ pub(super) fn is_hidden() -> bool {
 
 /// Listens for as long as the page lives.
 pub(super) fn listen(target: Option<impl AsRef<EventTarget>>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+    listen_in(target, event, false, listener);
+}
+
+/// The same, before whatever the event is meant for hears of it.
+pub(super) fn listen_first(target: Option<impl AsRef<EventTarget>>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+    listen_in(target, event, true, listener);
+}
+
+fn listen_in(target: Option<impl AsRef<EventTarget>>, event: &str, capture: bool, listener: impl FnMut(web_sys::Event) + 'static) {
     let Some(target) = target else { return };
     let closure = Closure::<dyn FnMut(web_sys::Event)>::new(listener);
     if let Err(error) = target
         .as_ref()
-        .add_event_listener_with_callback(event, closure.as_ref().unchecked_ref())
+        .add_event_listener_with_callback_and_bool(event, closure.as_ref().unchecked_ref(), capture)
     {
         log::error!("no `{event}` events: {}", super::words_of(&error));
     }

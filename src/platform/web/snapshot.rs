@@ -1,6 +1,7 @@
 //! A picture of the page.
 
 use super::page::{document, is_hidden, next_frame};
+use eframe::egui::Rect;
 use js_sys::{Error, Promise};
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -9,6 +10,11 @@ use web_sys::{Blob, CanvasRenderingContext2d, HtmlCanvasElement};
 
 /// A rectangle of the canvas in its own pixels: left, top, width, height.
 pub(super) type Area = [f64; 4];
+
+/// A rectangle of the page, points, as an area of the canvas.
+pub(super) fn area_of(rect: Rect, pixels_per_point: f32) -> Area {
+    [rect.left(), rect.top(), rect.width(), rect.height()].map(|points| f64::from(points * pixels_per_point).round())
+}
 
 /// How many frames to wait for one in which the app draws.
 const MOST_FRAMES: usize = 120;

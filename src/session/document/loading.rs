@@ -7,7 +7,7 @@ use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_i
 use crate::session::motion::Motion;
 use crate::session::notice::Level;
 use crate::session::params::{Key, Value};
-use crate::session::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
+use crate::session::reading::{About, Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use crate::session::recipe::{Slot, made_params};
 use crate::session::saved::{Saved, SavedEntry, SavedFile};
 use crate::session::undo::History;
@@ -291,7 +291,7 @@ impl Session {
                 self.read_again(file.clone());
             } else if let Err(error) = self.read_at_once(file) {
                 self.say(Level::Error, error.to_string());
-            } else {
+            } else if self.library.find(&entry.id).is_some_and(|entry| entry.motion.is_some()) {
                 self.offer(&entry.id);
             }
         }
@@ -367,9 +367,11 @@ impl Session {
         let imported = import(sample.file.trim_end_matches(".gz"), &bytes, &ImportOptions::default())?;
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         if let Some(clip) = imported.clips.into_iter().next() {
+            let about = About::from(&clip);
             let motion = Arc::new(Motion::analyze(clip.clip, None));
             self.library.change(sample.id, |entry| {
                 entry.motion = Some(motion);
+                entry.about = Some(about);
                 entry.warnings = warnings;
             });
         }

@@ -295,13 +295,19 @@ fn without_gz(name: &str) -> &str {
     }
 }
 
-impl ReadClip {
-    fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
-        let about = About {
+impl From<&ImportedClip> for About {
+    fn from(imported: &ImportedClip) -> Self {
+        Self {
             measure: imported.measure.to_string(),
             t_pose_first_row: imported.t_pose_first_row,
             t_pose_dropped: imported.t_pose_dropped,
-        };
+        }
+    }
+}
+
+impl ReadClip {
+    fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
+        let about = About::from(&imported);
         Self {
             motion: Motion::analyze(imported.clip, roles),
             about,

@@ -1,4 +1,4 @@
-use super::{Outcome, Slot, Source, Transition};
+use super::{Outcome, Retargeted, Slot, Source, Transition};
 use crate::blend::{self, RootBlend, WeightLaw};
 use crate::clip::{Contacts, Interpolation, resample, retarget};
 use crate::math::{Decay, Planar};
@@ -6,6 +6,7 @@ use crate::metrics::{Profile, Subject, TransitionMetrics};
 use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
+use crate::skeleton::Retargeting;
 use crate::transition::{Inertialization, Method, TransitionOptions, concatenate};
 use std::sync::Arc;
 
@@ -40,6 +41,8 @@ struct Pair {
     incoming: Arc<Motion>,
     /// What dissolve and metrics know of A and of `incoming`.
     profiles: [Profile; 2],
+    /// How B came onto A's skeleton, where that is not its own.
+    retargeted: Option<Arc<Retargeted>>,
 }
 
 impl Pair {
@@ -68,7 +71,21 @@ impl Pair {
             b: Arc::clone(b),
             incoming,
             profiles,
+            retargeted: (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b))),
         })
+    }
+}
+
+impl Retargeted {
+    /// What happens to `b` on the skeleton of `a`.
+    fn between(a: &Motion, b: &Motion) -> Self {
+        let skeleton = a.clip.skeleton();
+        let way = Retargeting::new(b.clip.skeleton(), &b.roles, skeleton, &a.roles);
+        let joints = skeleton.joints().iter().enumerate();
+        let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
+        Self {
+            unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect(),
+        }
     }
 }
 
@@ -341,6 +358,7 @@ impl BlendInputs {
             motion: Arc::new(motion),
             sources,
             transition: Some(transition),
+            retargeted: pair.retargeted.clone(),
             metrics,
         })
     }

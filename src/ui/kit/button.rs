@@ -67,6 +67,12 @@ impl<'a> Button<'a> {
         self
     }
 
+    /// Outlined, where an icon alone would be taken for a sign.
+    pub(crate) fn outlined(mut self) -> Self {
+        self.tone = Tone::Secondary;
+        self
+    }
+
     /// With an icon before the text.
     pub(crate) fn icon(mut self, icon: Icon) -> Self {
         self.icon = Some(icon);

@@ -3,7 +3,7 @@
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, Vec2, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 /// What a coloured word means. The colour never says it alone: the word does too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,6 +114,31 @@ pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
         let galley = line_of(&[Run::new(part.letter(), Type::SmallStrong, ink)], f32::INFINITY, ui);
         put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
+}
+
+/// A film under way: a red dot and how long it is, `0:07`, left of `right_center`.
+pub(crate) fn recording_ui(name: &str, secs: f64, right_center: Pos2, ui: &mut Ui) -> Rect {
+    let palette = palette_of(ui);
+    let scale = theme_of(ui).scale();
+    let whole = secs.max(0.0) as u64;
+    let time = format!("{}:{:02}", whole / 60, whole % 60);
+    let galley = line_of(&[Run::new(&time, Type::SmallStrong, palette.text)], f32::INFINITY, ui);
+    let height = (24.0 * scale).round();
+    let size = vec2(galley.size().x + 32.0 * scale, height);
+    let rect = Align2::RIGHT_CENTER.anchor_size(right_center, size);
+    let line = Stroke::new(theme_of(ui).hairline(), palette.line);
+    ui.painter()
+        .rect(rect, height / 2.0, palette.panel_raised, line, StrokeKind::Inside);
+    dot(rect.left_center() + vec2(13.0 * scale, 0.0), palette.bad, 4.5 * scale, ui.painter());
+    put(
+        ui.painter(),
+        rect.right_center() - vec2(10.0 * scale, 0.0),
+        Align2::RIGHT_CENTER,
+        galley,
+    );
+    let response = ui.interact(rect, ui.make_persistent_id(("recording", name)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}, {time}")));
+    rect
 }
 
 fn dot(center: Pos2, color: Color32, size: f32, painter: &Painter) {

@@ -48,6 +48,12 @@ pub(crate) enum Icon {
     Info,
     /// Opens downward.
     ChevronDown,
+    /// Folded: opens downward when pressed.
+    ChevronRight,
+    /// A picture of what is seen.
+    Picture,
+    /// A film of what is seen.
+    Record,
     /// To a file.
     Download,
     /// What is this?
@@ -176,6 +182,24 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.disc(8.0, 5.0, 0.9);
         }
         Icon::ChevronDown => pen.stroke(&[(4.0, 6.2), (8.0, 10.2), (12.0, 6.2)]),
+        Icon::ChevronRight => pen.stroke(&[(6.2, 4.0), (10.2, 8.0), (6.2, 12.0)]),
+        Icon::Picture => {
+            pen.closed(&[
+                (2.0, 5.0),
+                (5.0, 5.0),
+                (6.2, 3.2),
+                (9.8, 3.2),
+                (11.0, 5.0),
+                (14.0, 5.0),
+                (14.0, 12.8),
+                (2.0, 12.8),
+            ]);
+            pen.circle(8.0, 8.8, 2.3);
+        }
+        Icon::Record => {
+            pen.circle(8.0, 8.0, 6.0);
+            pen.disc(8.0, 8.0, 3.0);
+        }
         Icon::Download => {
             pen.stroke(&[(8.0, 2.5), (8.0, 10.0)]);
             pen.stroke(&[(4.8, 7.0), (8.0, 10.2), (11.2, 7.0)]);

@@ -31,10 +31,11 @@ mod tabs;
 mod tests;
 mod timeline;
 mod transport;
+mod tree;
 mod words;
 
 pub(crate) use button::{Button, button_ui, icon_button_ui};
-pub(crate) use chip::{Mood, Part};
+pub(crate) use chip::{Mood, Part, recording_ui};
 pub(crate) use clip_row::{ClipRow, clip_row_ui};
 pub(crate) use curves::{Curves, Series};
 pub(crate) use drop_zone::drop_zone_ui;
@@ -44,11 +45,12 @@ pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{Notice, NoticeEvent, caption_ui, progress_row_ui, toasts_ui};
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
-pub(crate) use section::section_header_ui;
+pub(crate) use section::{folded_ui, section_header_ui};
 pub(crate) use segmented::segmented_ui;
 pub(crate) use slider_row::{Mark, SliderRow, Source, slider_row_ui};
 pub(crate) use switch_row::switch_row_ui;
 pub(crate) use tabs::tabs_ui;
 pub(crate) use timeline::{Timeline, TimelineEvent, Track, timeline_ui};
 pub(crate) use transport::{Transport, TransportEvent, transport_ui};
+pub(crate) use tree::{Tree, TreeRow, tree_ui};
 pub(crate) use words::ENGLISH;

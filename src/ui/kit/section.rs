@@ -1,8 +1,9 @@
 //! What divides a panel: headings and hairlines.
 
+use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, put};
 use crate::ui::theme::{Type, palette_of, theme_of};
-use eframe::egui::{Align2, Rect, Ui};
+use eframe::egui::{Align2, CollapsingHeader, Rect, RichText, Ui, vec2};
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at its right end.
 pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
@@ -11,4 +12,21 @@ pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
     let galley = line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
     rect
+}
+
+/// A section that is folded until it is asked for. Whether its content was shown.
+pub(crate) fn folded_ui(title: &str, ui: &mut Ui, content: impl FnOnce(&mut Ui)) -> bool {
+    let words = RichText::new(title)
+        .font(theme_of(ui).font(Type::Strong))
+        .color(palette_of(ui).muted);
+    let header = CollapsingHeader::new(words).id_salt(title).icon(|ui, openness, response| {
+        let sign = if openness < 0.5 { Icon::ChevronRight } else { Icon::ChevronDown };
+        let palette = palette_of(ui);
+        let ink = if response.hovered() { palette.text } else { palette.muted };
+        let side = (14.0 * theme_of(ui).scale()).round();
+        let at = Rect::from_center_size(response.rect.center(), vec2(side, side));
+        paint_icon(sign, at, ink, ui.painter());
+    });
+    let shown = header.show_unindented(ui, content);
+    shown.body_response.is_some()
 }

@@ -1,0 +1,119 @@
+//! Folders that are dropped on the page: eframe knows files only.
+
+use super::files::read;
+use super::page::{listen_first, window};
+use super::words_of;
+use crate::platform::{Inbox, Incoming, MOST_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in};
+use js_sys::{Array, Promise};
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::{JsFuture, spawn_local};
+use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry};
+
+/// From now on, a drop with a folder in it is read here as a whole, folders and files. Any other is left to eframe.
+pub(super) fn watch_folders(inbox: &Inbox) {
+    let inbox = inbox.clone();
+    listen_first(window(), "drop", move |event| {
+        let entries = entries_of(event.unchecked_ref());
+        if !entries.iter().any(FileSystemEntry::is_directory) {
+            return;
+        }
+        event.prevent_default();
+        event.stop_propagation();
+        // eframe has seen the files come and does not see them go: for it, they have left again.
+        let left = event
+            .target()
+            .and_then(|target| Some(target.dispatch_event(DragEvent::new("dragleave").ok()?.as_ref())));
+        if let Some(Err(error)) = left {
+            log::warn!("the drop was not ended: {}", words_of(&error));
+        }
+        let inbox = inbox.clone();
+        spawn_local(async move {
+            for entry in entries {
+                read_entry(entry, &inbox).await;
+            }
+        });
+    });
+}
+
+/// What was dropped. Only within the event: afterwards browsers tell no more of it.
+fn entries_of(event: &DragEvent) -> Vec<FileSystemEntry> {
+    let Some(items) = event.data_transfer().map(|transfer| transfer.items()) else {
+        return Vec::new();
+    };
+    let items = (0..items.length()).filter_map(|index| items.get(index));
+    items.filter_map(|item| item.webkit_get_as_entry().ok().flatten()).collect()
+}
+
+/// Reads a file, or the motion files of a folder in the order of their paths.
+async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
+    let is_folder = entry.is_directory();
+    let name = entry.name();
+    let files = if is_folder {
+        motion_files(entry, inbox).await
+    } else {
+        let path = path_of(&entry);
+        file_of(entry).await.map(|file| vec![(path, file)])
+    };
+    match files {
+        Ok(files) if files.is_empty() => inbox.push(Incoming::Failed {
+            reason: no_motion_in(&name),
+        }),
+        Ok(files) => read(files, inbox.clone()).await,
+        Err(error) => inbox.push(Incoming::Failed {
+            reason: format!("{name} cannot be read: {}.", words_of(&error)),
+        }),
+    }
+}
+
+/// The motion files in and below a folder, with their paths. What can be listed is read up to a number that nobody has by intention.
+async fn motion_files(folder: FileSystemEntry, inbox: &Inbox) -> Result<Vec<(String, File)>, JsValue> {
+    let name = folder.name();
+    let mut files = Vec::new();
+    // What is still to be looked at; the next one last.
+    let mut waiting = vec![folder];
+    while let Some(entry) = waiting.pop() {
+        if entry.is_directory() {
+            let mut children = children_of(entry.unchecked_ref()).await?;
+            children.sort_by_key(FileSystemEntry::name);
+            waiting.extend(children.into_iter().rev());
+        } else if is_motion_file(&entry.name()) {
+            if files.len() == MOST_FILES_OF_FOLDER {
+                inbox.push(Incoming::Failed {
+                    reason: too_many_in(&name),
+                });
+                break;
+            }
+            files.push((path_of(&entry), file_of(entry).await?));
+        }
+    }
+    Ok(files)
+}
+
+/// Everything in a folder. Browsers tell it in parts, an empty one last.
+async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystemEntry>, JsValue> {
+    let reader = folder.create_reader();
+    let mut children = Vec::new();
+    loop {
+        let part = Promise::new(&mut |resolve, reject| {
+            if let Err(error) = reader.read_entries_with_callback_and_callback(&resolve, &reject) {
+                reject.call1(&JsValue::NULL, &error).ok();
+            }
+        });
+        let part: Array = JsFuture::from(part).await?.unchecked_into();
+        if part.length() == 0 {
+            return Ok(children);
+        }
+        children.extend(part.iter().map(|entry| entry.unchecked_into::<FileSystemEntry>()));
+    }
+}
+
+async fn file_of(entry: FileSystemEntry) -> Result<File, JsValue> {
+    let entry: FileSystemFileEntry = entry.unchecked_into();
+    let file = Promise::new(&mut |resolve, reject| entry.file_with_callback_and_callback(&resolve, &reject));
+    Ok(JsFuture::from(file).await?.unchecked_into())
+}
+
+/// `takes/day 1/walk.bvh`.
+fn path_of(entry: &FileSystemEntry) -> String {
+    entry.full_path().trim_start_matches('/').to_owned()
+}

@@ -1,0 +1,308 @@
+//! What was read of a clip, and what may be said of it by hand: in the library under its row, and in the View lab.
+
+use super::kit::{self, Tree, TreeRow};
+use super::out::Out;
+use super::save_rows::save_rows_ui;
+use super::state::{Typing, UiState};
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{RichText, Ui};
+use segue::clip::{UpAxis, ground_speed};
+use segue::formats::ImportOptions;
+use segue::session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, word_of_joint};
+use segue::skeleton::{Channel, Role, Skeleton};
+
+/// The tree of joints scrolls above this height, points.
+const TREE_HEIGHT: f32 = 264.0;
+
+/// The whole panel of one clip.
+pub(crate) fn clip_panel_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    for warning in &entry.warnings {
+        sentence_ui(warning, palette_of(ui).warning, ui);
+    }
+    let Some(motion) = &entry.motion else {
+        let status = text::status(entry);
+        if !status.is_empty() && entry.warnings.is_empty() {
+            sentence_ui(status, palette_of(ui).muted, ui);
+        }
+        return;
+    };
+    facts_ui(entry, motion, ui);
+    if let Origin::File(file) = &entry.origin {
+        ui.add_space(space::XS);
+        overrides_ui(entry, file, motion, state, out, ui);
+    }
+    ui.add_space(space::S);
+    save_rows_ui(&entry.id, state, out, ui);
+    ui.add_space(space::XS);
+    state.joints_open |= kit::folded_ui(text::JOINTS, ui, |ui| joints_ui(motion, session, out, ui));
+    kit::folded_ui(text::BODY_PARTS, ui, |ui| roles_ui(entry, motion, out, ui));
+}
+
+fn sentence_ui(sentence: &str, color: eframe::egui::Color32, ui: &mut Ui) {
+    ui.label(RichText::new(sentence).font(theme_of(ui).font(Type::Small)).color(color));
+}
+
+fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
+    let clip = &motion.clip;
+    let speed = ground_speed(&motion.ground_frames, clip.fps());
+    let facts = [
+        (text::LENGTH, format!("{:.2}", clip.duration_secs()), "s"),
+        (text::FRAMES, clip.frames().to_string(), ""),
+        (text::FRAME_RATE, format_number(clip.fps(), 0.01), "fps"),
+        (text::JOINTS, clip.skeleton().len().to_string(), ""),
+        (text::BODY_HEIGHT, format!("{:.2}", motion.roles.body_height(clip.skeleton())), "m"),
+        (text::MEAN_SPEED, format!("{speed:.2}"), "m/s"),
+    ];
+    for (label, value, unit) in facts {
+        kit::value_row_ui(label, &value, unit, ui);
+    }
+    let muted = palette_of(ui).muted;
+    if let Some(about) = &entry.about {
+        sentence_ui(&text::sentence(&about.measure), muted, ui);
+    }
+    let channels = channels_in_words(clip.skeleton());
+    if !channels.is_empty() {
+        sentence_ui(&channels, muted, ui);
+    }
+}
+
+/// Metres per unit of length that files come in.
+const UNITS: [(f64, &str); 6] = [
+    (1.0, "m"),
+    (0.01, "cm"),
+    (0.001, "mm"),
+    (0.0254, "inch"),
+    (0.3048, "foot"),
+    (segue::formats::CMU_METRES_PER_UNIT, "CMU, 5.64 cm"),
+];
+
+/// Frame rates that files come in.
+const RATES: [(f64, &str); 5] = [(24.0, "24"), (25.0, "25"), (30.0, "30"), (60.0, "60"), (120.0, "120")];
+
+/// What may be said better than it was found.
+fn overrides_ui(entry: &Entry, file: &SourceFile, motion: &Motion, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let options = file.options;
+    let mut reread = |options: ImportOptions| out.commands.push(Command::Reimport(entry.id.clone(), options));
+    let provenance = motion.clip.provenance();
+
+    let known = UNITS
+        .iter()
+        .find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
+    let unit = known.map_or_else(
+        || format!("{} m", format_number(provenance.metres_per_unit, 1e-6)),
+        |(_, name)| (*name).to_owned(),
+    );
+    let found = as_found(&unit, options.metres_per_unit.is_none());
+    let mut choices = vec![(None, found.as_str())];
+    choices.extend(UNITS.map(|(metres, name)| (Some(metres), name)));
+    if let Some(metres_per_unit) = kit::choice_row_ui(text::UNIT, options.metres_per_unit, &choices, ui) {
+        reread(ImportOptions {
+            metres_per_unit,
+            ..options
+        });
+    }
+
+    let axis = |up| if up == UpAxis::Y { "Y" } else { "Z" };
+    let found = as_found(axis(provenance.up), options.up.is_none());
+    let choices = [(None, found.as_str()), (Some(UpAxis::Y), "Y"), (Some(UpAxis::Z), "Z")];
+    if let Some(up) = kit::choice_row_ui(text::UP_AXIS, options.up, &choices, ui) {
+        reread(ImportOptions { up, ..options });
+    }
+
+    if let Some(Rate::Given(fps)) = rate_ui(entry, options.fps, state, ui) {
+        reread(ImportOptions { fps, ..options });
+    }
+
+    if entry.about.as_ref().is_some_and(|about| about.t_pose_first_row)
+        && let Some(drop_t_pose) = kit::switch_row_ui(text::DROP_T_POSE, options.drop_t_pose, ui)
+    {
+        reread(ImportOptions { drop_t_pose, ..options });
+    }
+}
+
+fn as_found(value: &str, is_found: bool) -> String {
+    if is_found {
+        format!("{value}, {}", text::FOUND_WORD)
+    } else {
+        text::AS_FOUND.to_owned()
+    }
+}
+
+/// What is chosen in the list of frame rates.
+#[derive(Clone, Copy, PartialEq)]
+enum Rate {
+    Given(Option<f64>),
+    /// A number is to be typed.
+    Other,
+}
+
+/// The frame rate by hand: what was chosen anew.
+fn rate_ui(entry: &Entry, fps: Option<f64>, state: &mut UiState, ui: &mut Ui) -> Option<Rate> {
+    let typed = fps.filter(|fps| RATES.iter().all(|(rate, _)| rate != fps));
+    let typed_name = typed.map(|fps| format_number(fps, 0.01)).unwrap_or_default();
+    let mut choices = vec![(Rate::Given(None), text::AS_FILE)];
+    choices.extend(RATES.map(|(rate, name)| (Rate::Given(Some(rate)), name)));
+    choices.extend(typed.map(|fps| (Rate::Given(Some(fps)), typed_name.as_str())));
+    choices.push((Rate::Other, text::OTHER));
+    let typing = state.typed_fps.as_mut().filter(|typing| typing.id == entry.id);
+    let chosen = if typing.is_some() { Rate::Other } else { Rate::Given(fps) };
+    let Some(typing) = typing else {
+        let picked = kit::choice_row_ui(text::FRAME_RATE, chosen, &choices, ui);
+        if picked == Some(Rate::Other) {
+            state.typed_fps = Some(Typing {
+                id: entry.id.clone(),
+                text: String::new(),
+            });
+        }
+        return picked;
+    };
+    let field = kit::text_field_ui(text::TYPED_RATE, text::TYPED_RATE, &mut typing.text, ui);
+    if !field.response.has_focus() && !field.committed {
+        field.response.request_focus();
+    }
+    let escaped = ui.input(|input| input.key_pressed(eframe::egui::Key::Escape));
+    if !field.committed && !escaped {
+        return None;
+    }
+    let rate = rate_of(&typing.text);
+    state.typed_fps = None;
+    rate.filter(|_| field.committed).map(|fps| Rate::Given(Some(fps)))
+}
+
+/// The frame rate that was typed, where it is one.
+fn rate_of(text: &str) -> Option<f64> {
+    let number = text.trim().trim_end_matches("fps").trim_end().replace(',', ".");
+    number.parse::<f64>().ok().filter(|fps| (0.1..=10_000.0).contains(fps))
+}
+
+/// The joints, one of them chosen: the one whose curve is plotted, and that is marked on the stage.
+fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let joints = motion.clip.skeleton().joints();
+    let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent).collect();
+    let tree = Tree {
+        label: text::JOINT_TREE,
+        parents: &parents,
+        chosen: joint_of(motion, session.params().text(Key::Joint)),
+        max_height: TREE_HEIGHT * theme_of(ui).scale(),
+    };
+    let row = |joint: usize| TreeRow {
+        name: joints[joint].name.clone(),
+        detail: motion.roles.role_of(joint).map_or("", Role::name).to_owned(),
+        hint: in_words(&joints[joint].channels),
+    };
+    if let Some(joint) = kit::tree_ui(&tree, row, ui) {
+        out.set_once(Key::Joint, Value::Text(word_of_joint(motion, joint).to_owned()));
+    }
+}
+
+fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
+    sentence_ui(text::BODY_PARTS_HELP, palette_of(ui).muted, ui);
+    let joints = motion.clip.skeleton().joints().iter().enumerate();
+    let mut options = vec![(None, text::NOBODY)];
+    options.extend(joints.map(|(index, joint)| (Some(index), joint.name.as_str())));
+    for role in Role::ALL {
+        if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles.get(role), &options, ui) {
+            out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
+        }
+    }
+}
+
+/// `position X Y Z, rotation Z X Y`; empty for a joint without channels.
+fn in_words(channels: &[Channel]) -> String {
+    let letters =
+        |of: fn(Channel) -> Option<&'static str>| channels.iter().filter_map(|&channel| of(channel)).collect::<Vec<_>>().join(" ");
+    let place = letters(|channel| match channel {
+        Channel::XPosition => Some("X"),
+        Channel::YPosition => Some("Y"),
+        Channel::ZPosition => Some("Z"),
+        _ => None,
+    });
+    let turn = letters(|channel| match channel {
+        Channel::XRotation => Some("X"),
+        Channel::YRotation => Some("Y"),
+        Channel::ZRotation => Some("Z"),
+        _ => None,
+    });
+    let parts = [(text::POSITION, place), (text::ROTATION, turn)];
+    let parts = parts.into_iter().filter(|(_, letters)| !letters.is_empty());
+    parts
+        .map(|(what, letters)| format!("{what} {letters}"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// What channels the file has: for the root, and for the other joints, the most common first. Empty where there are none.
+fn channels_in_words(skeleton: &Skeleton) -> String {
+    let Some((root, others)) = skeleton.joints().split_first() else {
+        return String::new();
+    };
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    for words in others
+        .iter()
+        .map(|joint| in_words(&joint.channels))
+        .filter(|words| !words.is_empty())
+    {
+        match kinds.iter_mut().find(|(known, _)| *known == words) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((words, 1)),
+        }
+    }
+    kinds.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let mut sentences = Vec::new();
+    let of_root = in_words(&root.channels);
+    if !of_root.is_empty() {
+        sentences.push(format!("{}: {of_root}.", text::ROOT));
+    }
+    match kinds.as_slice() {
+        [] => {}
+        [(words, _)] => sentences.push(format!("{}: {words}.", text::JOINTS)),
+        [(words, _), rest @ ..] => {
+            let rest: usize = rest.iter().map(|(_, count)| count).sum();
+            sentences.push(format!("{}: {words}; {}.", text::JOINTS, text::others(rest)));
+        }
+    }
+    sentences.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segue::skeleton::Joint;
+
+    #[test]
+    fn channels_are_told_in_words() {
+        use Channel::{XPosition, XRotation, YPosition, YRotation, ZPosition, ZRotation};
+        let joint = |parent, channels: &[Channel]| Joint {
+            name: "j".into(),
+            parent,
+            offset: glam::Vec3::Y,
+            end_site: None,
+            channels: channels.to_vec(),
+        };
+        let all = [XPosition, YPosition, ZPosition, ZRotation, XRotation, YRotation];
+        let mut joints = vec![joint(None, &all)];
+        let skeleton = |joints: &[Joint]| Skeleton::new(joints.to_vec()).unwrap();
+        assert_eq!(channels_in_words(&skeleton(&joints)), "Root: position X Y Z, rotation Z X Y.");
+        joints.extend([joint(Some(0), &all[3..]), joint(Some(1), &[]), joint(Some(1), &all[3..])]);
+        assert_eq!(
+            channels_in_words(&skeleton(&joints)),
+            "Root: position X Y Z, rotation Z X Y. Joints: rotation Z X Y."
+        );
+        joints.push(joint(Some(1), &[XRotation]));
+        assert_eq!(
+            channels_in_words(&skeleton(&joints)),
+            "Root: position X Y Z, rotation Z X Y. Joints: rotation Z X Y; 1 has others."
+        );
+        assert_eq!(channels_in_words(&skeleton(&[joint(None, &[])])), "");
+    }
+
+    #[test]
+    fn a_typed_rate_is_a_number_that_can_be_played() {
+        assert_eq!(
+            [" 119.88 ", "50 fps", "29,97"].map(rate_of),
+            [Some(119.88), Some(50.0), Some(29.97)]
+        );
+        assert_eq!(["", "fast", "0", "-30", "inf", "1e9"].map(rate_of), [None; 6]);
+    }
+}

@@ -1,0 +1,87 @@
+//! Saving a motion as a file: which kind, and how.
+
+use super::kit::{self, Button, Icon};
+use super::out::{Action, Out};
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
+use eframe::egui::{Rect, Ui};
+use segue::formats::bvh::RotationOrder;
+use segue::session::export::ExportFormat;
+
+/// What files are saved in, with its name.
+const UNITS: [(Option<f64>, &str); 3] = [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];
+
+const ORDERS: [(Option<RotationOrder>, &str); 7] = [
+    (None, text::AS_FILE),
+    (Some(RotationOrder::Zxy), "Z X Y"),
+    (Some(RotationOrder::Zyx), "Z Y X"),
+    (Some(RotationOrder::Xyz), "X Y Z"),
+    (Some(RotationOrder::Xzy), "X Z Y"),
+    (Some(RotationOrder::Yxz), "Y X Z"),
+    (Some(RotationOrder::Yzx), "Y Z X"),
+];
+
+const RATES: [(Option<f64>, &str); 4] = [
+    (None, text::AS_IT_IS),
+    (Some(30.0), "30 fps"),
+    (Some(60.0), "60 fps"),
+    (Some(120.0), "120 fps"),
+];
+
+/// One row to save a motion, and its options, folded. `which` is a clip's id, or `result:1` for the second pane.
+pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let theme = theme_of(ui);
+    let rect = kit::paint::full_width((30.0 * theme.scale()).round(), ui);
+    let label = [kit::paint::Run::new(text::SAVE_AS, Type::Label, palette_of(ui).text)];
+    let label = kit::paint::line_of(&label, rect.width() * 0.4, ui);
+    let label = kit::paint::put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, label);
+    let button = theme.row_height();
+    let formats = ExportFormat::ALL.map(|format| (format, text::format(format)));
+    let well = Rect::from_min_max(
+        pos2(label.right() + space::M, rect.top()),
+        pos2(rect.right() - button - space::S, rect.bottom()),
+    );
+    ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(well), |ui| {
+        if let Some(format) = kit::segmented_ui(text::FILE_FORMAT, state.export.format, &formats, ui) {
+            state.export.format = format;
+        }
+    });
+    let place = Rect::from_min_size(pos2(rect.right() - button, rect.top() + 1.0), vec2(button, button));
+    let builder = UiBuilder::new()
+        .id_salt("save")
+        .max_rect(place)
+        .layout(Layout::right_to_left(Align::Center));
+    let save = Button::icon_only(Icon::Download, text::SAVE).outlined();
+    if ui.scope_builder(builder, |ui| kit::button_ui(save, ui)).inner.clicked() {
+        out.actions.push(Action::Save {
+            which: which.to_owned(),
+            how: state.export,
+        });
+    }
+    let export = &mut state.export;
+    match export.format {
+        ExportFormat::Csv => {}
+        ExportFormat::Glb => {
+            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| rate_ui(&mut export.fps, ui));
+        }
+        ExportFormat::Bvh => {
+            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {
+                if let Some(unit) = kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui) {
+                    export.metres_per_unit = unit;
+                }
+                if let Some(order) = kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui) {
+                    export.rotation_order = order;
+                }
+                rate_ui(&mut export.fps, ui);
+            });
+        }
+    }
+}
+
+fn rate_ui(fps: &mut Option<f64>, ui: &mut Ui) {
+    if let Some(rate) = kit::choice_row_ui(text::FRAME_RATE, *fps, &RATES, ui) {
+        *fps = rate;
+    }
+}

@@ -1,0 +1,338 @@
+//! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
+
+use super::*;
+use crate::ui::theme::Theme;
+use eframe::egui::{Key as Keyboard, Rect, Shape, Vec2, vec2};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
+use segue::formats::FileKind;
+use segue::session::export::{ExportFormat, export};
+use segue::session::reading::Content;
+use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+const DESK: Vec2 = vec2(1440.0, 900.0);
+const PHONE: Vec2 = vec2(390.0, 844.0);
+const DARK: Theme = Theme {
+    dark: true,
+    projector: false,
+};
+const LIGHT: Theme = Theme {
+    dark: false,
+    projector: false,
+};
+
+/// A page without a renderer.
+struct Page {
+    session: Session,
+    state: UiState,
+    curves: CurveCache,
+    out: Out,
+    /// Commands are carried out, as the app does; otherwise they are only kept.
+    obeys: bool,
+}
+
+fn page(link: &str) -> Page {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    Page {
+        session,
+        state: UiState::default(),
+        curves: CurveCache::default(),
+        out: Out::default(),
+        obeys: true,
+    }
+}
+
+fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
+    let builder = Harness::builder()
+        .with_size(size)
+        .with_max_steps(60)
+        .with_context_setup(move |ctx| {
+            theme.install(ctx);
+            kit::ENGLISH.install(ctx);
+        });
+    let mut harness = builder.build_ui_state(
+        |ui, page: &mut Page| {
+            let mut paint = |stage: Rect, _: &[(usize, Rect)], ui: &mut Ui| {
+                let colors = &palette_of(ui).stage;
+                ui.painter()
+                    .add(Shape::gradient_rect(stage, egui::Direction::TopDown, [colors.sky, colors.horizon]));
+            };
+            let whole = egui::UiBuilder::new().max_rect(ui.ctx().content_rect());
+            let Page {
+                session, state, curves, ..
+            } = page;
+            let out = ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
+            for command in &out.commands {
+                if page.obeys {
+                    page.session.apply(command.clone()).unwrap();
+                }
+            }
+            page.out.commands.extend(out.commands);
+            page.out.actions.extend(out.actions);
+        },
+        page,
+    );
+    harness.run();
+    harness
+}
+
+/// Brings something into sight and presses it.
+fn press(label: &str, harness: &mut Harness<'_, Page>) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run();
+    harness.get_by_label(label).click();
+    harness.run();
+}
+
+/// Writes a picture where pictures were asked for. They are to be looked at, not compared: rasterisers differ.
+fn picture(name: &str, harness: &mut Harness<'_, Page>) {
+    if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
+        let image = harness.render().expect("a rasteriser");
+        image
+            .save(std::path::Path::new(&folder).join(format!("{name}.png")))
+            .expect("a folder that can be written to");
+    }
+}
+
+/// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
+fn file(session: &Session) -> String {
+    let motion = session.library().find("walk").and_then(|entry| entry.motion.clone()).unwrap();
+    let text = String::from_utf8(export(&motion, &[], &Default::default()).unwrap()).unwrap();
+    let (head, rows) = text.split_once("MOTION\n").unwrap();
+    let frames = motion.clip.frames();
+    let root_end = head
+        .match_indices('\n')
+        .filter(|(at, _)| head[..*at].contains("CHANNELS"))
+        .map(|(at, _)| at)
+        .next()
+        .unwrap();
+    let tail = "\n  JOINT Tail\n  {\n    OFFSET 0 0 -20\n    CHANNELS 0\n    End Site\n    {\n      OFFSET 0 0 -20\n    }\n  }";
+    let (time, rows) = rows
+        .split_once("Frame Time")
+        .map(|(_, rest)| rest.split_once('\n').unwrap())
+        .unwrap();
+    let columns = rows.lines().next().unwrap().split_whitespace().count();
+    let mut first: Vec<&str> = rows.lines().next().unwrap().split_whitespace().take(3).collect();
+    first.resize(columns, "0");
+    let mut out = format!("{}{tail}{}MOTION\n", &head[..root_end], &head[root_end..]);
+    write!(out, "Frames: {}\nFrame Time{time}\n{}\n{rows}", frames + 1, first.join(" ")).unwrap();
+    out
+}
+
+/// A page with that file as A.
+fn with_file(link: &str) -> Page {
+    let mut page = page(link);
+    page.session.make_all();
+    let text = file(&page.session);
+    page.session.load("takes/tailed.bvh", Arc::from(text.into_bytes())).unwrap();
+    while page.session.work() {}
+    page.session
+        .apply(Command::Dismiss(page.session.notices().list().last().map_or(0, |n| n.id)))
+        .unwrap();
+    page.out = Out::default();
+    page
+}
+
+fn loaded(page: &Page) -> &Entry {
+    let mut entries = page.session.library().entries().iter();
+    entries.find(|entry| matches!(entry.origin, Origin::File(_))).unwrap()
+}
+
+fn outcome(page: &Page) -> &Outcome {
+    page.session.main_outcome().unwrap()
+}
+
+#[test]
+fn the_clip_panel_tells_what_was_read() {
+    let page = with_file("lab=view&play=off");
+    let entry = loaded(&page);
+    assert!(entry.about.as_ref().unwrap().t_pose_first_row, "{:?}", entry.about);
+    let joints = entry.motion.as_ref().unwrap().clip.skeleton().len();
+    for (name, size, theme) in [
+        ("view-desk-dark", DESK, DARK),
+        ("view-desk-light", DESK, LIGHT),
+        ("view-phone-dark", PHONE, DARK),
+        ("view-phone-light", PHONE, LIGHT),
+    ] {
+        let mut harness = harness(size, theme, with_file("lab=view&play=off"));
+        for label in ["Unit", "Up axis", "Leave out the T-pose", "File format", "Body parts"] {
+            if label != "File format" {
+                harness.get_by_label(label);
+            }
+        }
+        harness.get_by_label(&format!("Joints: {joints} "));
+        harness.get_by_label_contains("Root: position X Y Z");
+        harness.get_by_label_contains("read as centimetres");
+        press("Joints", &mut harness);
+        assert!(harness.state().state.joints_open);
+        harness.get_by_label("Joints").scroll_to_me();
+        harness.run();
+        picture(name, &mut harness);
+    }
+}
+
+#[test]
+fn what_is_said_by_hand_reads_the_file_again() {
+    let mut page = with_file("lab=view&play=off");
+    page.obeys = false;
+    let options = match &loaded(&page).origin {
+        Origin::File(file) => file.options,
+        _ => unreachable!(),
+    };
+    let mut harness = harness(DESK, DARK, page);
+    let mut choose = |row: &str, item: &str| {
+        press(row, &mut harness);
+        press(item, &mut harness);
+        match harness.state_mut().out.commands.pop() {
+            Some(Command::Reimport(_, options)) => options,
+            other => panic!("{row}: {other:?}"),
+        }
+    };
+    assert_eq!(choose("Unit", "inch").metres_per_unit, Some(0.0254));
+    assert_eq!(choose("Up axis", "Z").up, Some(segue::clip::UpAxis::Z));
+    assert_eq!(choose("Frame rate", "25").fps, Some(25.0));
+    assert!(!options.drop_t_pose || options == Default::default());
+    press("Leave out the T-pose", &mut harness);
+    let command = harness.state_mut().out.commands.pop();
+    assert!(
+        matches!(command, Some(Command::Reimport(_, options)) if !options.drop_t_pose),
+        "{command:?}"
+    );
+    // A rate that is in no list is typed.
+    press("Frame rate", &mut harness);
+    press("other…", &mut harness);
+    harness.get_by_label("Frames per second").type_text("50");
+    harness.run();
+    harness.key_press(Keyboard::Enter);
+    harness.run();
+    let command = harness.state_mut().out.commands.pop();
+    assert!(
+        matches!(command, Some(Command::Reimport(_, options)) if options.fps == Some(50.0)),
+        "{command:?}"
+    );
+}
+
+#[test]
+fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
+    let mut harness = harness(DESK, DARK, with_file("lab=view&play=off&joint=tail"));
+    press("Joints", &mut harness);
+    let chosen = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Joint).to_owned();
+    let tail = harness.get_by_label("Tail");
+    assert_eq!(tail.accesskit_node().is_selected(), Some(true));
+    tail.focus();
+    harness.run();
+    harness.key_press(Keyboard::ArrowUp);
+    harness.run();
+    assert_eq!(chosen(&harness), "hips");
+    harness.key_press(Keyboard::ArrowLeft);
+    harness.run();
+    assert!(harness.query_by_label("Tail").is_none(), "folded");
+    harness.key_press(Keyboard::ArrowRight);
+    harness.run();
+    harness.key_press(Keyboard::ArrowRight);
+    harness.run();
+    assert_eq!(chosen(&harness), "Tail");
+    // The last joint is brought into sight, and keeps the keyboard.
+    harness.key_press(Keyboard::End);
+    harness.run();
+    let last = chosen(&harness);
+    assert_ne!(last, "Tail");
+    harness.key_press(Keyboard::ArrowUp);
+    harness.run();
+    assert_ne!(chosen(&harness), last);
+    let commands = &harness.state().out.commands;
+    assert!(
+        commands.contains(&Command::Set(vec![(Key::Joint, Value::Text("Tail".into()))])),
+        "{commands:?}"
+    );
+    picture("tree-desk-dark", &mut harness);
+}
+
+#[test]
+fn the_library_opens_the_same_panel_under_the_row() {
+    for (name, size, theme) in [("details-desk-dark", DESK, DARK), ("details-phone-light", PHONE, LIGHT)] {
+        let mut page = with_file("lab=blend&play=off");
+        page.state.details = Some(loaded(&page).id.clone());
+        page.state.library_open = true;
+        let mut harness = harness(size, theme, page);
+        harness.get_by_label("Up axis");
+        press("Joints", &mut harness);
+        assert!(harness.state().state.joints_open);
+        picture(name, &mut harness);
+    }
+}
+
+#[test]
+fn a_motion_is_saved_as_it_is_wanted() {
+    let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
+    harness.state_mut().state.filming = Filming {
+        pictures: true,
+        films: true,
+        secs: Some(67.4),
+    };
+    press("Result", &mut harness);
+    press("15 frames", &mut harness);
+    press("File options", &mut harness);
+    press("Rotation order", &mut harness);
+    press("X Y Z", &mut harness);
+    picture("save-desk-dark", &mut harness);
+    press("Save the file", &mut harness);
+    press("GLB", &mut harness);
+    press("Save the file", &mut harness);
+    harness.get_by_label("End the recording and save it").click();
+    press("Save the stage as a picture", &mut harness);
+    harness.get_by_label("Recording, 1:07");
+    let actions = &harness.state().out.actions;
+    let [Action::Save { which, how }, Action::Save { how: glb, .. }, rest @ ..] = actions.as_slice() else {
+        panic!("{actions:?}")
+    };
+    assert_eq!((which.as_str(), how.format), ("result:1", ExportFormat::Bvh));
+    assert_eq!(how.rotation_order, Some(segue::formats::bvh::RotationOrder::Xyz));
+    assert_eq!(glb.format, ExportFormat::Glb);
+    assert!(rest.contains(&Action::Record) && rest.contains(&Action::SavePicture));
+}
+
+#[test]
+fn a_blend_of_two_skeletons_says_what_was_not_matched() {
+    let page = with_file("lab=blend&b=run&play=off");
+    assert_eq!(outcome(&page).retargeted.as_ref().unwrap().unmatched, ["Tail"]);
+    for (name, size, theme) in [("retarget-desk-light", DESK, LIGHT), ("retarget-phone-dark", PHONE, DARK)] {
+        let mut harness = harness(size, theme, with_file("lab=blend&b=run&play=off"));
+        harness.get_by_label("B's motion is moved onto A's skeleton; not matched: Tail.");
+        picture(name, &mut harness);
+    }
+    assert!(outcome(&self::page("lab=blend&play=off")).retargeted.is_none());
+}
+
+#[test]
+fn a_clip_without_a_motion_says_why() {
+    let mut page = page("lab=blend&play=off");
+    let text = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n";
+    page.session.load("alone.amc", Arc::from(text.as_bytes())).unwrap();
+    let entry = loaded(&page);
+    assert_eq!(text::status(entry), text::AWAITS_SKELETON);
+    let large = SourceFile {
+        name: "large.bvh".into(),
+        sha256: String::new(),
+        content: Content::Outside("1".into()),
+        size: 9 << 20,
+        kind: FileKind::Bvh,
+        companion: None,
+        index: 0,
+        options: Default::default(),
+    };
+    let being_read = Entry {
+        origin: Origin::File(large),
+        ..entry.clone()
+    };
+    assert_eq!(text::status(&being_read), text::READING);
+    let mut harness = harness(DESK, DARK, page);
+    harness.get_by_label_contains("alone, waits for its skeleton");
+    picture("waits-desk-dark", &mut harness);
+}
