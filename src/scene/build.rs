@@ -77,7 +77,7 @@ impl Director {
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
                     && let Some(&at) = world.positions.get(joint)
                 {
-                    add_mark(at, colors.result, pane);
+                    add_mark(at, colors.result, look.edge, pane);
                 }
             }
         }
@@ -322,8 +322,8 @@ fn add_joint_trail(motion: &Motion, joint: usize, now: f64, color: Color, pane: 
     pane.add_path(points, 1.75, Layer::Space);
 }
 
-/// A dot in a ring over everything, turned to the camera.
-fn add_mark(at: Vec3, color: Color, pane: &mut Pane) {
+/// A dot in a ring over everything, turned to the camera, both with an edge that sets them off from the body.
+fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     const CORNERS: u16 = 28;
     let [right, up, _] = pane.camera.axes();
     let seen_from = match pane.camera.lens {
@@ -331,13 +331,15 @@ fn add_mark(at: Vec3, color: Color, pane: &mut Pane) {
         Lens::Orthographic => pane.camera.distance,
     };
     let radius = MARK_RADIUS * seen_from;
-    // The dot is a line so short that only its round ends are seen.
-    pane.add_line(at, at + right * (radius * 1e-3), color, 5.0, Layer::Over);
     let corner = |index: u16| {
         let angle = std::f32::consts::TAU * f32::from(index) / f32::from(CORNERS);
-        (at + (right * angle.cos() + up * angle.sin()) * radius, color)
+        at + (right * angle.cos() + up * angle.sin()) * radius
     };
-    pane.add_path((0..=CORNERS).map(corner), 1.75, Layer::Over);
+    for (color, wider) in [(edge, 1.5), (color, 0.0)] {
+        // The dot is a line so short that only its round ends are seen.
+        pane.add_line(at, at + right * (radius * 1e-3), color, 4.5 + wider, Layer::Over);
+        pane.add_path((0..=CORNERS).map(|index| (corner(index), color)), 2.0 + wider, Layer::Over);
+    }
 }
 
 fn add_bones(skeleton: &Skeleton, world: &WorldPose, color: Color, pane: &mut Pane) {

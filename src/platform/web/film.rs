@@ -7,7 +7,7 @@ use super::words_of;
 use crate::app::api::file_name;
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
-use js_sys::{Array, Promise, Reflect};
+use js_sys::{Array, Error, Promise, Reflect};
 use std::cell::OnceCell;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -136,6 +136,10 @@ impl Film {
         }
         let options = BlobPropertyBag::new();
         options.set_type(&self.recorder.mime_type());
-        Blob::new_with_blob_sequence_and_options(&self.parts, &options)
+        let film = Blob::new_with_blob_sequence_and_options(&self.parts, &options)?;
+        if film.size() == 0.0 {
+            return Err(Error::new("nothing was drawn meanwhile").into());
+        }
+        Ok(film)
     }
 }

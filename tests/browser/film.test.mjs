@@ -1,0 +1,39 @@
+// A video of the page: begun and ended by the API.
+
+import assert from "node:assert/strict";
+import { setTimeout as pause } from "node:timers/promises";
+import { onBothBackends } from "./harness.mjs";
+import { until } from "./help.mjs";
+
+/** A video that can be played, with something to be seen in it; none where the machine drew nothing in that time. */
+async function film(page, segue) {
+  await segue("record");
+  await assert.rejects(segue("record"), /a recording is under way/);
+  const { frames } = await segue("stats");
+  await until("frames are drawn", async () => (await segue("stats")).frames > frames + 5);
+  await pause(1500);
+  return page.evaluate(async () => {
+    let blob;
+    try {
+      blob = await window.segue.stopRecording();
+    } catch (error) {
+      if (/nothing was drawn/.test(error.message)) return undefined;
+      throw error;
+    }
+    const video = Object.assign(document.createElement("video"), { muted: true, src: URL.createObjectURL(blob) });
+    await new Promise((resolve, reject) => Object.assign(video, { onloadeddata: resolve, onerror: () => reject(new Error(video.error.message)) }));
+    return { type: blob.type, size: blob.size, width: video.videoWidth, height: video.videoHeight };
+  });
+}
+
+// Fails when nothing is recorded, when it is no video, and when a recording that was ended goes on.
+onBothBackends("a recording is a video of the page", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&play=on", { viewport: [640, 480] });
+  await segue("set", {});
+  await assert.rejects(segue("stopRecording"), /no recording is under way/);
+  const made = await until("there is a video", () => film(page, segue), 60_000);
+  assert.match(made.type, /^video\/(webm|mp4)/);
+  assert.ok(made.size > 2000, `${made.size} bytes`);
+  assert.deepEqual([made.width, made.height], [640, 480]);
+  await assert.rejects(segue("stopRecording"), /no recording is under way/);
+});
