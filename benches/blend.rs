@@ -136,6 +136,7 @@ fn measuring(c: &mut Criterion) {
             result: &out.clip,
             start,
             end,
+            handover: out.handover,
             enter: 500,
             a: &a,
             b: &b,

@@ -21,3 +21,4 @@ pub mod scene;
 pub mod session;
 pub mod skeleton;
 pub mod synth;
+pub mod transition;

@@ -13,7 +13,7 @@ const LIBRARY: [(&str, &str); 14] = [
     ("formats", "math skeleton clip"),
     ("synth", "math skeleton clip"),
     ("registration", "math skeleton clip"),
-    ("transition", "math skeleton clip"),
+    ("transition", "math skeleton clip registration blend"),
     ("blend", "math skeleton clip registration"),
     ("metrics", "math skeleton clip blend"),
     ("graph", MOTION),

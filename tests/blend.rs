@@ -52,6 +52,7 @@ fn every_pair_of_made_motions_has_a_clean_transition() {
                     result: &out.clip,
                     start,
                     end,
+                    handover: out.handover,
                     enter: found.enter,
                     a,
                     b,

@@ -1,10 +1,10 @@
-use super::{BlendError, WeightLaw, align_onto};
-use crate::clip::{Clip, JointTranslations, character_frames, motion_root};
+use super::assembly::{Assembly, moving_joints, translation_of};
+use super::{BlendError, Concatenation, WeightLaw, align_onto};
+use crate::clip::{Clip, character_frames, motion_root};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::limb_weights;
-use crate::skeleton::{Roles, Skeleton, WorldPose, world_pose_into};
+use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::{DVec2, Quat, Vec3};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// How the way over the ground is blended.
@@ -100,24 +100,6 @@ impl Source {
     }
 }
 
-/// What comes out of a dissolve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dissolve {
-    /// A up to the window, the window, B from its end on; B's part lies in A's world.
-    pub clip: Clip,
-    /// The window's frames in the result; empty for a cut, whose first frame of B is `transition.start`.
-    pub transition: Range<usize>,
-    /// Where B was laid on A for the window: `result_world_from_b_world`. The identity when B is not laid on A.
-    pub aligned_b: Planar,
-    /// Where B lies in every frame of the window. The same everywhere when roots are blended in the world; with blended velocities B
-    /// drifts from lying on A's place to [`world_from_b`](Self::world_from_b).
-    pub b_during: Vec<Planar>,
-    /// Where B lies from the end of the window on.
-    pub world_from_b: Planar,
-    /// Where the character stands and faces in every frame of the result, as it was blended (`world_from_character`).
-    pub frames: Vec<Planar>,
-}
-
 /// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of `options.window` overlapped frames.
 ///
 /// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window is all A, its last frame is all B (Kovar,
@@ -129,14 +111,13 @@ pub struct Dissolve {
 /// # Errors
 /// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), or a window crosses the end of
 /// its clip.
-pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &DissolveOptions) -> Result<Dissolve, BlendError> {
+pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &DissolveOptions) -> Result<Concatenation, BlendError> {
     let window = if options.window < 2 { 0 } else { options.window };
     check(a, leave, b, enter, window)?;
     // A cut right behind A's last frame is aligned by that frame.
     let meets = leave.min(a.clip.frames().saturating_sub(1));
     let aligned_b = if options.align {
-        let facing = a.frames[meets].yaw - b.frames[enter].yaw;
-        align_onto(&a.clip, meets, &b.clip, enter, window.max(1), &a.weights, facing)?.transform
+        laid_on(a, meets, b, enter, window)?
     } else {
         Planar::IDENTITY
     };
@@ -177,9 +158,10 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     let mut frames = a.frames[..leave].to_vec();
     frames.extend(frames_during);
     frames.extend(b.frames[enter + window..].iter().map(|frame| world_from_b.after(frame)));
-    Ok(Dissolve {
+    Ok(Concatenation {
         clip,
         transition: leave..leave + window,
+        handover: leave + window / 2,
         aligned_b,
         b_during,
         world_from_b,
@@ -187,7 +169,14 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     })
 }
 
-fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: usize) -> Result<(), BlendError> {
+/// Where B lies when its window lies best on A's: `a_world_from_b_world`.
+pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, window: usize) -> Result<Planar, BlendError> {
+    let facing = a.frames[frame_a].yaw - b.frames[frame_b].yaw;
+    Ok(align_onto(&a.clip, frame_a, &b.clip, frame_b, window.max(1), &a.weights, facing)?.transform)
+}
+
+/// Whether the clips can follow each other with this overlap.
+pub(crate) fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: usize) -> Result<(), BlendError> {
     let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
     if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
         return Err(BlendError::Skeletons {
@@ -307,77 +296,36 @@ impl Blend<'_> {
 
     fn clip(&self, placing: &Placing<'_>, world_from_b: &Planar) -> Result<Clip, BlendError> {
         let (a, b) = (&self.a.clip, &self.b.clip);
-        let skeleton = a.skeleton();
-        let joints = skeleton.len();
         let after = self.enter + self.window;
-        let frames = self.leave + self.window + (b.frames() - after);
-        let mut rotations = Vec::with_capacity(frames * joints);
-        let mut roots = Vec::with_capacity(frames);
-        for frame in 0..self.leave {
-            rotations.extend_from_slice(a.rotations(frame));
-        }
-        roots.extend_from_slice(&a.root_translations()[..self.leave]);
-        let translations = self.translations();
-        let mut world = WorldPose::default();
+        let mut made = Assembly::new(a, b, self.leave + self.window + (b.frames() - after));
+        made.play(a, 0..self.leave);
+        let moving = moving_joints(a, b);
+        let carrier = common_carrier(self.a, self.b);
+        let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
         for p in 0..self.window {
-            let (weight, mut translation, rotation) = self.root(p, placing);
-            let first = rotations.len();
+            let (fa, fb) = (self.leave + p, self.enter + p);
+            let (weight, translation, rotation) = self.root(p, placing);
+            rotations.clear();
             rotations.push(rotation);
-            let (from, to) = (a.rotations(self.leave + p), b.rotations(self.enter + p));
-            rotations.extend(from.iter().zip(to).skip(1).map(|(&a, &b)| quat::slerp(b, a, weight)));
-            if let Placing::Character(frames) = placing {
-                // Where the root stands still and a joint below it carries the character, that joint is to be where the character is: the root
-                // is then a long lever, and blended angles alone would swing it.
-                let carrier = self.a.motion_root;
-                if carrier != 0 && carrier == self.b.motion_root {
-                    let moved = translations.iter().map(|track| (track.joint, track.values[self.leave + p]));
-                    world_pose_into(skeleton, translation, &rotations[first..], moved, &mut world);
-                    let off = frames[p].origin() - world.positions[carrier];
-                    translation += Vec3::new(off.x, 0.0, off.z);
-                }
-            }
-            roots.push(translation);
+            let both = a.rotations(fa).iter().zip(b.rotations(fb)).skip(1);
+            rotations.extend(both.map(|(&a, &b)| quat::slerp(b, a, weight)));
+            translations.clear();
+            let between = |&joint: &usize| translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight);
+            translations.extend(moving.iter().map(between));
+            let carried = match placing {
+                Placing::Character(frames) => carrier.map(|joint| (joint, frames[p])),
+                Placing::World(_) => None,
+            };
+            made.push(translation, &rotations, &translations, carried, &mut world);
         }
-        let turn = world_from_b.rotation();
-        for frame in after..b.frames() {
-            let local = b.rotations(frame);
-            rotations.extend(local.first().map(|&root| quat::renormalize(turn * root)));
-            rotations.extend_from_slice(&local[1..]);
-        }
-        roots.extend(b.root_translations()[after..].iter().map(|&p| world_from_b.apply(p)));
-        let name = format!("{} → {}", a.name(), b.name());
-        let clip = Clip::new(name, Arc::clone(skeleton), a.fps(), rotations, roots)?;
-        Ok(clip.with_translations(translations)?.with_provenance(a.provenance()))
+        made.play_moved(b, after..b.frames(), world_from_b);
+        Ok(made.finish(format!("{} → {}", a.name(), b.name()))?)
     }
+}
 
-    /// Translations of every joint that moves against its parent in either clip; it rests in the other.
-    fn translations(&self) -> Vec<JointTranslations> {
-        let (a, b) = (&self.a.clip, &self.b.clip);
-        let mut joints: Vec<usize> = a.translations().iter().chain(b.translations()).map(|track| track.joint).collect();
-        joints.sort_unstable();
-        joints.dedup();
-        let of = |clip: &Clip, joint: usize| {
-            let rest = clip.skeleton().joints()[joint].offset;
-            let track = clip.translations().iter().position(|track| track.joint == joint);
-            (track, rest)
-        };
-        let at =
-            |clip: &Clip, (track, rest): (Option<usize>, Vec3), frame: usize| track.map_or(rest, |t| clip.translations()[t].values[frame]);
-        let blended = |joint: usize| {
-            let (in_a, in_b) = (of(a, joint), of(b, joint));
-            let before = (0..self.leave).map(|frame| at(a, in_a, frame));
-            let during = (0..self.window).map(|p| {
-                let weight = self.weight(p as f64) as f32;
-                at(b, in_b, self.enter + p).lerp(at(a, in_a, self.leave + p), weight)
-            });
-            let after = (self.enter + self.window..b.frames()).map(|frame| at(b, in_b, frame));
-            JointTranslations {
-                joint,
-                values: before.chain(during).chain(after).collect(),
-            }
-        };
-        joints.into_iter().map(blended).collect()
-    }
+/// The joint below the root that carries the character in both clips.
+pub(crate) fn common_carrier(a: &Source, b: &Source) -> Option<usize> {
+    Some(a.motion_root).filter(|&joint| joint != 0 && joint == b.motion_root)
 }
 
 /// `weight` of `a`, the rest of `b`; the turn goes the shorter way.

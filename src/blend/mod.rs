@@ -25,16 +25,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assembly;
+mod concatenation;
 mod dissolve;
 mod place;
 mod weight;
 
-pub use dissolve::{Dissolve, DissolveOptions, RootBlend, Source, dissolve};
+pub(crate) use assembly::{Assembly, moving_joints, translation_of};
+pub use concatenation::Concatenation;
+pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
+pub(crate) use dissolve::{check, common_carrier, laid_on};
 pub use place::{align_facing, align_onto};
 pub use weight::WeightLaw;
 
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
+
+/// The longest time that a transition may be asked to take, seconds.
+pub(crate) const MOST_SECS: f64 = 60.0;
 
 /// Why two clips cannot be blended.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -69,6 +77,14 @@ pub enum BlendError {
         at: usize,
         /// Frames of the window.
         window: usize,
+    },
+    /// A time that is none.
+    #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]
+    Time {
+        /// Which time.
+        what: &'static str,
+        /// The number given.
+        secs: f64,
     },
     /// The windows cannot be laid on each other.
     #[error(transparent)]

@@ -97,17 +97,15 @@ impl Contacts {
         Self { planted }
     }
 
-    /// The contacts of a result that plays `outgoing` up to frame `leave`, then `window` overlapped frames, then `incoming`, which is entered at its
-    /// frame `enter`. In the window the first half of the frames has the contacts of the outgoing clip, the second those of the incoming one: the
-    /// clip that has the greater weight.
+    /// The contacts of a result that plays `outgoing`, goes over at frame `leave` to `incoming`, which is entered at its frame `enter`, and has the
+    /// greater part of `incoming` from its frame `handover` on: before it the contacts are those of the outgoing clip.
     #[must_use]
-    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, window: usize) -> Self {
-        let from_incoming = leave + window / 2;
-        let frames = (leave + incoming.frames()).saturating_sub(enter).max(from_incoming);
+    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, handover: usize) -> Self {
+        let frames = (leave + incoming.frames()).saturating_sub(enter).max(handover);
         let planted = Side::BOTH.map(|side| {
             (0..frames)
                 .map(|frame| {
-                    if frame < from_incoming {
+                    if frame < handover {
                         outgoing.planted(side, frame)
                     } else {
                         incoming.planted(side, (frame + enter).saturating_sub(leave))
@@ -128,6 +126,25 @@ impl Contacts {
     #[must_use]
     pub fn planted(&self, side: Side, frame: usize) -> bool {
         self.planted[side.index()].get(frame).copied().unwrap_or(false)
+    }
+
+    /// Where the foot of `side` is between one touchdown and the next in `frame`: 0 at a touchdown, towards 1 before the next. Before the first and behind
+    /// the last touchdown the rhythm of the nearest stride goes on. `None` for a foot with fewer than two touchdowns.
+    #[must_use]
+    pub fn phase(&self, side: Side, frame: usize) -> Option<f32> {
+        // A foot that stands when the clip begins came down at some time before.
+        let touchdowns: Vec<usize> = self
+            .intervals(side)
+            .into_iter()
+            .map(|stance| stance.start)
+            .filter(|&at| at > 0)
+            .collect();
+        let next = touchdowns
+            .partition_point(|&at| at <= frame)
+            .clamp(1, touchdowns.len().saturating_sub(1).max(1));
+        let (from, to) = (*touchdowns.get(next - 1)?, *touchdowns.get(next)?);
+        let phase = (frame as f32 - from as f32) / (to - from) as f32;
+        Some(phase.rem_euclid(1.0))
     }
 
     /// The frames during which the foot of `side` is on the ground, as ranges in order of time.

@@ -19,7 +19,12 @@ pub fn shorter_way(q: Quat) -> Quat {
 /// Exact near the identity, where `acos(w)` loses half of the digits.
 #[must_use]
 pub fn log(q: Quat) -> Vec3 {
-    let q = shorter_way(q);
+    log_as_given(shorter_way(q))
+}
+
+/// The rotation vector of a unit quaternion by the way that its sign stands for: at most 2π long, and continuous as long as the quaternion is.
+#[must_use]
+pub fn log_as_given(q: Quat) -> Vec3 {
     let v = Vec3::new(q.x, q.y, q.z);
     let sine = v.length();
     if sine < 1e-9 {
@@ -62,6 +67,38 @@ pub fn angular_velocity(from: Quat, to: Quat, dt_secs: f32) -> Vec3 {
     log(to * from.conjugate()) / dt_secs
 }
 
+/// The angular velocity of `exp(x(t))` where `x` changes at the rate `rate`: the left Jacobian of the rotation group applied to it.
+///
+/// `J = I + (1 - cos θ)/θ² [x]ₓ + (θ - sin θ)/θ³ [x]ₓ²` (Solà, Deray, Atchuthan, "A micro Lie theory", 2018, eq. 145). Only for small `x`
+/// are rate and angular velocity the same.
+#[must_use]
+pub fn rate_to_angular_velocity(x: Vec3, rate: Vec3) -> Vec3 {
+    let angle = x.length();
+    let (first, second) = if angle < 1e-2 {
+        (0.5 - angle * angle / 24.0, 1.0 / 6.0 - angle * angle / 120.0)
+    } else {
+        ((1.0 - angle.cos()) / (angle * angle), (angle - angle.sin()) / angle.powi(3))
+    };
+    let across = x.cross(rate);
+    rate + across * first + x.cross(across) * second
+}
+
+/// The rate at which `x` changes when `exp(x(t))` has this angular velocity: what [`rate_to_angular_velocity`] undoes (ibid., eq. 146).
+///
+/// The map has no inverse at a whole turn; beyond 6 radians its value at 6 is taken.
+#[must_use]
+pub fn vector_rate(x: Vec3, angular_velocity: Vec3) -> Vec3 {
+    let angle = x.length();
+    let second = if angle < 1e-2 {
+        1.0 / 12.0 + angle * angle / 720.0
+    } else {
+        let held = angle.min(6.0);
+        (1.0 / held - 0.5 / (0.5 * held).tan()) / held
+    };
+    let across = x.cross(angular_velocity);
+    angular_velocity - across * 0.5 + x.cross(across) * second
+}
+
 /// `q` scaled back to unit length after a chain of products; the identity when there is no direction left in it.
 #[must_use]
 pub fn renormalize(q: Quat) -> Quat {
@@ -93,6 +130,19 @@ mod tests {
             let v = Vec3::new(x, y, z);
             prop_assume!(v.length() < 3.1);
             prop_assert!((log(exp(v)) - v).length() < 2e-5, "{v}");
+        }
+
+        #[test]
+        fn rates_of_rotation_vectors_are_angular_velocities(
+            x in -1.7f32..1.7, y in -1.7f32..1.7, z in -1.7f32..1.7, u in -3.0f32..3.0, v in -3.0f32..3.0
+        ) {
+            for scale in [1.0, 1e-2, 1e-4] {
+                let (at, rate, dt) = (Vec3::new(x, y, z) * scale, Vec3::new(u, v, u - v), 2e-3);
+                let found = angular_velocity(exp(at - rate * (0.5 * dt)), exp(at + rate * (0.5 * dt)), dt);
+                let wanted = rate_to_angular_velocity(at, rate);
+                prop_assert!((found - wanted).length() < 2e-3, "{found} {wanted}");
+                prop_assert!((vector_rate(at, wanted) - rate).length() < 2e-4);
+            }
         }
 
         #[test]

@@ -23,6 +23,9 @@ pub struct Subject<'a> {
     pub start: usize,
     /// One past the last mixed frame; the start for a cut.
     pub end: usize,
+    /// The frame from which B has the greater part ([`crate::blend::Concatenation::handover`]): feet are planted as A says before it, as B says
+    /// from it on.
+    pub handover: usize,
     /// The frame of B that is shown, or mixed in, at `start`.
     pub enter: usize,
     /// The outgoing clip.
@@ -57,7 +60,7 @@ pub struct TransitionMetrics {
     /// Spin, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by the sources: the largest sum, over any run of consecutive
     /// steps of the transition, of `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns meanwhile.
     pub spin_deg: Option<f64>,
-    /// Foot slide, centimetres. A foot is planted while its source says so: A before the middle of the transition, B from it on. In every step
+    /// Foot slide, centimetres. A foot is planted while its source says so: A before B has the greater part, B from then on. In every step
     /// between planted frames, the step over the ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
     /// point moves in the source, is added up as a vector; the value is the farthest that this sum gets in any stance which touches
     /// the transition. Stances are followed for half a second on each side. `None` without feet or stances.
@@ -165,9 +168,11 @@ impl Subject<'_> {
         (frame < self.b.source.frames().len()).then_some(frame)
     }
 
-    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of the result.
+    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of the result. A clip A that has ended goes on
+    /// with its last step: an inertialization may leave it there.
     fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
-        let a = (frame < self.a.source.frames().len()).then(|| self.a.source.step_into(frame));
+        let last = self.a.source.frames().len().checked_sub(1);
+        let a = last.map(|last| self.a.source.step_into(frame.min(last)));
         [a, self.in_b(frame).map(|frame| self.b.source.step_into(frame))]
     }
 
@@ -178,8 +183,7 @@ impl Subject<'_> {
 
     /// Whether the source of `frame` has this foot on the ground, and how far it moves there in the step into the frame.
     fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
-        let middle = usize::midpoint(self.start, self.end);
-        let (profile, frame) = if frame < middle {
+        let (profile, frame) = if frame < self.handover {
             (self.a, Some(frame))
         } else {
             (self.b, self.in_b(frame))

@@ -18,12 +18,14 @@ mod distance;
 pub(crate) mod fixtures;
 mod grid;
 mod points;
+mod pose;
 mod transition;
 
 pub use align::{Alignment, align};
 pub use distance::DistanceGrid;
 pub use grid::{PairSums, Progress};
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
+pub use pose::{PoseMatch, PoseSearch, PoseWeights};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 
 /// Why two motions cannot be laid on each other.

@@ -63,6 +63,22 @@ impl SearchOptions {
             enter: Region::FIRST_HALF,
         }
     }
+
+    /// The frames at which an outgoing clip of `frames` may be left, and whether its region had to grow.
+    pub(super) fn leave_starts(&self, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+        self.starts(self.leave, "outgoing", frames)
+    }
+
+    /// The frames at which an incoming clip of `frames` may be entered, and whether its region had to grow.
+    pub(super) fn enter_starts(&self, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+        self.starts(self.enter, "incoming", frames)
+    }
+
+    fn starts(&self, region: Region, which: &'static str, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+        let window = self.window.max(1);
+        let starts = region.starts(frames, window);
+        starts.ok_or(RegistrationError::TooShort { which, frames, window })
+    }
 }
 
 /// A place to go from one clip to another.
@@ -137,13 +153,8 @@ impl TransitionSearch {
     /// [`RegistrationError::Unfinished`] before the comparison is complete, [`RegistrationError::TooShort`] when the window does not fit.
     pub fn best(&self, options: &SearchOptions) -> Result<Transition, RegistrationError> {
         let window = options.window.max(1);
-        let starts = |region: Region, which: &'static str, frames: usize| {
-            region
-                .starts(frames, window)
-                .ok_or(RegistrationError::TooShort { which, frames, window })
-        };
-        let (leave, leave_grew) = starts(options.leave, "outgoing", self.outgoing.frames())?;
-        let (enter, enter_grew) = starts(options.enter, "incoming", self.incoming.frames())?;
+        let (leave, leave_grew) = options.leave_starts(self.outgoing.frames())?;
+        let (enter, enter_grew) = options.enter_starts(self.incoming.frames())?;
         let grid = self.sums.distances(window, &leave, &enter)?;
         let mut candidates: Vec<(usize, usize)> = (grid.local_minima().into_iter().take(CANDIDATES))
             .map(|(r, c)| grid.frames(r, c))

@@ -1,4 +1,5 @@
 use super::*;
+use crate::clip::JointTranslations;
 use crate::registration::fixtures::{Walk, body};
 use crate::skeleton::Joint;
 use proptest::prelude::*;

@@ -205,3 +205,23 @@ fn a_sprint_over_a_leaning_floor_has_contacts() {
     // A body that goes nowhere is held to the limits as they are given.
     assert_eq!(found(&still, &roles).intervals(Side::Right).len(), 0);
 }
+
+#[test]
+fn phases_run_from_touchdown_to_touchdown() {
+    let stances = |list: &[std::ops::Range<usize>]| {
+        let mut flags = vec![false; 100];
+        for stance in list {
+            flags[stance.clone()].fill(true);
+        }
+        flags
+    };
+    let contacts = Contacts {
+        planted: [stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])],
+    };
+    let phase = |frame| contacts.phase(Side::Left, frame).unwrap();
+    assert_eq!([phase(20), phase(25), phase(40), phase(60)], [0.0, 0.25, 0.0, 0.5]);
+    // The rhythm goes on beyond the first and the last touchdown.
+    assert_eq!([phase(15), phase(0), phase(90)], [0.75, 0.0, 0.25]);
+    assert_eq!(contacts.phase(Side::Right, 30), None);
+    assert_eq!(Contacts::default().phase(Side::Left, 0), None);
+}

@@ -1,5 +1,5 @@
 use super::*;
-use crate::blend::{Dissolve, DissolveOptions, RootBlend, Source, WeightLaw, dissolve};
+use crate::blend::{Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, dissolve};
 use crate::clip::{ContactOptions, Contacts};
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
@@ -58,6 +58,7 @@ fn measure(result: &Clip, transition: Range<usize>, enter: usize, a: &Profile, b
         result,
         start,
         end,
+        handover: usize::midpoint(start, end),
         enter,
         a,
         b,
@@ -66,7 +67,7 @@ fn measure(result: &Clip, transition: Range<usize>, enter: usize, a: &Profile, b
     })
 }
 
-fn blended(a: &Profile, leave: usize, b: &Profile, enter: usize, options: &DissolveOptions) -> (Dissolve, TransitionMetrics) {
+fn blended(a: &Profile, leave: usize, b: &Profile, enter: usize, options: &DissolveOptions) -> (Concatenation, TransitionMetrics) {
     let out = dissolve(&a.source, leave, &b.source, enter, options).unwrap();
     let metrics = measure(&out.clip, out.transition.clone(), enter, a, b);
     (out, metrics)

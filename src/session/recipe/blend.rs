@@ -223,7 +223,7 @@ impl BlendInputs {
             window_frames: window.len(),
             distance_cm: place.distance_cm,
         };
-        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, window.len());
+        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, made.handover);
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
         let motion = Motion {
             clip: Arc::new(made.clip.with_name(name)),
@@ -235,6 +235,7 @@ impl BlendInputs {
             result: &motion.clip,
             start: window.start,
             end: window.end,
+            handover: made.handover,
             enter: place.enter,
             a,
             b,

@@ -1,0 +1,114 @@
+use crate::clip::{Clip, ClipError, JointTranslations, Provenance};
+use crate::math::{Planar, quat};
+use crate::skeleton::{Skeleton, WorldPose, world_pose_into};
+use glam::{Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A clip that is put together from frames of others. A joint that moves against its parent in any of them does so in the result, and rests where
+/// its clip does not move it.
+pub(crate) struct Assembly {
+    skeleton: Arc<Skeleton>,
+    fps: f64,
+    provenance: Provenance,
+    rotations: Vec<Quat>,
+    roots: Vec<Vec3>,
+    tracks: Vec<JointTranslations>,
+}
+
+impl Assembly {
+    /// An empty clip on the body and at the rate of `first`, with room for `frames`.
+    pub(crate) fn new(first: &Clip, second: &Clip, frames: usize) -> Self {
+        let tracks = moving_joints(first, second).into_iter().map(|joint| JointTranslations {
+            joint,
+            values: Vec::with_capacity(frames),
+        });
+        Self {
+            skeleton: Arc::clone(first.skeleton()),
+            fps: first.fps(),
+            provenance: first.provenance(),
+            rotations: Vec::with_capacity(frames * first.skeleton().len()),
+            roots: Vec::with_capacity(frames),
+            tracks: tracks.collect(),
+        }
+    }
+
+    /// Frames of a clip as they are.
+    pub(crate) fn play(&mut self, clip: &Clip, frames: Range<usize>) {
+        for frame in frames.clone() {
+            self.rotations.extend_from_slice(clip.rotations(frame));
+        }
+        self.roots.extend_from_slice(&clip.root_translations()[frames.clone()]);
+        self.play_tracks(clip, frames);
+    }
+
+    /// Frames of a clip, moved over the ground.
+    pub(crate) fn play_moved(&mut self, clip: &Clip, frames: Range<usize>, world_from_clip: &Planar) {
+        let turn = world_from_clip.rotation();
+        for frame in frames.clone() {
+            let first = self.rotations.len();
+            self.rotations.extend_from_slice(clip.rotations(frame));
+            if let Some(root) = self.rotations.get_mut(first) {
+                *root = quat::renormalize(turn * *root);
+            }
+        }
+        self.roots
+            .extend(clip.root_translations()[frames.clone()].iter().map(|&p| world_from_clip.apply(p)));
+        self.play_tracks(clip, frames);
+    }
+
+    fn play_tracks(&mut self, clip: &Clip, frames: Range<usize>) {
+        for track in &mut self.tracks {
+            if let Some(of) = clip.translations().iter().find(|of| of.joint == track.joint) {
+                track.values.extend_from_slice(&of.values[frames.clone()]);
+            } else {
+                let rest = clip.skeleton().joints()[track.joint].offset;
+                track.values.extend(std::iter::repeat_n(rest, frames.len()));
+            }
+        }
+    }
+
+    /// One frame. `translations` has one value for each of [`moving_joints`]; the carrier, if there is one below the root, is put over the origin of
+    /// `character`: where the root stands still and a joint below it carries the character, the root is a long lever, and angles alone would
+    /// swing it.
+    pub(crate) fn push(
+        &mut self,
+        mut root: Vec3,
+        rotations: &[Quat],
+        translations: &[Vec3],
+        carrier: Option<(usize, Planar)>,
+        world: &mut WorldPose,
+    ) {
+        for (track, &value) in self.tracks.iter_mut().zip(translations) {
+            track.values.push(value);
+        }
+        if let Some((joint, character)) = carrier {
+            let moved = self.tracks.iter().map(|track| track.joint).zip(translations.iter().copied());
+            world_pose_into(&self.skeleton, root, rotations, moved, world);
+            let off = character.origin() - world.positions[joint];
+            root += Vec3::new(off.x, 0.0, off.z);
+        }
+        self.rotations.extend_from_slice(rotations);
+        self.roots.push(root);
+    }
+
+    /// The clip.
+    pub(crate) fn finish(self, name: String) -> Result<Clip, ClipError> {
+        let clip = Clip::new(name, self.skeleton, self.fps, self.rotations, self.roots)?;
+        Ok(clip.with_translations(self.tracks)?.with_provenance(self.provenance))
+    }
+}
+
+/// The joints other than the root that move against their parent in either clip, in order.
+pub(crate) fn moving_joints(a: &Clip, b: &Clip) -> Vec<usize> {
+    let mut joints: Vec<usize> = a.translations().iter().chain(b.translations()).map(|track| track.joint).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    joints
+}
+
+/// Where a joint is against its parent in a frame, metres: moved or at rest.
+pub(crate) fn translation_of(clip: &Clip, joint: usize, frame: usize) -> Vec3 {
+    let track = clip.translations().iter().find(|track| track.joint == joint);
+    track.map_or(clip.skeleton().joints()[joint].offset, |track| track.values[frame])
+}

@@ -1,0 +1,245 @@
+use super::spring;
+use glam::Vec3;
+
+/// What is left of an offset `x` and its velocity `v` after some time, both linear in what they were at first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// The share of the offset in the offset.
+    pub xx: f64,
+    /// The share of the velocity in the offset, seconds.
+    pub xv: f64,
+    /// The share of the offset in the velocity, per second.
+    pub vx: f64,
+    /// The share of the velocity in the velocity.
+    pub vv: f64,
+}
+
+impl Response {
+    /// Nothing is left.
+    pub const NOTHING: Self = Self {
+        xx: 0.0,
+        xv: 0.0,
+        vx: 0.0,
+        vv: 0.0,
+    };
+
+    /// The offset and its velocity.
+    #[must_use]
+    pub fn of(&self, x: f64, v: f64) -> (f64, f64) {
+        (self.xx * x + self.xv * v, self.vx * x + self.vv * v)
+    }
+
+    /// The offset and its velocity.
+    #[must_use]
+    pub fn of_vec3(&self, x: Vec3, v: Vec3) -> (Vec3, Vec3) {
+        (x * self.xx as f32 + v * self.xv as f32, x * self.vx as f32 + v * self.vv as f32)
+    }
+}
+
+/// How an offset dies away that starts with a velocity of its own: the heart of inertialization.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Decay {
+    /// A critically damped spring ([`spring::response`]). Never quite at rest, and never in a hurry.
+    Spring {
+        /// Half-life, seconds.
+        half_life_secs: f64,
+    },
+    /// The cubic that leaves with the offset's velocity and ends at rest: Hermite, C¹ at both ends.
+    Cubic {
+        /// Seconds until nothing is left.
+        blend_secs: f64,
+    },
+    /// The quintic of Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War" (GDC 2018): it ends without velocity and
+    /// acceleration, and does not overshoot.
+    ///
+    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most `5 |x| / closing speed`, and a first
+    /// acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve has a fourfold root at its end. Bollo
+    /// works on the offset's length and drops the velocity across it and away from 0. Here the whole vector is kept, so that the
+    /// velocity stays continuous: the limits are those of the part along the offset, and they hold for the way along it. An offset near 0 with
+    /// a high closing speed ends nearly at once, as Bollo's does.
+    Quintic {
+        /// Seconds until nothing is left, at most.
+        blend_secs: f64,
+    },
+}
+
+impl Decay {
+    /// What is left of the offset `x` with velocity `v` after `secs`: the offset and its velocity.
+    #[must_use]
+    pub fn of_vec3(self, x: Vec3, v: Vec3, secs: f64) -> (Vec3, Vec3) {
+        let closing = match self {
+            Self::Quintic { .. } => {
+                let square = f64::from(x.length_squared());
+                // Also false for NaN.
+                if square > 0.0 { -f64::from(x.dot(v)) / square } else { 0.0 }
+            }
+            _ => 0.0,
+        };
+        self.response(closing, secs).of_vec3(x, v)
+    }
+
+    /// The response after `secs` for an offset that closes at the rate `closing`: `-v·x / |x|²`, per second. Only the quintic asks for it.
+    #[must_use]
+    pub fn response(self, closing: f64, secs: f64) -> Response {
+        match self {
+            Self::Spring { half_life_secs } => spring::response(half_life_secs, secs),
+            Self::Cubic { blend_secs } => in_support(blend_secs, secs, |s, period| Response {
+                xx: (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s),
+                xv: period * s * (1.0 - s) * (1.0 - s),
+                vx: 6.0 * s * (s - 1.0) / period,
+                vv: (1.0 - s) * (1.0 - 3.0 * s),
+            }),
+            Self::Quintic { blend_secs } => {
+                let limited = if closing > 0.0 { blend_secs.min(5.0 / closing) } else { blend_secs };
+                in_support(limited, secs, |s, period| {
+                    // |x|/T² is the unit of acceleration here.
+                    let push = (8.0 * closing * period - 20.0).max(0.0);
+                    let rest = 1.0 - s;
+                    Response {
+                        xx: rest.powi(3) * (1.0 + s * (3.0 + 6.0 * s)) + 0.5 * push * s * s * rest.powi(3),
+                        xv: period * s * rest.powi(3) * (1.0 + 3.0 * s),
+                        vx: s * rest * rest * (-30.0 * s + 0.5 * push * (2.0 - 5.0 * s)) / period,
+                        vv: rest * rest * (1.0 + s * (2.0 - 15.0 * s)),
+                    }
+                })
+            }
+        }
+    }
+
+    /// Seconds until an offset without velocity has only `share` (above 0, below 1) left.
+    #[must_use]
+    pub fn secs_until(self, share: f64) -> f64 {
+        match self {
+            Self::Spring { half_life_secs } => spring::secs_until(half_life_secs, share),
+            Self::Cubic { blend_secs } | Self::Quintic { blend_secs } => {
+                let (mut low, mut high) = (0.0, blend_secs.max(0.0));
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if self.response(0.0, middle).xx > share {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                high
+            }
+        }
+    }
+}
+
+/// A curve over `s` from 0 to 1 in `period` seconds; nothing is left behind it. No period at all is over at once, but not before it began.
+fn in_support(period: f64, secs: f64, curve: impl Fn(f64, f64) -> Response) -> Response {
+    let period = period.max(1e-9);
+    let s = secs.max(0.0) / period;
+    if s < 1.0 { curve(s, period) } else { Response::NOTHING }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const ALL: [Decay; 3] = [
+        Decay::Spring { half_life_secs: 0.12 },
+        Decay::Cubic { blend_secs: 0.4 },
+        Decay::Quintic { blend_secs: 0.4 },
+    ];
+
+    proptest! {
+        #[test]
+        fn starts_as_it_was_and_moves_as_its_velocity_says(
+            x in -1.0f64..1.0, v in -9.0f64..9.0, t in 0.0f64..0.5
+        ) {
+            for decay in ALL {
+                let closing = if x == 0.0 { 0.0 } else { -v / x };
+                prop_assert_eq!(decay.response(closing, 0.0).of(x, v), (x, v));
+                let at = |t: f64| decay.response(closing, t).of(x, v);
+                let support = match decay { Decay::Quintic { blend_secs } if closing > 0.0 => blend_secs.min(5.0 / closing), _ => 0.4 };
+                let dt = 1e-6;
+                if (t - support).abs() > 1e-3 && t > dt && support > 1e-2 {
+                    let slope = (at(t + dt).0 - at(t - dt).0) / (2.0 * dt);
+                    prop_assert!((slope - at(t).1).abs() < 1e-3, "{:?} {} {}", decay, slope, at(t).1);
+                }
+            }
+        }
+
+        #[test]
+        fn the_quintic_never_crosses_zero(x in 0.01f64..1.0, v in -50.0f64..0.0, t in 0.0f64..0.5) {
+            let quintic = Decay::Quintic { blend_secs: 0.4 };
+            let (left, _) = quintic.response(-v / x, t).of(x, v);
+            prop_assert!(left >= -1e-12 * x && left <= x * (1.0 + 1e-12), "{left}");
+        }
+    }
+
+    #[test]
+    fn compact_curves_end_at_rest() {
+        for decay in &ALL[1..] {
+            assert_eq!(decay.response(0.0, 0.4), Response::NOTHING);
+            let (x, v) = decay.response(0.0, 0.4 - 1e-7).of(1.0, 5.0);
+            assert!(x.abs() < 1e-9 && v.abs() < 1e-4, "{decay:?} {x} {v}");
+            assert_eq!(decay.response(0.0, f64::INFINITY), Response::NOTHING);
+        }
+        for decay in [Decay::Cubic { blend_secs: 0.0 }, Decay::Quintic { blend_secs: -1.0 }] {
+            assert_eq!(decay.response(0.0, 1e-6), Response::NOTHING);
+        }
+        for decay in ALL {
+            assert!((decay.response(0.0, decay.secs_until(0.3)).xx - 0.3).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_cubic_overshoots_where_the_quintic_does_not() {
+        let (x, v) = (Vec3::new(0.1, 0.0, 0.0), Vec3::new(-4.0, 0.5, 0.0));
+        let lowest = |decay: Decay| {
+            (0..100)
+                .map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x)
+                .fold(f32::MAX, f32::min)
+        };
+        assert!(lowest(ALL[1]) < -0.1);
+        assert!(lowest(ALL[2]) > -1e-6);
+        assert_eq!(ALL[2].of_vec3(Vec3::ZERO, Vec3::ZERO, 0.1), (Vec3::ZERO, Vec3::ZERO));
+    }
+
+    #[derive(serde::Deserialize)]
+    struct Golden {
+        times: Vec<f64>,
+        decays: Vec<GoldenDecay>,
+        running_half_life: f64,
+        running: Vec<(f64, f64)>,
+    }
+
+    #[derive(serde::Deserialize)]
+    struct GoldenDecay {
+        x: f64,
+        v: f64,
+        half_life: f64,
+        period: f64,
+        spring: Vec<(f64, f64)>,
+        cubic: Vec<(f64, f64)>,
+        quintic: Option<Vec<(f64, f64)>>,
+    }
+
+    #[test]
+    fn agrees_with_scipy() {
+        let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
+        let near = |found: (f64, f64), wanted: (f64, f64)| (found.0 - wanted.0).abs() < 1e-10 && (found.1 - wanted.1).abs() < 1e-8;
+        for case in &golden.decays {
+            let (half_life_secs, blend_secs) = (case.half_life, case.period);
+            let none = vec![];
+            for (decay, wanted) in [
+                (Decay::Spring { half_life_secs }, &case.spring),
+                (Decay::Cubic { blend_secs }, &case.cubic),
+                (Decay::Quintic { blend_secs }, case.quintic.as_ref().unwrap_or(&none)),
+            ] {
+                for (&t, &wanted) in golden.times.iter().zip(wanted) {
+                    let found = decay.response(-case.v / case.x, t).of(case.x, case.v);
+                    assert!(near(found, wanted), "{decay:?} at {t}: {found:?} {wanted:?}");
+                }
+            }
+        }
+        for (&t, &wanted) in golden.times.iter().zip(&golden.running) {
+            assert!(near(spring::run_on(golden.running_half_life, t), wanted));
+        }
+        assert_eq!(golden.decays.len(), 6);
+    }
+}

@@ -1,0 +1,482 @@
+use super::points::checked_sum;
+use super::{Progress, REFERENCE_HEIGHT_M, RegistrationError, SearchOptions};
+use crate::clip::Clip;
+use crate::math::Planar;
+use crate::skeleton::WorldPose;
+use glam::{Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What counts when two frames are compared, each 0 or more. Only their proportions matter.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PoseWeights {
+    /// Where the joints are in the character's frame, heights included.
+    pub position: f64,
+    /// How the joints are turned against their parents; the root in the character's frame.
+    pub rotation: f64,
+    /// How fast the joints move, over the ground included, in the character's frame.
+    pub velocity: f64,
+}
+
+impl Default for PoseWeights {
+    fn default() -> Self {
+        Self {
+            position: 0.6,
+            rotation: 0.4,
+            velocity: 0.0,
+        }
+    }
+}
+
+impl PoseWeights {
+    fn of(self) -> [f64; 3] {
+        [self.position, self.rotation, self.velocity].map(|weight| if weight > 0.0 { weight } else { 0.0 })
+    }
+}
+
+/// A pair of frames that look alike, and move alike if that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseMatch {
+    /// The frame at which the outgoing clip is left.
+    pub leave: usize,
+    /// The frame at which the incoming clip is entered.
+    pub enter: usize,
+    /// The weighted cost that was smallest; 1 is that of an average pair of frames of the two clips.
+    pub cost: f64,
+    /// Root mean square over the joints of their distances, centimetres on the reference body.
+    pub position_cm: f64,
+    /// Likewise of the angles between their rotations, degrees (chords: right up to about 60°, smaller than the angle above).
+    pub rotation_deg: f64,
+    /// Likewise of the differences of their velocities, metres per second on the reference body.
+    pub velocity_mps: f64,
+    /// A clip was too short for the region asked for, and all of it was searched.
+    pub grown: bool,
+}
+
+/// How many of the lowest minima of the coarse grid are looked at closely.
+const CANDIDATES: usize = 8;
+/// Frames of a clip that are compared at most before the close look.
+const COARSE_FRAMES: usize = 1_000;
+
+/// The search for the two frames that are most alike as single poses: positions, rotations and velocities with weights.
+///
+/// Beside [`super::TransitionSearch`], which looks at windows of the whole body's points and finds their alignment. This one looks at one frame of each
+/// clip in the character's own frame. The three terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by its mean over
+/// all pairs of frames, so that weights compare shares and no unit wins by its size: `cost = Σ wₖ Dₖ / mean(Dₖ) / Σ wₖ`.
+///
+/// The terms are kept apart: new weights or regions cost a pass over the grid, not a new comparison. Pairs are compared every
+/// `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the eight lowest minima are searched again at every frame, within one
+/// stride. The answer's cost is within 2 % of a mean pair's cost of the smallest over all pairs (tested against them), and it is exact for
+/// the pair it names.
+#[derive(Clone, Debug)]
+pub struct PoseSearch {
+    outgoing: Poses,
+    incoming: Poses,
+    weights: Vec<f32>,
+    /// What turns metres into those of the reference body.
+    scale: f64,
+    stride: usize,
+    columns: usize,
+    done: usize,
+    /// Per pair of samples, row-major: the three mean squares (m², rad², m²/s²).
+    terms: Vec<[f32; 3]>,
+    sums: [f64; 3],
+}
+
+/// What is compared of a clip, frame-major.
+#[derive(Clone, Debug)]
+struct Poses {
+    frames: usize,
+    positions: Vec<Vec3>,
+    rotations: Vec<Quat>,
+    velocities: Vec<Vec3>,
+}
+
+impl Poses {
+    fn new(clip: &Clip, character: &[Planar]) -> Self {
+        let (frames, joints) = (clip.frames().min(character.len()), clip.skeleton().len());
+        let mut poses = Self {
+            frames,
+            positions: Vec::with_capacity(frames * joints),
+            rotations: Vec::with_capacity(frames * joints),
+            velocities: Vec::with_capacity(frames * joints),
+        };
+        let mut around: [WorldPose; 3] = Default::default();
+        for (frame, here) in character.iter().enumerate().take(frames) {
+            let to_here = here.inverse();
+            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(frames - 1));
+            if frame == 0 {
+                clip.world_pose_into(0, &mut around[0]);
+                clip.world_pose_into(0, &mut around[1]);
+            } else {
+                around.rotate_left(1);
+            }
+            clip.world_pose_into(after, &mut around[2]);
+            let [last, now, next] = &around;
+            let rate = clip.fps() as f32 / (after - before).max(1) as f32;
+            poses.positions.extend(now.positions.iter().map(|&p| to_here.apply(p)));
+            let moves = last.positions.iter().zip(&next.positions);
+            poses
+                .velocities
+                .extend(moves.map(|(&from, &to)| to_here.apply_vector((to - from) * rate)));
+            poses.rotations.extend_from_slice(clip.rotations(frame));
+            if let Some(root) = poses.rotations.get_mut(frame * joints) {
+                *root = to_here.rotation() * *root;
+            }
+        }
+        poses
+    }
+
+    fn is_finite(&self) -> bool {
+        self.positions.iter().chain(&self.velocities).all(|v| v.is_finite()) && self.rotations.iter().all(|q| q.is_finite())
+    }
+}
+
+impl PoseSearch {
+    /// Prepares a search. `outgoing` and `incoming` come with their [`crate::clip::character_frames`]; `weights` has one weight per joint,
+    /// `body_height` is in metres ([`crate::skeleton::Roles::body_height`]). Nothing is compared yet: call [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// [`RegistrationError`] when a clip is empty or holds numbers that are none, the skeletons or frame rates differ, or the weights do not fit.
+    pub fn new(
+        outgoing: (&Arc<Clip>, &[Planar]),
+        incoming: (&Arc<Clip>, &[Planar]),
+        weights: &[f64],
+        body_height: f64,
+    ) -> Result<Self, RegistrationError> {
+        let (source_fps, target_fps) = (outgoing.0.fps(), incoming.0.fps());
+        if (source_fps - target_fps).abs() > 1e-4 * source_fps {
+            return Err(RegistrationError::FrameRates { source_fps, target_fps });
+        }
+        let (source_joints, target_joints) = (outgoing.0.skeleton().len(), incoming.0.skeleton().len());
+        if source_joints != target_joints {
+            return Err(RegistrationError::Skeletons {
+                source_joints,
+                target_joints,
+            });
+        }
+        let sum = checked_sum(weights, source_joints)?;
+        for (which, (clip, frames)) in [("outgoing", outgoing), ("incoming", incoming)] {
+            if clip.frames().min(frames.len()) == 0 {
+                return Err(RegistrationError::Empty { which });
+            }
+        }
+        let (outgoing, incoming) = (Poses::new(outgoing.0, outgoing.1), Poses::new(incoming.0, incoming.1));
+        if !(outgoing.is_finite() && incoming.is_finite()) {
+            return Err(RegistrationError::NotFinite);
+        }
+        let longest = outgoing.frames.max(incoming.frames);
+        let stride = ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(COARSE_FRAMES)).max(1);
+        let columns = incoming.frames.div_ceil(stride);
+        let pairs = outgoing.frames.div_ceil(stride) * columns;
+        Ok(Self {
+            outgoing,
+            incoming,
+            weights: weights.iter().map(|weight| (weight / sum) as f32).collect(),
+            scale: if body_height > 0.0 { REFERENCE_HEIGHT_M / body_height } else { 1.0 },
+            stride,
+            columns,
+            done: 0,
+            terms: Vec::with_capacity(pairs),
+            sums: [0.0; 3],
+        })
+    }
+
+    /// Compares up to `rows` more frames of the outgoing clip with all of the incoming one, and says how far it has come.
+    pub fn advance(&mut self, rows: usize) -> Progress {
+        let total = self.outgoing.frames.div_ceil(self.stride);
+        for row in self.done..self.done.saturating_add(rows).min(total) {
+            for column in 0..self.columns {
+                let terms = self.compare(row * self.stride, column * self.stride);
+                self.terms.push(terms);
+                for (sum, term) in self.sums.iter_mut().zip(terms) {
+                    *sum += f64::from(term);
+                }
+            }
+            self.done = row + 1;
+        }
+        Progress { done: self.done, total }
+    }
+
+    /// The mean squares of one pair of frames.
+    fn compare(&self, i: usize, j: usize) -> [f32; 3] {
+        let joints = self.weights.len();
+        let of = |frame: usize| frame * joints..(frame + 1) * joints;
+        let (a, b) = (of(i), of(j));
+        let mut terms = [0.0_f32; 3];
+        let vectors = |p: &[Vec3], q: &[Vec3]| {
+            let squares = p.iter().zip(q).zip(&self.weights).map(|((p, q), w)| w * p.distance_squared(*q));
+            squares.sum::<f32>()
+        };
+        terms[0] = vectors(&self.outgoing.positions[a.clone()], &self.incoming.positions[b.clone()]);
+        terms[2] = vectors(&self.outgoing.velocities[a.clone()], &self.incoming.velocities[b.clone()]);
+        // 4 sin²(θ/2) = 4 (1 - (p·q)²): θ² for small angles, and the same for q and -q.
+        let rotations = self.outgoing.rotations[a]
+            .iter()
+            .zip(&self.incoming.rotations[b])
+            .zip(&self.weights);
+        terms[1] = rotations
+            .map(|((p, q), w)| {
+                let cosine = p.dot(*q);
+                w * 4.0 * (1.0 - cosine * cosine).max(0.0)
+            })
+            .sum();
+        terms
+    }
+
+    /// The best pair for these weights and regions. The window of `options` is only what must fit behind both frames.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Unfinished`] before the comparison is complete, [`RegistrationError::TooShort`] when the window does not fit.
+    pub fn best(&self, weights: PoseWeights, options: &SearchOptions) -> Result<PoseMatch, RegistrationError> {
+        let total = self.outgoing.frames.div_ceil(self.stride);
+        if self.done < total {
+            return Err(RegistrationError::Unfinished { done: self.done, total });
+        }
+        let (leave, leave_grew) = options.leave_starts(self.outgoing.frames)?;
+        let (enter, enter_grew) = options.enter_starts(self.incoming.frames)?;
+        let factors = self.factors(weights);
+        let mut candidates = self.candidates(&factors, &leave, &enter);
+        if candidates.is_empty() {
+            // The region lies between two samples.
+            candidates.push((leave.start, enter.start));
+        }
+        let mut best = (f64::INFINITY, leave.start, enter.start);
+        for (i, j) in candidates {
+            let around =
+                |at: usize, region: &Range<usize>| at.saturating_sub(self.stride).max(region.start)..(at + self.stride + 1).min(region.end);
+            for i in around(i, &leave) {
+                for j in around(j, &enter) {
+                    let cost = cost(&factors, &self.compare(i, j));
+                    if cost < best.0 {
+                        best = (cost, i, j);
+                    }
+                }
+            }
+        }
+        let (cost, leave, enter) = best;
+        let [position, rotation, velocity] = self.compare(leave, enter).map(|term| f64::from(term).sqrt());
+        Ok(PoseMatch {
+            leave,
+            enter,
+            cost,
+            position_cm: position * 100.0 * self.scale,
+            rotation_deg: (2.0 * (0.5 * rotation).min(1.0).asin()).to_degrees(),
+            velocity_mps: velocity * self.scale,
+            grown: leave_grew || enter_grew,
+        })
+    }
+
+    /// What every term is multiplied with. A term that is 0 everywhere counts nothing; without any weight positions count.
+    fn factors(&self, weights: PoseWeights) -> [f64; 3] {
+        let weights = weights.of();
+        let sum: f64 = weights.iter().sum();
+        let weights = if sum > 0.0 && sum.is_finite() {
+            weights.map(|w| w / sum)
+        } else {
+            [1.0, 0.0, 0.0]
+        };
+        let pairs = self.terms.len().max(1) as f64;
+        let mut factors = [0.0; 3];
+        for ((factor, weight), sum) in factors.iter_mut().zip(weights).zip(self.sums) {
+            let mean = sum / pairs;
+            *factor = if mean > 1e-12 { weight / mean } else { 0.0 };
+        }
+        factors
+    }
+
+    /// The lowest local minima of the grid in the regions, as frames.
+    fn candidates(&self, factors: &[f64; 3], leave: &Range<usize>, enter: &Range<usize>) -> Vec<(usize, usize)> {
+        let samples = |region: &Range<usize>| region.start.div_ceil(self.stride)..region.end.div_ceil(self.stride);
+        let (rows, columns) = (samples(leave), samples(enter));
+        let width = columns.len();
+        let costs: Vec<f64> = rows
+            .clone()
+            .flat_map(|row| self.terms[row * self.columns..][columns.clone()].iter())
+            .map(|terms| cost(factors, terms))
+            .collect();
+        let mut minima: Vec<(f64, usize, usize)> = Vec::new();
+        for row in 0..rows.len() {
+            for column in 0..width {
+                let here = costs[row * width + column];
+                // No need to look around where enough lower minima are known already.
+                if minima.len() == CANDIDATES && minima.last().is_some_and(|last| here >= last.0) {
+                    continue;
+                }
+                let around = (row.saturating_sub(1)..(row + 2).min(rows.len()))
+                    .flat_map(|r| (column.saturating_sub(1)..(column + 2).min(width)).map(move |c| (r, c)));
+                // Strictly smaller than what comes before it, so that a plateau counts once.
+                let lowest = around
+                    .map(|(r, c)| (costs[r * width + c], (r, c)))
+                    .all(|(there, at)| there > here || (there == here && at >= (row, column)));
+                if lowest {
+                    minima.push((here, row, column));
+                    minima.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    minima.truncate(CANDIDATES);
+                }
+            }
+        }
+        minima
+            .into_iter()
+            .map(|(_, row, column)| ((rows.start + row) * self.stride, (columns.start + column) * self.stride))
+            .collect()
+    }
+}
+
+fn cost(factors: &[f64; 3], terms: &[f32; 3]) -> f64 {
+    factors.iter().zip(terms).map(|(factor, &term)| factor * f64::from(term)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::character_frames;
+    use crate::registration::fixtures::Walk;
+    use crate::registration::{Region, limb_weights};
+    use crate::skeleton::Roles;
+
+    fn search(a: &Arc<Clip>, b: &Arc<Clip>) -> PoseSearch {
+        let roles = Roles::detect(a.skeleton());
+        let (fa, fb) = (character_frames(a, &roles), character_frames(b, &roles));
+        let mut search = PoseSearch::new((a, &fa), (b, &fb), &limb_weights(a.skeleton()), 1.75).unwrap();
+        while !search.advance(7).is_complete() {}
+        search
+    }
+
+    fn clip(walk: Walk) -> Arc<Clip> {
+        Arc::new(walk.clip())
+    }
+
+    #[test]
+    fn close_to_the_best_of_all_pairs() {
+        for (frames, fps) in [(240, 60.0), (300, 120.0), (400, 240.0), (1_500, 120.0)] {
+            let a = clip(Walk {
+                frames,
+                fps,
+                ..Walk::default()
+            });
+            let b = clip(Walk {
+                frames: frames * 3 / 4,
+                fps,
+                cadence: 1.25,
+                swing: 0.6,
+                speed: 1.9,
+                heading: 2.5,
+                start: (4.0, 1.0),
+                ..Walk::default()
+            });
+            let search = search(&a, &b);
+            for (position, rotation, velocity) in [(0.6, 0.4, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0), (0.2, 0.3, 0.5)] {
+                let weights = PoseWeights {
+                    position,
+                    rotation,
+                    velocity,
+                };
+                let options = SearchOptions::new(9);
+                let found = search.best(weights, &options).unwrap();
+                let factors = search.factors(weights);
+                let best = (frames / 2..frames - 8)
+                    .flat_map(|i| (0..b.frames() / 2).map(move |j| (i, j)))
+                    .map(|(i, j)| cost(&factors, &search.compare(i, j)))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(
+                    found.cost >= best && found.cost <= best + 0.02,
+                    "{frames} {fps} {weights:?} {found:?} {best}"
+                );
+                assert!(found.leave >= frames / 2 && found.leave + 9 <= frames && found.enter <= b.frames() / 2);
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_frame_is_found_again_wherever_the_clip_lies() {
+        let whole = Walk {
+            frames: 300,
+            fps: 240.0,
+            turning: 0.5,
+            ..Walk::default()
+        }
+        .clip();
+        let a = Arc::new(whole.crop(0..180).unwrap());
+        let b = Arc::new(whole.crop(141..300).unwrap().transformed(&Planar::new(1.9, -3.0, 8.0)));
+        let weights = PoseWeights {
+            velocity: 0.3,
+            ..PoseWeights::default()
+        };
+        let found = search(&a, &b).best(weights, &SearchOptions::new(1)).unwrap();
+        assert_eq!(found.leave, found.enter + 141, "{found:?}");
+        assert!(found.cost < 1e-3 && found.position_cm < 0.01 && found.rotation_deg < 0.1 && found.velocity_mps < 0.01);
+        assert!(!found.grown);
+    }
+
+    #[test]
+    fn numbers_are_in_their_units() {
+        let still = Walk {
+            frames: 30,
+            speed: 0.0,
+            cadence: 0.0,
+            swing: 0.0,
+            ..Walk::default()
+        };
+        let a = clip(still);
+        let glide = clip(Walk { speed: 0.5, ..still });
+        let roots = a.root_translations().iter().map(|p| *p + Vec3::Y * 0.1).collect();
+        let rotations = (0..30).flat_map(|f| a.rotations(f).to_vec()).collect();
+        let raised = Arc::new(Clip::new("raised", Arc::clone(a.skeleton()), a.fps(), rotations, roots).unwrap());
+        let bent: Vec<Quat> = (0..30)
+            .flat_map(|f| a.rotations(f).iter().map(|q| -*q * Quat::from_rotation_x(0.3)).collect::<Vec<_>>())
+            .collect();
+        let bent = Arc::new(Clip::new("bent", Arc::clone(a.skeleton()), a.fps(), bent, a.root_translations().to_vec()).unwrap());
+        let options = SearchOptions::new(1);
+        let to = |b| search(&a, b).best(PoseWeights::default(), &options).unwrap();
+        assert!((to(&raised).position_cm - 10.0).abs() < 1e-3, "{:?}", to(&raised));
+        assert!((to(&glide).velocity_mps - 0.5).abs() < 1e-3);
+        assert!((to(&bent).rotation_deg - 0.3_f64.to_degrees()).abs() < 0.02, "{:?}", to(&bent));
+        // Nothing differs anywhere: nothing to divide by.
+        assert_eq!(to(&a).cost, 0.0);
+        assert!(to(&raised).cost > 0.0);
+    }
+
+    #[test]
+    fn regions_weights_and_slices() {
+        let (a, b) = (
+            clip(Walk::default()),
+            clip(Walk {
+                phase: 0.4,
+                frames: 50,
+                ..Walk::default()
+            }),
+        );
+        let search = search(&a, &b);
+        let options = SearchOptions {
+            window: 1,
+            leave: Region::frame(77, 120),
+            enter: Region::ALL,
+        };
+        let found = search.best(PoseWeights::default(), &options).unwrap();
+        assert_eq!(found.leave, 77);
+        let none = PoseWeights {
+            position: f64::NAN,
+            rotation: -1.0,
+            velocity: 0.0,
+        };
+        assert!(search.best(none, &options).unwrap().cost.is_finite());
+        assert!(matches!(
+            search.best(none, &SearchOptions::new(51)),
+            Err(RegistrationError::TooShort { which: "incoming", .. })
+        ));
+        let roles = Roles::detect(a.skeleton());
+        let frames = character_frames(&a, &roles);
+        let weights = limb_weights(a.skeleton());
+        let mut begun = PoseSearch::new((&a, &frames), (&a, &frames), &weights, 1.75).unwrap();
+        begun.advance(3);
+        assert!(matches!(
+            begun.best(none, &options),
+            Err(RegistrationError::Unfinished { done: 3, total: 120 })
+        ));
+        assert!(matches!(
+            PoseSearch::new((&a, &frames), (&a, &[]), &weights, 1.75),
+            Err(RegistrationError::Empty { which: "incoming" })
+        ));
+    }
+}

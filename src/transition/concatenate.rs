@@ -1,0 +1,210 @@
+use super::moving::View;
+use super::{Inertialization, Inertializer};
+use crate::blend::{
+    Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, common_carrier, dissolve, laid_on,
+    moving_joints,
+};
+use crate::math::{Planar, quat, wrap_angle};
+use crate::skeleton::WorldPose;
+use glam::Vec3;
+
+/// How to go from one clip to another.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Method {
+    /// The next frame is B's.
+    Cut,
+    /// A fades into B over a window in which both play ([`dissolve`]).
+    Dissolve {
+        /// Frames that overlap; 0 and 1 are a cut.
+        window: usize,
+        /// How A's weight falls.
+        law: WeightLaw,
+    },
+    /// B plays at once, and what A was doing differently dies away ([`Inertializer`]).
+    Inertialize(Inertialization),
+}
+
+/// What a transition is made with.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct TransitionOptions {
+    /// The method.
+    pub method: Method,
+    /// Whether B is first laid on A, on the ground and in facing. Without, B stays where its file put it, and the way over the ground is made in
+    /// the world whatever `root` says.
+    pub align: bool,
+    /// How the way over the ground is made.
+    pub root: RootBlend,
+}
+
+impl TransitionOptions {
+    /// Aligned, and with velocities in the character's own frame.
+    #[must_use]
+    pub fn new(method: Method) -> Self {
+        Self {
+            method,
+            align: true,
+            root: RootBlend::Velocity,
+        }
+    }
+}
+
+/// Plays clip A up to its frame `leave`, then clip B from its frame `enter`, with the transition that `options` ask for.
+///
+/// All methods mean the same by their frames: `A[..leave]` plays unchanged, frame `leave` of the result is the first that B has a part in, and it
+/// stands for `A[leave]` and `B[enter]`; the result is as long as `A[..leave]` and `B[enter..]` together. A dissolve needs its window of frames
+/// behind both; the others need none of A and one of B.
+///
+/// Inertialization starts from the frame before: the differences of pose and velocity are those of A at `leave - 1` and of B at `enter - 1`, each
+/// velocity being that of the step into the next frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has
+/// what is left of them after `(p + 1) / fps` seconds. So the frame before the transition is all A, as in a dissolve, and a clip that is
+/// entered at the frame where it is left goes on as it was (but for dead blending, which damps it all the same). Before its first frame and behind its last one a clip is taken to move as in the step next
+/// to it.
+///
+/// Poses are joined in the character's frame: rotations, heights, and translations of joints. Over the ground, the velocities (forward, sideways, yaw)
+/// are joined and integrated from A's last frame ([`RootBlend::Velocity`]); B then goes on from where that leads, and nothing jumps. With
+/// [`RootBlend::World`] B is laid on A at the seam and the root's remaining offset in the world decays like any other; the root then does not
+/// leave B's own way, but the feet slide on it.
+///
+/// # Errors
+/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), B has no such frame, a window
+/// crosses the end of its clip, or a time is none.
+pub fn concatenate(a: &Source, leave: usize, b: &Source, enter: usize, options: &TransitionOptions) -> Result<Concatenation, BlendError> {
+    let (window, law) = match options.method {
+        Method::Cut => (0, WeightLaw::default()),
+        Method::Dissolve { window, law } => (window, law),
+        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options),
+    };
+    let (align, root) = (options.align, options.root);
+    dissolve(a, leave, b, enter, &DissolveOptions { window, law, align, root })
+}
+
+fn inertialize(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    how: Inertialization,
+    options: &TransitionOptions,
+) -> Result<Concatenation, BlendError> {
+    how.validate()?;
+    check(a, leave, b, enter, 0)?;
+    let (from, to) = (a.clip(), b.clip());
+    let aligned_b = if options.align {
+        laid_on(a, leave.min(from.frames().saturating_sub(1)), b, enter, 0)?
+    } else {
+        Planar::IDENTITY
+    };
+    let by_velocity = options.align && options.root == RootBlend::Velocity;
+    let moving = moving_joints(from, to);
+    let view = |source, fixed: Planar| View {
+        source,
+        moving: &moving,
+        fixed: (!by_velocity).then_some(fixed),
+    };
+    let (old, new) = (view(a, Planar::IDENTITY), view(b, aligned_b));
+    let (mut old_pose, a_stands) = old.before(leave);
+    let (mut new_pose, b_stands) = new.before(enter);
+    // In the world the character's frame is one more offset that decays, behind the translations.
+    let mut place = Place::new(&a_stands, &aligned_b.after(&b_stands));
+    if !by_velocity {
+        old_pose.translations.push(place.of_a);
+        new_pose.translations.push(place.of_b);
+        let velocity = |source: &Source, world: Planar, frame: usize, stands: &Planar| {
+            let step = source.step_into(frame.min(source.frames().len().saturating_sub(1)));
+            let next = stands.after(&step);
+            let (here, there) = (world.after(stands), world.after(&next));
+            let shift = (there.shift - here.shift) * source.clip().fps();
+            Vec3::new(shift.x as f32, (wrap_angle(step.yaw) * source.clip().fps()) as f32, shift.y as f32)
+        };
+        old_pose.velocities.push(velocity(a, Planar::IDENTITY, leave, &a_stands));
+        new_pose.velocities.push(velocity(b, aligned_b, enter, &b_stands));
+    }
+    let mut inertia = Inertializer::new(how);
+    inertia.trigger(&old_pose, &new_pose);
+
+    let (fps, rest) = (to.fps(), to.frames() - enter);
+    // Rounding must not make a frame of a whole number's last digit, nor of no time at all.
+    let frames_in = |secs: f64| (secs * fps - 1e-5).ceil().max(0.0).min(rest as f64) as usize;
+    // One more, so that the last frame computed has nothing left.
+    let settling = frames_in(how.settled_secs() + fps.recip());
+    let window = frames_in(how.secs_until(0.01)).min(settling);
+    let mut made = Assembly::new(from, to, leave + rest);
+    made.play(from, 0..leave);
+    let mut frames = a.frames()[..leave].to_vec();
+    frames.reserve(rest);
+    let mut b_during = Vec::with_capacity(window);
+    let (mut here, mut world_from_b) = (a_stands, aligned_b);
+    let carrier = common_carrier(a, b).filter(|_| by_velocity);
+    let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+    for p in 0..settling {
+        let frame = enter + p;
+        inertia.advance(fps.recip());
+        new.pose_into(frame, &mut rotations, &mut translations);
+        if by_velocity {
+            inertia.apply(&mut rotations, &mut translations);
+            here = here.after(&inertia.step(&b.step_into(frame), fps.recip()));
+            world_from_b = here.after(&b.frames()[frame].inverse());
+            translations[0] = here.apply(translations[0]);
+            rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
+        } else {
+            translations.push(place.follow(&aligned_b.after(&b.frames()[frame])));
+            inertia.apply(&mut rotations, &mut translations);
+            here = translations.pop().map_or(here, Place::frame);
+        }
+        frames.push(here);
+        if p < window {
+            b_during.push(world_from_b);
+        }
+        made.push(
+            translations[0],
+            &rotations,
+            &translations[1..],
+            carrier.map(|joint| (joint, here)),
+            &mut world,
+        );
+    }
+    made.play_moved(to, enter + settling..to.frames(), &world_from_b);
+    frames.extend(b.frames()[enter + settling..].iter().map(|frame| world_from_b.after(frame)));
+    let half = frames_in(how.secs_until(0.5)).min(window);
+    Ok(Concatenation {
+        clip: made.finish(format!("{} → {}", from.name(), to.name()))?,
+        transition: leave..leave + window,
+        handover: leave + half.saturating_sub(1),
+        aligned_b,
+        b_during,
+        world_from_b,
+        frames,
+    })
+}
+
+/// Character frames as vectors (x, yaw, z) without jumps of the yaw.
+struct Place {
+    of_a: Vec3,
+    of_b: Vec3,
+    yaw: f64,
+}
+
+impl Place {
+    /// `a` and `b` are less than half a turn apart.
+    fn new(a: &Planar, b: &Planar) -> Self {
+        let vector = |frame: &Planar, yaw: f64| Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32);
+        Self {
+            of_a: vector(a, b.yaw + wrap_angle(a.yaw - b.yaw)),
+            of_b: vector(b, b.yaw),
+            yaw: b.yaw,
+        }
+    }
+
+    /// The next frame of B as a vector.
+    fn follow(&mut self, b: &Planar) -> Vec3 {
+        self.yaw += wrap_angle(b.yaw - self.yaw);
+        Vec3::new(b.shift.x as f32, self.yaw as f32, b.shift.y as f32)
+    }
+
+    fn frame(vector: Vec3) -> Planar {
+        Planar::new(wrap_angle(f64::from(vector.y)), f64::from(vector.x), f64::from(vector.z))
+    }
+}
+
+#[cfg(test)]
+mod tests;

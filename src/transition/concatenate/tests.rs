@@ -1,0 +1,373 @@
+use super::*;
+use crate::blend::Source;
+use crate::clip::{Clip, Interpolation, JointTranslations, resample};
+use crate::math::Decay;
+use crate::registration::fixtures::Walk;
+use crate::skeleton::Roles;
+use proptest::prelude::*;
+use std::sync::Arc;
+
+const KINDS: [Inertialization; 4] = [
+    Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
+    Inertialization::Offset(Decay::Cubic { blend_secs: 0.4 }),
+    Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 }),
+    Inertialization::DeadBlend {
+        blend_secs: 0.4,
+        extrapolation_half_life_secs: 0.1,
+    },
+];
+
+const PLACES: [(bool, RootBlend); 3] = [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
+
+fn source_of(clip: Clip) -> Source {
+    let roles = Roles::detect(clip.skeleton());
+    Source::new(Arc::new(clip), &roles)
+}
+
+fn source(walk: Walk) -> Source {
+    source_of(walk.clip())
+}
+
+fn two() -> (Source, Source) {
+    let a = source(Walk {
+        frames: 120,
+        turning: 0.4,
+        ..Walk::default()
+    });
+    let b = source(Walk {
+        frames: 260,
+        speed: 2.2,
+        cadence: 1.3,
+        swing: 0.7,
+        phase: 0.3,
+        heading: 2.5,
+        start: (7.0, -5.0),
+        ..Walk::default()
+    });
+    (a, b)
+}
+
+fn made(a: &Source, leave: usize, b: &Source, enter: usize, how: Inertialization, (align, root): (bool, RootBlend)) -> Concatenation {
+    let method = Method::Inertialize(how);
+    concatenate(a, leave, b, enter, &TransitionOptions { method, align, root }).unwrap()
+}
+
+/// The largest distance between joints of two clips, and the largest angle.
+fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
+    assert_eq!(a.frames(), b.frames());
+    let (p, q) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
+    let distance = p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+    let angles = (0..a.frames()).flat_map(|f| a.rotations(f).iter().zip(b.rotations(f)));
+    (distance, angles.map(|(p, q)| quat::angle_between(*p, *q)).fold(0.0, f32::max))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn no_difference_leaves_b_as_it_was(at in 0usize..119, turning in -1.0f32..1.0) {
+        let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
+        // A dead pose is not the motion that it came from: dead blending alone changes a clip that is joined to itself.
+        for how in &KINDS[..3] {
+            for place in PLACES {
+                let out = made(&a, at, &a, at, *how, place);
+                let (distance, angle) = difference(&out.clip, a.clip());
+                prop_assert!(distance < 2e-5 && angle < 2e-5, "{how:?} {place:?}: {distance} {angle}");
+            }
+        }
+    }
+
+    #[test]
+    fn where_b_lies_at_first_does_not_matter(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+        let (a, b) = two();
+        let moved = source_of(b.clip().transformed(&Planar::new(yaw, x, z)));
+        for how in KINDS {
+            for place in &PLACES[..2] {
+                let (here, there) = (made(&a, 70, &b, 10, how, *place), made(&a, 70, &moved, 10, how, *place));
+                let (distance, _) = difference(&here.clip, &there.clip);
+                prop_assert!(distance < 1e-3, "{how:?} {distance}");
+            }
+        }
+    }
+
+    #[test]
+    fn before_it_is_a_and_in_the_end_it_is_b(leave in 0usize..=120, enter in 0usize..260) {
+        let (a, b) = two();
+        for how in KINDS {
+            for place in PLACES {
+                let out = made(&a, leave, &b, enter, how, place);
+                prop_assert_eq!(out.clip.frames(), leave + 260 - enter);
+                prop_assert_eq!(out.frames.len(), out.clip.frames());
+                prop_assert_eq!(out.b_during.len(), out.transition.len());
+                prop_assert!(out.transition.start == leave && out.transition.end <= out.clip.frames());
+                prop_assert!(out.transition.contains(&out.handover) || out.transition.is_empty());
+                prop_assert_eq!(&out.clip.crop(0..leave).unwrap().with_name(""), &a.clip().crop(0..leave).unwrap().with_name(""));
+                let settled = leave + (how.settled_secs() * 60.0).ceil() as usize;
+                for f in (settled..out.clip.frames()).step_by(7) {
+                    let mut expected = b.clip().world_pose(enter + f - leave);
+                    expected.apply(&out.world_from_b);
+                    for (p, q) in out.clip.world_pose(f).positions.iter().zip(&expected.positions) {
+                        prop_assert!(p.distance(*q) < 1e-4, "{how:?} {place:?} frame {f} {p} {q}");
+                    }
+                }
+                prop_assert!(out.clip.root_translations().iter().all(|p| p.is_finite()));
+                if !place.0 {
+                    prop_assert_eq!(out.world_from_b, Planar::IDENTITY);
+                }
+            }
+        }
+    }
+}
+
+/// The step over the seam is the step that A would have made: in pose, and over the ground.
+#[test]
+fn the_motion_goes_on_as_a_was_going() {
+    let (a, b) = two();
+    for how in KINDS {
+        for place in PLACES {
+            let out = made(&a, 70, &b, 31, how, place);
+            let turn = |clip: &Clip, joint: usize| quat::log(clip.rotations(70)[joint] * clip.rotations(69)[joint].conjugate()) * 60.0;
+            for joint in 0..a.clip().skeleton().len() {
+                let off = turn(&out.clip, joint) - turn(a.clip(), joint);
+                // Unaligned, the root has two and a half radians to turn and starts to at once.
+                let bound = if place.0 || joint > 0 { 0.9 } else { 4.5 };
+                assert!(off.length() < bound, "{how:?} {place:?} {joint}: {off}");
+            }
+            let step = |clip: &Clip| (clip.root_translations()[70] - clip.root_translations()[69]) * 60.0;
+            let off = step(&out.clip) - step(a.clip());
+            // Unaligned, B lies metres away; and a quintic that would overshoot hurries.
+            assert!(!place.0 || off.length() < 0.6, "{how:?} {place:?} {off}");
+        }
+        // A cut does jump.
+        let cut = concatenate(&a, 70, &b, 31, &TransitionOptions::new(Method::Cut)).unwrap();
+        assert!((quat::angle_between(cut.clip.rotations(70)[3], cut.clip.rotations(69)[3])) > 0.2);
+    }
+}
+
+/// The finer the frames, the smaller the difference of the first step's angular velocity to A's: the velocity is continuous, also for large offsets.
+#[test]
+fn velocity_is_continuous_in_the_limit_of_fine_frames() {
+    let jump = |fps: f64, how| {
+        let n = fps as usize;
+        let walk = |phase: f32, swing: f32, speed: f32| {
+            source(Walk {
+                frames: 2 * n,
+                fps,
+                phase,
+                swing,
+                speed,
+                ..Walk::default()
+            })
+        };
+        let (a, b) = (walk(0.0, 1.3, 1.0), walk(0.4, 1.3, 2.0));
+        let out = made(&a, n, &b, n / 2, how, PLACES[0]);
+        let turn = |clip: &Clip, joint: usize| quat::log(clip.rotations(n)[joint] * clip.rotations(n - 1)[joint].conjugate()) * fps as f32;
+        (0..13)
+            .map(|joint| (turn(&out.clip, joint) - turn(a.clip(), joint)).length())
+            .fold(0.0, f32::max)
+    };
+    for how in KINDS {
+        let (coarse, fine) = (jump(300.0, how), jump(1200.0, how));
+        assert!(fine < coarse / 3.0 + 0.02, "{how:?} {coarse} {fine}");
+    }
+}
+
+/// A clip that is cut in two and joined again: its ends are taken to go on as they were going, so nothing but the change of a step in a frame is bridged.
+#[test]
+fn the_two_halves_of_a_clip_go_together_again() {
+    let whole = Walk {
+        frames: 200,
+        fps: 120.0,
+        turning: 0.5,
+        ..Walk::default()
+    }
+    .clip();
+    for at in [70, 93, 120] {
+        let (a, b) = (source_of(whole.crop(0..at).unwrap()), source_of(whole.crop(at..200).unwrap()));
+        for how in &KINDS[..3] {
+            let out = made(&a, at, &b, 0, *how, PLACES[0]);
+            let (distance, _) = difference(&out.clip, &whole);
+            // An arm, which swings as a sine does; knees stop dead.
+            let arm = |f: usize| quat::angle_between(out.clip.rotations(f)[3], whole.rotations(f)[3]);
+            let angle = (0..200).map(arm).fold(0.0, f32::max);
+            assert!(distance < 0.05 && angle < 0.02, "{how:?} {at} {distance} {angle}");
+        }
+    }
+}
+
+#[test]
+fn no_time_is_a_cut() {
+    let (a, b) = two();
+    for root in [RootBlend::Velocity, RootBlend::World] {
+        let cut = concatenate(
+            &a,
+            70,
+            &b,
+            10,
+            &TransitionOptions {
+                method: Method::Cut,
+                align: true,
+                root,
+            },
+        )
+        .unwrap();
+        for how in [
+            Inertialization::Offset(Decay::Spring { half_life_secs: 0.0 }),
+            Inertialization::Offset(Decay::Cubic { blend_secs: 0.0 }),
+            Inertialization::Offset(Decay::Quintic { blend_secs: 0.0 }),
+            Inertialization::DeadBlend {
+                blend_secs: 0.0,
+                extrapolation_half_life_secs: 0.0,
+            },
+        ] {
+            let out = made(&a, 70, &b, 10, how, (true, root));
+            let (distance, angle) = difference(&out.clip, &cut.clip);
+            assert!(distance < 1e-4 && angle < 1e-4, "{how:?} {distance} {angle}");
+            assert_eq!((out.transition, out.handover), (70..70, 70));
+        }
+    }
+}
+
+#[test]
+fn all_methods_come_through_one_door() {
+    let (a, b) = two();
+    let window = 20;
+    let law = WeightLaw::Linear;
+    let through = concatenate(&a, 70, &b, 10, &TransitionOptions::new(Method::Dissolve { window, law })).unwrap();
+    let direct = dissolve(
+        &a,
+        70,
+        &b,
+        10,
+        &DissolveOptions {
+            window,
+            law,
+            align: true,
+            root: RootBlend::Velocity,
+        },
+    )
+    .unwrap();
+    assert_eq!(through, direct);
+    let long = made(&a, 70, &b, 10, KINDS[0], PLACES[0]);
+    assert_eq!(long.clip.frames(), through.clip.frames());
+}
+
+/// Half the frame rate: the seam is felt half a frame later at most. Frames at the same times differ by less than 4 cm and 6°, in a transition
+/// between two gaits that differ by 20 cm and 60°.
+#[test]
+fn half_the_frame_rate_is_nearly_the_same_transition() {
+    let at = |fps: f64| {
+        let scale = (fps / 60.0) as usize;
+        let walk = |phase: f32, swing: f32, speed: f32, turning: f32| {
+            source(Walk {
+                frames: 120 * scale + 1,
+                fps,
+                phase,
+                swing,
+                speed,
+                turning,
+                ..Walk::default()
+            })
+        };
+        (
+            walk(0.0, 0.4, 1.2, 0.0),
+            walk(0.35, 0.8, 2.6, 0.5),
+            60 * scale + 1,
+            30 * scale + 1,
+            scale,
+        )
+    };
+    for how in KINDS {
+        let run = |fps: f64| {
+            let (a, b, leave, enter, scale) = at(fps);
+            (made(&a, leave, &b, enter, how, PLACES[0]).clip, scale)
+        };
+        let ((coarse, _), (fine, scale)) = (run(60.0), run(120.0));
+        let coarse_again = resample(&fine, 60.0, Interpolation::Nearest).unwrap();
+        assert_eq!(scale, 2);
+        let (distance, angle) = difference(&coarse, &coarse_again);
+        assert!(
+            distance < 0.04 && angle < 6_f32.to_radians(),
+            "{how:?} {distance} {}",
+            angle.to_degrees()
+        );
+    }
+}
+
+#[test]
+fn joints_that_move_against_their_parent_are_carried_over_too() {
+    let (a, b) = two();
+    let values = (0..120).map(|f| Vec3::new(0.2, 0.22 + 0.001 * f as f32, 0.0)).collect();
+    let moving = source_of(
+        (**a.clip())
+            .clone()
+            .with_translations(vec![JointTranslations { joint: 3, values }])
+            .unwrap(),
+    );
+    for how in KINDS {
+        let out = made(&moving, 70, &b, 10, how, PLACES[0]);
+        let track = &out.clip.translations()[0];
+        assert_eq!((track.joint, track.values.len()), (3, out.clip.frames()));
+        assert_eq!(track.values[69].y, 0.22 + 0.069);
+        // It goes on upwards for a moment, and then comes to rest where B has it.
+        assert!(track.values[70].y > 0.22 + 0.065, "{how:?} {}", track.values[70].y);
+        assert!((track.values[240].y - 0.22).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn speed_over_the_ground_rises_without_overshoot() {
+    let glide = |speed: f32| {
+        source(Walk {
+            frames: 200,
+            speed,
+            cadence: 0.0,
+            swing: 0.0,
+            ..Walk::default()
+        })
+    };
+    let (a, b) = (glide(1.0), glide(3.0));
+    for how in KINDS {
+        let out = made(&a, 50, &b, 20, how, PLACES[0]);
+        let speeds: Vec<f32> = out
+            .clip
+            .root_translations()
+            .windows(2)
+            .map(|p| p[0].distance(p[1]) * 60.0)
+            .collect();
+        let rises = speeds.windows(2).all(|s| s[1] > s[0] - 1e-3);
+        // A dead pose slows down first.
+        assert!(rises || matches!(how, Inertialization::DeadBlend { .. }), "{how:?} {speeds:?}");
+        assert!(speeds.iter().all(|s| (0.5..3.01).contains(s)), "{how:?} {speeds:?}");
+        assert!((speeds[49] - 1.0).abs() < 0.1 && (speeds[180] - 3.0).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn what_cannot_be_joined_is_refused() {
+    let (a, b) = two();
+    for secs in [-0.1, 61.0, f64::NAN, f64::INFINITY] {
+        for how in [
+            Inertialization::Offset(Decay::Spring { half_life_secs: secs }),
+            Inertialization::Offset(Decay::Quintic { blend_secs: secs }),
+            Inertialization::DeadBlend {
+                blend_secs: 0.3,
+                extrapolation_half_life_secs: secs,
+            },
+        ] {
+            let options = TransitionOptions::new(Method::Inertialize(how));
+            assert!(
+                matches!(concatenate(&a, 50, &b, 10, &options), Err(BlendError::Time { .. })),
+                "{secs}"
+            );
+        }
+    }
+    let options = TransitionOptions::new(Method::Inertialize(KINDS[0]));
+    assert!(concatenate(&a, 120, &b, 259, &options).is_ok());
+    assert!(matches!(concatenate(&a, 121, &b, 0, &options), Err(BlendError::Window { .. })));
+    assert!(matches!(concatenate(&a, 0, &b, 260, &options), Err(BlendError::Window { .. })));
+    let one = source(Walk {
+        frames: 1,
+        ..Walk::default()
+    });
+    assert_eq!(concatenate(&one, 1, &one, 0, &options).unwrap().clip.frames(), 2);
+}

@@ -1,0 +1,283 @@
+use super::LoopError;
+use crate::blend::Source;
+use crate::clip::{Clip, Contacts};
+use crate::registration::{PairSums, REFERENCE_HEIGHT_M, limb_weights};
+use crate::skeleton::Side;
+use std::ops::Range;
+
+/// Where to look for a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CycleSearch {
+    /// Frames that are compared from both ends on; fewer where the clip is too short for the shortest cycle and that many, 0 counts as 1.
+    pub window: usize,
+    /// The shortest cycle, seconds.
+    pub min_secs: f64,
+    /// The longest cycle, seconds.
+    pub max_secs: f64,
+}
+
+impl CycleSearch {
+    /// Cycles of 0.5 to 3 s, compared over a tenth of a second at `fps`.
+    #[must_use]
+    pub fn new(fps: f64) -> Self {
+        Self {
+            window: (0.1 * fps).ceil().max(1.0) as usize,
+            min_secs: 0.5,
+            max_secs: 3.0,
+        }
+    }
+}
+
+/// The ends of a cycle, and how well they fit each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutPoints {
+    /// The frames that play; `cycle.end` is the frame that stands for `cycle.start` again. What [`super::close_loop`] takes.
+    pub cycle: Range<usize>,
+    /// Root mean square distance of the windows from both ends after the best alignment, centimetres on the reference body.
+    pub rms_cm: f64,
+    /// By how much the feet's phases differ, in cycles, 0 to 0.5; `None` when no foot has two touchdowns.
+    pub phase_gap: Option<f32>,
+}
+
+/// What a whole cycle of difference between the feet's phases counts as, centimetres of distance.
+const CM_PER_CYCLE: f64 = 20.0;
+/// How many places of the coarse grid are scored, and how many of them are looked at closely.
+const SCORED: usize = 64;
+const CANDIDATES: usize = 6;
+
+/// Finds where a clip repeats itself: the pair of frames with the smallest distance between the windows that begin there, plus what the
+/// feet's phases differ by ([`Contacts::phase`]), among all cycles of the durations asked for.
+///
+/// Coarse to fine as in [`crate::registration::TransitionSearch`]. A clip that is one whole cycle has no window behind its last frame: its
+/// first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
+///
+/// # Errors
+/// [`LoopError::TooShort`] when no cycle of the shortest duration fits; [`LoopError::Registration`] when positions are no numbers.
+pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search: &CycleSearch) -> Result<CutPoints, LoopError> {
+    let clip = source.clip();
+    let (fps, frames) = (clip.fps(), clip.frames());
+    let too_short = LoopError::TooShort {
+        min_secs: search.min_secs,
+        secs: clip.duration_secs(),
+    };
+    // `as usize` takes NaN and negative numbers to 0.
+    let shortest = ((search.min_secs * fps).ceil() as usize).max(2);
+    let longest = ((search.max_secs * fps).floor() as usize).max(shortest);
+    if shortest >= frames {
+        return Err(too_short);
+    }
+    let finder = Finder {
+        clip,
+        contacts,
+        weights: limb_weights(clip.skeleton()),
+        cm: 100.0 * if body_height > 0.0 { REFERENCE_HEIGHT_M / body_height } else { 1.0 },
+        window: search.window.clamp(1, frames - shortest),
+        lengths: shortest..longest.saturating_add(1),
+    };
+    let stride = ((fps / 30.0).ceil() as usize).max(frames.div_ceil(400)).max(1);
+    let mut places = finder.pairs(&(0..frames), &(0..frames), stride, finder.window, true)?;
+    places.truncate(CANDIDATES);
+    let mut best: Option<Place> = None;
+    let mut offer = |place: Place| {
+        if best.is_none_or(|best| place.score < best.score) {
+            best = Some(place);
+        }
+    };
+    for place in places {
+        let around = |at: usize| at.saturating_sub(stride)..(at + stride + 1).min(frames);
+        let close = finder.pairs(&around(place.start), &around(place.end), 1, finder.window, false)?;
+        close.into_iter().take(1).for_each(&mut offer);
+    }
+    let whole = finder.pairs(&(0..1), &(frames - 1..frames), 1, 1, false)?;
+    whole.into_iter().for_each(&mut offer);
+    let best = best.ok_or(too_short)?;
+    Ok(CutPoints {
+        cycle: best.start..best.end,
+        rms_cm: best.rms_cm,
+        phase_gap: phase_gap(contacts, best.start, best.end),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    start: usize,
+    end: usize,
+    rms_cm: f64,
+    score: f64,
+}
+
+struct Finder<'a> {
+    clip: &'a Clip,
+    contacts: &'a Contacts,
+    weights: Vec<f64>,
+    /// What turns metres into centimetres on the reference body.
+    cm: f64,
+    window: usize,
+    /// Frames that a cycle may have.
+    lengths: Range<usize>,
+}
+
+impl Finder<'_> {
+    /// The cycles that start in `starts` and end in `ends`, best first; of a whole grid (`minima`) only its lowest minima.
+    fn pairs(
+        &self,
+        starts: &Range<usize>,
+        ends: &Range<usize>,
+        stride: usize,
+        window: usize,
+        minima: bool,
+    ) -> Result<Vec<Place>, LoopError> {
+        let with_window = |starts: &Range<usize>| starts.start..starts.end.saturating_add(window - 1);
+        let mut sums = PairSums::new(self.clip, with_window(starts), self.clip, with_window(ends), &self.weights, stride)?;
+        sums.finish();
+        let grid = sums.distances(window, starts, ends)?;
+        let allowed = |&(row, column): &(usize, usize)| {
+            let (start, end) = grid.frames(row, column);
+            end.checked_sub(start).is_some_and(|length| self.lengths.contains(&length)) && end < self.clip.frames()
+        };
+        let all = || {
+            (0..grid.rows())
+                .flat_map(|row| (0..grid.columns()).map(move |column| (row, column)))
+                .filter(allowed)
+        };
+        let mut cells: Vec<(usize, usize)> = if minima {
+            grid.local_minima().into_iter().filter(allowed).take(SCORED).collect()
+        } else {
+            all().collect()
+        };
+        if cells.is_empty() {
+            // No minimum inside: the best on the border of what is allowed.
+            let distance = |&(row, column): &(usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
+            cells.extend(all().min_by(|a, b| distance(a).total_cmp(&distance(b))));
+        }
+        let mut places: Vec<Place> = cells
+            .into_iter()
+            .filter_map(|(row, column)| {
+                let (start, end) = grid.frames(row, column);
+                let rms_cm = f64::from(grid.get(row, column)?) * self.cm;
+                let gap = phase_gap(self.contacts, start, end).map_or(0.0, f64::from);
+                let score = rms_cm + CM_PER_CYCLE * gap;
+                Some(Place { start, end, rms_cm, score })
+            })
+            .collect();
+        places.sort_by(|a, b| a.score.total_cmp(&b.score));
+        Ok(places)
+    }
+}
+
+/// The mean difference of the feet's phases in two frames, 0 to 0.5.
+fn phase_gap(contacts: &Contacts, a: usize, b: usize) -> Option<f32> {
+    let gaps: Vec<f32> = Side::BOTH
+        .into_iter()
+        .filter_map(|side| {
+            let gap = (contacts.phase(side, a)? - contacts.phase(side, b)?).abs();
+            Some(gap.min(1.0 - gap))
+        })
+        .collect();
+    (!gaps.is_empty()).then(|| gaps.iter().sum::<f32>() / gaps.len() as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::ContactOptions;
+    use crate::registration::fixtures::Walk;
+    use crate::skeleton::Roles;
+    use crate::synth::{Action, Params, synthesize};
+    use crate::transition::{LoopOptions, close_loop};
+    use std::sync::Arc;
+
+    fn found(clip: &Arc<Clip>, search: &CycleSearch) -> Result<CutPoints, LoopError> {
+        let roles = Roles::detect(clip.skeleton());
+        let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
+        let height = f64::from(roles.body_height(clip.skeleton()));
+        find_cycle(&Source::new(Arc::clone(clip), &roles), &contacts, height, search)
+    }
+
+    #[test]
+    fn a_walk_repeats_after_whole_strides() {
+        for (cadence, turning, fps) in [(0.9, 0.0, 60.0), (1.3, 0.4, 120.0), (1.1, -0.7, 30.0)] {
+            let clip = Arc::new(
+                Walk {
+                    frames: (5.0 * fps) as usize,
+                    fps,
+                    cadence,
+                    turning,
+                    ..Walk::default()
+                }
+                .clip(),
+            );
+            let cut = found(&clip, &CycleSearch::new(fps)).unwrap();
+            let strides = cut.cycle.len() as f64 / fps * f64::from(cadence);
+            // Never a half stride, whose poses are mirrored. Half a frame is what frames can miss.
+            assert!(
+                (strides - strides.round()).abs() <= 0.6 / fps * f64::from(cadence) + 1e-6 && strides > 0.9,
+                "{strides} {cut:?}"
+            );
+            assert!(cut.rms_cm < 1.5, "{cut:?}");
+        }
+    }
+
+    #[test]
+    fn made_gaits_loop_by_themselves() {
+        for action in [Action::Walk, Action::Run] {
+            let made = synthesize(&Params::new(action)).unwrap();
+            let clip = Arc::new(made.clip);
+            let cut = found(&clip, &CycleSearch::new(clip.fps())).unwrap();
+            let phase = |frame: usize| made.truth.phase[frame];
+            let gap = (phase(cut.cycle.start) - phase(cut.cycle.end)).abs();
+            assert!(gap.min(1.0 - gap) < 0.02, "{action:?} {cut:?} {gap}");
+            assert!(cut.phase_gap.unwrap() < 0.05 && cut.rms_cm < 1.0, "{cut:?}");
+            let source = Source::new(Arc::clone(&clip), &Roles::detect(clip.skeleton()));
+            let made = close_loop(&source, cut.cycle, &LoopOptions::default()).unwrap();
+            assert!(
+                made.seam.turn_deg < 1e-3 && made.before.turn_deg < 10.0,
+                "{:?} {:?}",
+                made.before,
+                made.seam
+            );
+        }
+    }
+
+    #[test]
+    fn a_clip_that_is_one_cycle_is_taken_whole() {
+        let clip = Arc::new(
+            Walk {
+                frames: 61,
+                cadence: 1.0,
+                ..Walk::default()
+            }
+            .clip(),
+        );
+        assert_eq!(found(&clip, &CycleSearch::new(60.0)).unwrap().cycle, 0..60);
+    }
+
+    #[test]
+    fn durations_are_kept_and_what_does_not_fit_is_said() {
+        let clip = Arc::new(
+            Walk {
+                frames: 400,
+                ..Walk::default()
+            }
+            .clip(),
+        );
+        let between = |min_secs, max_secs| CycleSearch {
+            window: 6,
+            min_secs,
+            max_secs,
+        };
+        for (min, max) in [(0.2, 0.4), (2.0, 2.5), (3.0, 0.0), (5.0, 6.0), (f64::NAN, 1.5)] {
+            let cut = found(&clip, &between(min, max)).unwrap();
+            let secs = cut.cycle.len() as f64 / 60.0;
+            assert!(
+                secs >= min.max(0.0) && secs <= max.max(min) + 1e-9 || min.is_nan(),
+                "{min} {max} {secs}"
+            );
+        }
+        assert!(matches!(found(&clip, &between(7.0, 9.0)), Err(LoopError::TooShort { .. })));
+        let one = Arc::new(clip.crop(0..1).unwrap());
+        assert!(found(&one, &between(0.0, 1.0)).is_err());
+        assert!(found(&Arc::new(clip.crop(0..0).unwrap()), &between(0.0, 1.0)).is_err());
+        assert_eq!(found(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle, 0..2);
+    }
+}

@@ -1,0 +1,357 @@
+use super::MovingPose;
+use super::moving::{further, travel};
+use crate::blend::{BlendError, MOST_SECS};
+use crate::math::{Decay, Planar, quat, spring};
+use glam::{Quat, Vec3};
+
+/// How the difference between the motion that was playing and the one that plays now dies away.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Inertialization {
+    /// The offset decays into the new motion (Bollo 2018; springs: Holden 2021).
+    Offset(Decay),
+    /// The old pose runs on with decaying velocity, and a smooth weight fades to the new motion (Holden, "Dead Blending", 2023). Safer for very
+    /// different poses; damps more.
+    DeadBlend {
+        /// Seconds of the fade.
+        blend_secs: f64,
+        /// Half-life of the old pose's velocity, seconds.
+        extrapolation_half_life_secs: f64,
+    },
+}
+
+impl Inertialization {
+    /// Whether its times are times.
+    ///
+    /// # Errors
+    /// [`BlendError::Time`] names the first that is not from 0 to 60 s.
+    pub fn validate(self) -> Result<(), BlendError> {
+        let times = match self {
+            Self::Offset(Decay::Spring { half_life_secs }) => [("half-life", half_life_secs), ("half-life", half_life_secs)],
+            Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) => {
+                [("blend time", blend_secs), ("blend time", blend_secs)]
+            }
+            Self::DeadBlend {
+                blend_secs,
+                extrapolation_half_life_secs,
+            } => [("blend time", blend_secs), ("half-life", extrapolation_half_life_secs)],
+        };
+        match times.into_iter().find(|(_, secs)| !(0.0..=MOST_SECS).contains(secs)) {
+            Some((what, secs)) => Err(BlendError::Time { what, secs }),
+            None => Ok(()),
+        }
+    }
+
+    /// The share of an offset at rest that is left after `secs`.
+    #[must_use]
+    pub fn left(self, secs: f64) -> f64 {
+        match self {
+            Self::Offset(decay) => decay.response(0.0, secs).xx,
+            Self::DeadBlend { blend_secs, .. } => fade(blend_secs, secs).0,
+        }
+    }
+
+    /// Seconds until only `share` (above 0, below 1) is left.
+    #[must_use]
+    pub fn secs_until(self, share: f64) -> f64 {
+        match self {
+            Self::Offset(decay) => decay.secs_until(share),
+            Self::DeadBlend { blend_secs, .. } => Decay::Cubic { blend_secs }.secs_until(share),
+        }
+    }
+
+    /// Seconds until nothing is left that could be seen or measured: the end of a compact curve; a millionth for a spring.
+    #[must_use]
+    pub fn settled_secs(self) -> f64 {
+        match self {
+            Self::Offset(decay @ Decay::Spring { .. }) => decay.secs_until(1e-6),
+            Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) | Self::DeadBlend { blend_secs, .. } => blend_secs,
+        }
+    }
+}
+
+/// The fade's weight of the old motion, and how fast it changes, per second: [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to
+/// an offset without velocity.
+fn fade(blend_secs: f64, secs: f64) -> (f64, f64) {
+    let response = Decay::Cubic { blend_secs }.response(0.0, secs);
+    (response.xx, response.vx)
+}
+
+/// Carries the inertia of what was playing over into what plays now, frame by frame.
+///
+/// [`trigger`](Self::trigger) at a jump; then, every frame, [`advance`](Self::advance) the time and [`apply`](Self::apply) it to the new pose. A
+/// jump while another is still dying away adds to it: offsets are composed, not replaced, so that the motion stays continuous.
+///
+/// The offset of a rotation is the rotation vector of `q_old · q_new⁻¹` by the shorter way, applied on the left. Its rate is such that the joint
+/// leaves with the old angular velocity *exactly*: `J⁻¹ (ω_old - R ω_new)` with J the left Jacobian ([`quat::vector_rate`]) and R the offset. The usual
+/// `ω_old - ω_new` is that for small offsets only.
+#[derive(Clone, Debug)]
+pub struct Inertializer {
+    how: Inertialization,
+    elapsed_secs: f64,
+    turns: Vec<Turn>,
+    shifts: Vec<Shift>,
+    travel: Option<Travel>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    offset: Vec3,
+    rate: Vec3,
+    /// The old rotation and its angular velocity: what runs on.
+    from: Quat,
+    angular_velocity: Vec3,
+    /// The difference that was applied last; the next one is taken in its hemisphere, so that it does not jump to the other way round.
+    last: Quat,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shift {
+    offset: Vec3,
+    rate: Vec3,
+    from: Vec3,
+    velocity: Vec3,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Travel {
+    /// The difference of steady velocities: it decays, and the way made meanwhile stays made.
+    steady: Vec3,
+    /// The rest of the difference: a sway, as an offset that starts at 0 and swings back to it.
+    sway: Vec3,
+    from: Vec3,
+}
+
+impl Inertializer {
+    /// At rest: it changes nothing until it is triggered.
+    #[must_use]
+    pub fn new(how: Inertialization) -> Self {
+        Self {
+            how,
+            elapsed_secs: 0.0,
+            turns: Vec::new(),
+            shifts: Vec::new(),
+            travel: None,
+        }
+    }
+
+    /// Seconds since the last jump.
+    #[must_use]
+    pub fn elapsed_secs(&self) -> f64 {
+        self.elapsed_secs
+    }
+
+    /// A jump from one motion to another: what the old one does at this moment and what the new one does, both as they are without inertia. What
+    /// is still left of an earlier jump is taken along. Joints that one of the two does not have are left out.
+    pub fn trigger(&mut self, old: &MovingPose, new: &MovingPose) {
+        let mut playing = old.clone();
+        self.carry(&mut playing);
+        let turns = playing.rotations.iter().zip(&playing.angular_velocities);
+        let into = new.rotations.iter().zip(&new.angular_velocities);
+        self.turns = turns
+            .zip(into)
+            .map(|((&from, &angular_velocity), (&to, &new_velocity))| {
+                let difference = quat::shorter_way(from * to.conjugate());
+                let offset = quat::log(difference);
+                Turn {
+                    offset,
+                    rate: quat::vector_rate(offset, angular_velocity - difference * new_velocity),
+                    from,
+                    angular_velocity,
+                    last: difference,
+                }
+            })
+            .collect();
+        let shifts = playing.translations.iter().zip(&playing.velocities);
+        let into = new.translations.iter().zip(&new.velocities);
+        self.shifts = shifts
+            .zip(into)
+            .map(|((&from, &velocity), (&to, &new_velocity))| Shift {
+                offset: from - to,
+                rate: velocity - new_velocity,
+                from,
+                velocity,
+            })
+            .collect();
+        let steady = playing.steady_travel - new.steady_travel;
+        self.travel = Some(Travel {
+            steady,
+            sway: playing.travel - new.travel - steady,
+            from: playing.travel,
+        });
+        self.elapsed_secs = 0.0;
+    }
+
+    /// Time passes.
+    pub fn advance(&mut self, dt_secs: f64) {
+        self.elapsed_secs += dt_secs.max(0.0);
+    }
+
+    /// Puts what is left of the offsets on a pose: rotations and translations as in [`MovingPose`].
+    pub fn apply(&mut self, rotations: &mut [Quat], translations: &mut [Vec3]) {
+        let now = self.now();
+        for (turn, rotation) in self.turns.iter_mut().zip(rotations) {
+            let offset = now.turned(turn, *rotation);
+            *rotation = quat::renormalize(quat::exp(offset) * *rotation);
+        }
+        for (shift, translation) in self.shifts.iter().zip(translations) {
+            *translation += now.shifted(shift, *translation);
+        }
+    }
+
+    /// The step over the ground of a new motion that takes `dt_secs` and ends now, with what is left of the old travel: steps as in
+    /// [`crate::clip::character_frames`] from one frame to the next, each in the character's frame at its start.
+    ///
+    /// What decays is the difference of steady velocities, without a rate of its own: from a walk into a run the speed rises and never overshoots.
+    /// The rest, the sway of the moment, is carried over as the velocity of an offset that comes back to 0: kept as a velocity, the quarter of a
+    /// stride's turning or swaying that was going on would lead the character off its way. Both are taken at the middle of the step.
+    #[must_use]
+    pub fn step(&self, step: &Planar, dt_secs: f64) -> Planar {
+        let Some(old) = self.travel.filter(|_| dt_secs > 0.0) else {
+            return *step;
+        };
+        let middle = Now::new(self.how, self.elapsed_secs - 0.5 * dt_secs);
+        further(step, middle.travelled(&old, travel(step, dt_secs.recip())), dt_secs)
+    }
+
+    fn now(&self) -> Now {
+        Now::new(self.how, self.elapsed_secs)
+    }
+
+    /// Puts what is left on a pose and on its velocities.
+    fn carry(&mut self, pose: &mut MovingPose) {
+        let now = self.now();
+        let rotations = pose.rotations.iter_mut().zip(&mut pose.angular_velocities);
+        for (turn, (rotation, velocity)) in self.turns.iter_mut().zip(rotations) {
+            let offset = now.turned(turn, *rotation);
+            let rate = now.turning(turn, *velocity);
+            let turned = quat::exp(offset);
+            *velocity = quat::rate_to_angular_velocity(offset, rate) + turned * *velocity;
+            *rotation = quat::renormalize(turned * *rotation);
+        }
+        let translations = pose.translations.iter_mut().zip(&mut pose.velocities);
+        for (shift, (translation, velocity)) in self.shifts.iter().zip(translations) {
+            let (offset, rate) = (now.shifted(shift, *translation), now.shifting(shift, *translation, *velocity));
+            *translation += offset;
+            *velocity += rate;
+        }
+        if let Some(old) = &self.travel {
+            pose.travel += now.travelled(old, pose.travel);
+            pose.steady_travel += now.steadily(old, pose.steady_travel);
+        }
+    }
+}
+
+/// What is the same for all joints at one moment.
+#[derive(Clone, Copy)]
+enum Now {
+    /// A decay whose response does not depend on the offset.
+    Linear(crate::math::Response),
+    /// One whose response does.
+    Quintic(Decay, f64),
+    Dead {
+        weight: f32,
+        /// How the weight changes, per second.
+        falling: f32,
+        /// The share of the old velocity that is left, and the seconds of it that have added up.
+        speed_left: f32,
+        run_on_secs: f32,
+    },
+}
+
+impl Now {
+    fn new(how: Inertialization, secs: f64) -> Self {
+        match how {
+            Inertialization::Offset(decay @ Decay::Quintic { .. }) => Self::Quintic(decay, secs),
+            Inertialization::Offset(decay) => Self::Linear(decay.response(0.0, secs)),
+            Inertialization::DeadBlend {
+                blend_secs,
+                extrapolation_half_life_secs,
+            } => {
+                let (weight, falling) = fade(blend_secs, secs);
+                let (speed_left, run_on_secs) = spring::run_on(extrapolation_half_life_secs, secs);
+                Self::Dead {
+                    weight: weight as f32,
+                    falling: falling as f32,
+                    speed_left: speed_left as f32,
+                    run_on_secs: run_on_secs as f32,
+                }
+            }
+        }
+    }
+
+    fn of(self, offset: Vec3, rate: Vec3) -> (Vec3, Vec3) {
+        match self {
+            Self::Linear(response) => response.of_vec3(offset, rate),
+            Self::Quintic(decay, secs) => decay.of_vec3(offset, rate, secs),
+            Self::Dead { .. } => (Vec3::ZERO, Vec3::ZERO),
+        }
+    }
+
+    /// The rotation vector that is on top of `live` now.
+    fn turned(self, turn: &mut Turn, live: Quat) -> Vec3 {
+        match self {
+            Self::Dead { weight, run_on_secs, .. } => {
+                let old = quat::exp(turn.angular_velocity * run_on_secs) * turn.from;
+                turn.last = quat::in_hemisphere_of(old * live.conjugate(), turn.last);
+                quat::log_as_given(turn.last) * weight
+            }
+            _ => self.of(turn.offset, turn.rate).0,
+        }
+    }
+
+    /// The rate of the vector that [`turned`](Self::turned) gave last, when `live` turns with `live_velocity`.
+    fn turning(self, turn: &Turn, live_velocity: Vec3) -> Vec3 {
+        match self {
+            Self::Dead {
+                weight,
+                falling,
+                speed_left,
+                ..
+            } => {
+                let whole = quat::log_as_given(turn.last);
+                let rate = quat::vector_rate(whole, turn.angular_velocity * speed_left - turn.last * live_velocity);
+                whole * falling + rate * weight
+            }
+            _ => self.of(turn.offset, turn.rate).1,
+        }
+    }
+
+    fn shifted(self, shift: &Shift, live: Vec3) -> Vec3 {
+        match self {
+            Self::Dead { weight, run_on_secs, .. } => (shift.from + shift.velocity * run_on_secs - live) * weight,
+            _ => self.of(shift.offset, shift.rate).0,
+        }
+    }
+
+    fn shifting(self, shift: &Shift, live: Vec3, live_velocity: Vec3) -> Vec3 {
+        match self {
+            Self::Dead {
+                weight,
+                falling,
+                speed_left,
+                run_on_secs,
+            } => {
+                let off = shift.from + shift.velocity * run_on_secs - live;
+                off * falling + (shift.velocity * speed_left - live_velocity) * weight
+            }
+            _ => self.of(shift.offset, shift.rate).1,
+        }
+    }
+
+    fn travelled(self, travel: &Travel, live: Vec3) -> Vec3 {
+        match self {
+            Self::Dead { weight, speed_left, .. } => (travel.from * speed_left - live) * weight,
+            _ => self.steadily(travel, live) + self.of(Vec3::ZERO, travel.sway).1,
+        }
+    }
+
+    fn steadily(self, travel: &Travel, live: Vec3) -> Vec3 {
+        match self {
+            Self::Dead { .. } => self.travelled(travel, live),
+            _ => self.of(travel.steady, Vec3::ZERO).0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,321 @@
+use super::moving::{View, further, travel};
+use super::{LoopCurve, LoopMethod, MovingPose};
+use crate::blend::{Assembly, MOST_SECS, Source, common_carrier, moving_joints};
+use crate::clip::{Clip, ClipError};
+use crate::math::{Planar, Response, quat};
+use crate::skeleton::WorldPose;
+use glam::{Quat, Vec3};
+use std::ops::Range;
+
+/// What a cycle is made with.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct LoopOptions {
+    /// How the difference is spread.
+    pub method: LoopMethod,
+    /// Its share that the start takes, 0 to 1; the end takes the rest.
+    pub ratio: f64,
+}
+
+impl Default for LoopOptions {
+    fn default() -> Self {
+        Self {
+            method: LoopMethod::Exact { half_life_secs: 0.2 },
+            ratio: 0.5,
+        }
+    }
+}
+
+/// Why a clip does not become a cycle.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LoopError {
+    /// The frames are not in the clip, or too few.
+    #[error(
+        "a cycle from frame {start} to frame {end} does not fit a clip of {frames} frames: it needs two frames or more between, and frame {end} itself"
+    )]
+    Range {
+        /// The cycle's first frame.
+        start: usize,
+        /// The frame that stands for the first one again.
+        end: usize,
+        /// Frames of the clip.
+        frames: usize,
+    },
+    /// The clip is shorter than the shortest cycle asked for.
+    #[error("no cycle of {min_secs} s and more fits into {secs:.2} s: allow shorter cycles or use a longer clip")]
+    TooShort {
+        /// The shortest cycle asked for, seconds.
+        min_secs: f64,
+        /// The clip's duration, seconds.
+        secs: f64,
+    },
+    /// A time that is none.
+    #[error("a half-life of {0} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]
+    HalfLife(f64),
+    /// The clip cannot be compared with itself.
+    #[error(transparent)]
+    Registration(#[from] crate::registration::RegistrationError),
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}
+
+/// What is left between the end of a cycle and its next start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoopSeam {
+    /// The largest angle of a joint between the two poses, in the character's frame, degrees.
+    pub turn_deg: f64,
+    /// The joint of that angle.
+    pub turn_joint: usize,
+    /// The largest difference of angular velocities, degrees per second.
+    pub turn_dps: f64,
+    /// The largest difference of translations (the root's height, joints that move against their parent), centimetres.
+    pub shift_cm: f64,
+}
+
+/// A clip that ends where it began: in pose, and moved over the ground by [`cycle`](Self::cycle).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// One cycle. The frame behind its last is its first again, moved by `cycle`.
+    pub clip: Clip,
+    /// How far one cycle goes: the k-th repetition lies at `cycle^k`.
+    pub cycle: Planar,
+    /// Where the character stands and faces in every frame of the cycle (`world_from_character`).
+    pub frames: Vec<Planar>,
+    /// What was to be bridged.
+    pub before: LoopSeam,
+    /// What is left.
+    pub seam: LoopSeam,
+}
+
+impl Loop {
+    /// Plays the cycle `times` times. Where each repetition lies is accumulated in `f64`: poses do not drift.
+    ///
+    /// # Errors
+    /// [`ClipError`] when the result is no clip.
+    pub fn repeat(&self, times: usize) -> Result<Clip, ClipError> {
+        let mut made = Assembly::new(&self.clip, &self.clip, self.clip.frames().saturating_mul(times.min(1 << 10)));
+        let mut world_from_clip = Planar::IDENTITY;
+        for _ in 0..times {
+            made.play_moved(&self.clip, 0..self.clip.frames(), &world_from_clip);
+            world_from_clip = self.cycle.after(&world_from_clip);
+        }
+        made.finish(self.clip.name().to_owned())
+    }
+}
+
+/// Closes a part of a clip into a cycle: frames `cycle.start..cycle.end` play, and frame `cycle.end`, which the clip must have, is bent to be the
+/// first one again.
+///
+/// Rotations, heights and translations of joints are closed in the character's own frame, with their velocities. Ground position and yaw do not
+/// belong to the difference: over the ground the *velocities* of both ends are brought together (sideways, forward, yaw rate), and the cycle
+/// walks on in its own curve. Offsets of rotations are rotation vectors applied on the left; since angular velocities do not add, what is left
+/// after the first solution is solved again, until it is below a millionth of a radian.
+///
+/// Velocities of the two ends are steps of the same kind: into the frames behind them if the clip goes on behind the end, from the frames before them
+/// if it begins before the start; where the cycle is the whole clip, one-sided differences of second order.
+///
+/// # Errors
+/// [`LoopError`] when the cycle has fewer than two frames or is not inside the clip, or the half-life is none.
+pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -> Result<Loop, LoopError> {
+    let clip = source.clip();
+    if cycle.end >= clip.frames() || cycle.start.saturating_add(2) > cycle.end {
+        return Err(LoopError::Range {
+            start: cycle.start,
+            end: cycle.end,
+            frames: clip.frames(),
+        });
+    }
+    if let LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } = options.method
+        && !(0.0..=MOST_SECS).contains(&half_life_secs)
+    {
+        return Err(LoopError::HalfLife(half_life_secs));
+    }
+    let moving = moving_joints(clip, clip);
+    let view = View {
+        source,
+        moving: &moving,
+        fixed: None,
+    };
+    let dt_secs = clip.fps().recip();
+    let curve = LoopCurve::new(options.method, options.ratio, cycle.len() as f64 * dt_secs);
+    let [first, last] = view.ends(&cycle);
+    let ends = Ends {
+        at_start: curve.at(0.0),
+        at_end: curve.at(cycle.len() as f64 * dt_secs),
+        closes: curve.closes(),
+    };
+    let mut seam = LoopSeam::default();
+    let mut before = LoopSeam::default();
+    let closings: Vec<Closing> = (0..first.rotations.len())
+        .map(|joint| {
+            let [start, end] = [&first, &last].map(|pose| (pose.rotations[joint], pose.angular_velocities[joint]));
+            before.turn(joint, &start, &end);
+            let (closing, start, end) = ends.close(start, end);
+            seam.turn(joint, &start, &end);
+            closing
+        })
+        .collect();
+    let shifts: Vec<(Vec3, Vec3)> = (0..first.translations.len())
+        .map(|slot| {
+            let (d, v) = (
+                last.translations[slot] - first.translations[slot],
+                last.velocities[slot] - first.velocities[slot],
+            );
+            let left = d - (ends.at_start.of_vec3(d, v).0 - ends.at_end.of_vec3(d, v).0);
+            before.shift_cm = before.shift_cm.max(f64::from(d.length()) * 100.0);
+            seam.shift_cm = seam.shift_cm.max(f64::from(left.length()) * 100.0);
+            (d, v)
+        })
+        .collect();
+    let travels = last.travel - first.travel;
+
+    let mut made = Assembly::new(clip, clip, cycle.len());
+    let carrier = common_carrier(source, source);
+    let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+    let mut here = source.frames()[cycle.start];
+    let mut frames = Vec::with_capacity(cycle.len());
+    for (index, frame) in cycle.clone().enumerate() {
+        let now = curve.at(index as f64 * dt_secs);
+        view.pose_into(frame, &mut rotations, &mut translations);
+        for (closing, rotation) in closings.iter().zip(&mut rotations) {
+            *rotation = closing.apply(&now, *rotation);
+        }
+        for (&(d, v), translation) in shifts.iter().zip(&mut translations) {
+            *translation += now.of_vec3(d, v).0;
+        }
+        rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
+        let root = here.apply(translations[0]);
+        made.push(root, &rotations, &translations[1..], carrier.map(|joint| (joint, here)), &mut world);
+        frames.push(here);
+        let middle = curve.at((index as f64 + 0.5) * dt_secs).of_vec3(travels, Vec3::ZERO).0;
+        here = here.after(&further(&source.step_into(frame + 1), middle, dt_secs));
+    }
+    let start = source.frames()[cycle.start];
+    Ok(Loop {
+        clip: made.finish(clip.name().to_owned())?,
+        cycle: here.after(&start.inverse()),
+        frames,
+        before,
+        seam,
+    })
+}
+
+/// The offsets that close one joint: differences of rotation and velocity, one pair for every time that it was solved.
+struct Closing {
+    solved: [(Vec3, Vec3); SOLUTIONS],
+    count: usize,
+}
+
+/// The first solution and what is left after it; each has about the square of the error of the one before.
+const SOLUTIONS: usize = 4;
+/// Below these, radians and radians per second, nothing is left to be solved that `f32` can hold.
+const CLOSED: [f32; 2] = [1e-6, 1e-4];
+
+impl Closing {
+    fn apply(&self, now: &Response, rotation: Quat) -> Quat {
+        let closed = self.solved.iter().take(self.count).fold(rotation, |rotation, &(d, v)| {
+            let (offset, _) = now.of_vec3(d, v);
+            quat::exp(offset) * rotation
+        });
+        quat::renormalize(closed)
+    }
+}
+
+/// The curve at both ends of the cycle.
+struct Ends {
+    at_start: Response,
+    at_end: Response,
+    closes: [bool; 2],
+}
+
+impl Ends {
+    /// Solves for one joint from its rotation and angular velocity at both ends; gives both ends as they are then.
+    fn close(&self, mut start: (Quat, Vec3), mut end: (Quat, Vec3)) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
+        let mut closing = Closing {
+            solved: [(Vec3::ZERO, Vec3::ZERO); SOLUTIONS],
+            count: 0,
+        };
+        for slot in &mut closing.solved {
+            let difference = quat::shorter_way(end.0 * start.0.conjugate());
+            let d = quat::log(difference);
+            let v = quat::vector_rate(d, end.1 - difference * start.1);
+            let open = d.length() > CLOSED[0] || (self.closes[1] && v.length() > CLOSED[1]);
+            if !open || (closing.count > 0 && !self.closes[0]) {
+                break;
+            }
+            *slot = (d, v);
+            closing.count += 1;
+            start = offset(start, self.at_start.of_vec3(d, v));
+            end = offset(end, self.at_end.of_vec3(d, v));
+        }
+        (closing, start, end)
+    }
+}
+
+/// A rotation and its angular velocity under an offset and its rate.
+fn offset((rotation, velocity): (Quat, Vec3), (x, rate): (Vec3, Vec3)) -> (Quat, Vec3) {
+    let turned = quat::exp(x);
+    (
+        quat::renormalize(turned * rotation),
+        quat::rate_to_angular_velocity(x, rate) + turned * velocity,
+    )
+}
+
+impl LoopSeam {
+    fn turn(&mut self, joint: usize, start: &(Quat, Vec3), end: &(Quat, Vec3)) {
+        let degrees = f64::from(quat::angle_between(start.0, end.0).to_degrees());
+        if degrees > self.turn_deg {
+            (self.turn_deg, self.turn_joint) = (degrees, joint);
+        }
+        let difference = (start.1 - end.1).length().to_degrees();
+        self.turn_dps = self.turn_dps.max(f64::from(difference));
+    }
+}
+
+impl View<'_> {
+    /// The poses at both ends of a cycle with velocities of the same kind.
+    fn ends(&self, cycle: &Range<usize>) -> [MovingPose; 2] {
+        let frames = self.source.clip().frames();
+        // Steps away from the frame, and their weights in a derivative per frame.
+        let stencils: [&[(isize, f32)]; 2] = if cycle.end + 1 < frames {
+            [&[(1, 1.0)]; 2]
+        } else if cycle.start > 0 {
+            [&[(-1, -1.0)]; 2]
+        } else {
+            [&[(1, 2.0), (2, -0.5)], &[(-1, -2.0), (-2, 0.5)]]
+        };
+        [(cycle.start, stencils[0]), (cycle.end, stencils[1])].map(|(frame, stencil)| self.moving_by(frame, stencil))
+    }
+
+    fn moving_by(&self, frame: usize, stencil: &[(isize, f32)]) -> MovingPose {
+        let fps = self.source.clip().fps();
+        let (rotations, translations) = self.pose(frame);
+        let mut pose = MovingPose {
+            angular_velocities: vec![Vec3::ZERO; rotations.len()],
+            velocities: vec![Vec3::ZERO; translations.len()],
+            rotations,
+            translations,
+            travel: Vec3::ZERO,
+            steady_travel: Vec3::ZERO,
+        };
+        for &(steps, weight) in stencil {
+            let other = frame.saturating_add_signed(steps);
+            let rate = weight * fps as f32;
+            let (rotations, translations) = self.pose(other);
+            for ((velocity, &from), &to) in pose.angular_velocities.iter_mut().zip(&pose.rotations).zip(&rotations) {
+                *velocity += quat::log(to * from.conjugate()) * rate;
+            }
+            for ((velocity, &from), &to) in pose.velocities.iter_mut().zip(&pose.translations).zip(&translations) {
+                *velocity += (to - from) * rate;
+            }
+            let step = self.source.frames()[frame].inverse().after(&self.source.frames()[other]);
+            pose.travel += travel(&step, fps) * weight;
+        }
+        // Both ends are at the same point of the stride: what differs is not sway.
+        pose.steady_travel = pose.travel;
+        pose
+    }
+}
+
+#[cfg(test)]
+mod tests;

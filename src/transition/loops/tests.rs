@@ -1,0 +1,219 @@
+use super::*;
+use crate::clip::JointTranslations;
+use crate::registration::fixtures::Walk;
+use crate::skeleton::Roles;
+use proptest::prelude::*;
+use std::sync::Arc;
+
+const METHODS: [LoopMethod; 4] = [
+    LoopMethod::Exact { half_life_secs: 0.2 },
+    LoopMethod::Cubic,
+    LoopMethod::Linear,
+    LoopMethod::Classic { half_life_secs: 0.2 },
+];
+
+fn source_of(clip: Clip) -> Source {
+    let roles = Roles::detect(clip.skeleton());
+    Source::new(Arc::new(clip), &roles)
+}
+
+/// 67 frames are one stride, and a little.
+fn walk(frames: usize, turning: f32) -> Source {
+    source_of(
+        Walk {
+            frames,
+            turning,
+            heading: 1.0,
+            start: (3.0, -4.0),
+            ..Walk::default()
+        }
+        .clip(),
+    )
+}
+
+fn closed(source: &Source, cycle: Range<usize>, method: LoopMethod, ratio: f64) -> Loop {
+    close_loop(source, cycle, &LoopOptions { method, ratio }).unwrap()
+}
+
+/// The seam as a viewer meets it: joint angles between the last frame of a cycle and the first of the next, less those of the clip's own step.
+fn seam_of_frames(source: &Source, cycle: Range<usize>, made: &Loop) -> f32 {
+    let twice = made.repeat(2).unwrap();
+    let n = made.clip.frames();
+    let own = source.clip();
+    let turn = |clip: &Clip, f: usize, joint: usize| quat::log(clip.rotations(f)[joint] * clip.rotations(f - 1)[joint].conjugate());
+    (1..own.skeleton().len())
+        .map(|joint| (turn(&twice, n, joint) - turn(own, cycle.end, joint)).length())
+        .fold(0.0, f32::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn loops_close(start in 0usize..30, length in 20usize..100, turning in -1.0f32..1.0, ratio in 0.0f64..1.0) {
+        let source = walk(160, turning);
+        for method in &METHODS[..2] {
+            let made = closed(&source, start..start + length, *method, ratio);
+            prop_assert_eq!((made.clip.frames(), made.frames.len()), (length, length));
+            prop_assert!(made.seam.turn_deg < 1e-3 && made.seam.turn_dps < 0.1 && made.seam.shift_cm < 1e-3, "{method:?} {:?}", made.seam);
+        }
+        let linear = closed(&source, start..start + length, LoopMethod::Linear, ratio);
+        prop_assert!(linear.seam.turn_deg < 1e-3, "{:?}", linear.seam);
+    }
+
+    #[test]
+    fn a_hundred_cycles_do_not_drift(start in 0usize..30, length in 40usize..100, turning in -1.0f32..1.0) {
+        let source = walk(160, turning);
+        let roles = Roles::detect(source.clip().skeleton());
+        let made = closed(&source, start..start + length, METHODS[0], 0.5);
+        let played = made.repeat(100).unwrap();
+        let frames = crate::clip::character_frames(&played, &roles);
+        let first = frames[length].after(&frames[0].inverse());
+        for k in 1..100 {
+            let (a, b) = ((k - 1) * length, k * length);
+            // The same pose in the character's frame, and the same way on.
+            let pose = |f: usize| frames[f].inverse().rotation() * played.rotations(f)[0];
+            prop_assert!(quat::angle_between(pose(b), pose(0)) < 1e-4);
+            prop_assert_eq!(&played.rotations(b)[1..], &played.rotations(0)[1..]);
+            prop_assert!((played.root_translations()[b].y - played.root_translations()[0].y).abs() < 1e-4);
+            let way = frames[a].inverse().after(&frames[b]);
+            let expected = frames[0].inverse().after(&frames[length]);
+            prop_assert!(way.shift.distance(expected.shift) < 1e-4 && (way.yaw - expected.yaw).abs() < 1e-4, "{k} {way:?} {expected:?}");
+        }
+        prop_assert!(first.shift.distance(made.cycle.shift) < 1e-3 && (first.yaw - made.cycle.yaw).abs() < 1e-4);
+    }
+}
+
+/// Rotations about all axes do not commute: one solution is not enough.
+#[test]
+fn large_differences_about_any_axis_close() {
+    let skeleton = crate::skeleton::fixtures::cmu_bvh();
+    let mut largest = 0.0_f64;
+    for seed in 0..4 {
+        let source = source_of(crate::clip::fixtures::wander_by(&skeleton, 90, seed, 2.5));
+        for (cycle, ratio) in [(3..45, 0.5), (0..30, 1.0), (20..89, 0.2)] {
+            for method in &METHODS[..2] {
+                let made = closed(&source, cycle.clone(), *method, ratio);
+                largest = largest.max(made.before.turn_deg);
+                assert!(
+                    made.seam.turn_deg < 2e-3 && made.seam.turn_dps < 0.1,
+                    "{method:?} {:?} {:?}",
+                    made.before,
+                    made.seam
+                );
+            }
+        }
+    }
+    assert!(largest > 60.0, "{largest}");
+}
+
+#[test]
+fn what_a_viewer_meets_at_the_seam() {
+    let source = walk(160, 0.3);
+    // 60 frames of 66.7: most of a tenth of a stride is missing.
+    for cycle in [5..65, 0..60, 99..159] {
+        let frames = source.clip().frames();
+        let own = cycle.end.min(frames - 1);
+        assert_eq!(own, cycle.end);
+        let raw = source.clip().rotations(cycle.start).iter().zip(source.clip().rotations(cycle.end));
+        let gap = raw.skip(1).map(|(a, b)| quat::angle_between(*a, *b)).fold(0.0, f32::max);
+        assert!(gap > 0.2);
+        let exact = closed(&source, cycle.clone(), METHODS[0], 0.5);
+        // The root's own step is the one difference that is left to the way over the ground.
+        assert!(
+            seam_of_frames(&source, cycle.clone(), &exact) < 0.05,
+            "{}",
+            seam_of_frames(&source, cycle.clone(), &exact)
+        );
+        assert!((exact.before.turn_deg - f64::from(gap.to_degrees())).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn the_classic_loop_s_seam_is_told() {
+    let source = walk(160, 0.0);
+    let classic = closed(&source, 5..35, METHODS[3], 0.5);
+    let z = crate::math::spring::rate(0.2) * 0.5;
+    let k = (1.0 + z) * (-z).exp();
+    // Velocities differ as well, so the share is that of the pose difference only in order.
+    let share = classic.seam.turn_deg / classic.before.turn_deg;
+    assert!(share > 0.5 * k && share < 2.5 * k, "{share} {k}");
+    assert!(closed(&source, 5..35, METHODS[0], 0.5).seam.turn_deg < 1e-3);
+}
+
+#[test]
+fn a_cycle_that_closes_by_itself_stays_as_it_is() {
+    // Exactly one stride in 64 frames.
+    let source = source_of(
+        Walk {
+            frames: 65,
+            fps: 64.0,
+            cadence: 1.0,
+            ..Walk::default()
+        }
+        .clip(),
+    );
+    for method in METHODS {
+        let made = closed(&source, 0..64, method, 0.5);
+        let own = source.clip().crop(0..64).unwrap();
+        let (p, q) = (made.clip.world_positions(0..64), own.world_positions(0..64));
+        let worst = p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+        assert!(worst < 0.01, "{method:?} {worst}");
+        let forward = made.cycle.shift.length();
+        assert!((forward - 1.3).abs() < 0.01, "{forward}");
+    }
+}
+
+/// The loop of a clip that turns walks on in its own curve.
+#[test]
+fn the_way_goes_on_in_its_own_curve() {
+    let source = walk(160, 0.6);
+    let made = closed(&source, 10..77, METHODS[0], 0.5);
+    assert!((made.cycle.yaw - 0.6 * 67.0 / 60.0).abs() < 0.05, "{:?}", made.cycle);
+    let steps: Vec<f64> = {
+        let played = made.repeat(3).unwrap();
+        let roots = played.root_translations();
+        roots.windows(2).map(|p| f64::from((p[1] - p[0]).length()) * 60.0).collect()
+    };
+    assert!(
+        steps.windows(2).all(|s| (s[1] - s[0]).abs() < 0.08),
+        "no jump of speed at the seams"
+    );
+}
+
+#[test]
+fn tracks_close_too_and_ends_are_kept_by_the_ratio() {
+    let (clip, n) = ((**walk(100, 0.0).clip()).clone(), 100);
+    let values = (0..n).map(|f| Vec3::new(0.2, 0.22 + 0.002 * f as f32, 0.0)).collect();
+    let source = source_of(clip.with_translations(vec![JointTranslations { joint: 3, values }]).unwrap());
+    let start_kept = closed(&source, 10..70, LoopMethod::Exact { half_life_secs: 0.05 }, 0.0);
+    assert!((start_kept.clip.translations()[0].values[0].y - 0.24).abs() < 1e-4);
+    let end_kept = closed(&source, 10..70, LoopMethod::Exact { half_life_secs: 0.05 }, 1.0);
+    let values = &end_kept.clip.translations()[0].values;
+    assert!((values[59].y - (0.22 + 0.138)).abs() < 1e-4);
+    assert!(values[0].y > 0.35);
+    assert_eq!(end_kept.repeat(3).unwrap().translations()[0].values.len(), 180);
+}
+
+#[test]
+fn what_is_no_cycle_is_refused() {
+    let source = walk(60, 0.0);
+    for cycle in [0..60, 10..11, 40..40, 59..70, 0..usize::MAX, usize::MAX..usize::MAX] {
+        let error = close_loop(&source, cycle, &LoopOptions::default()).unwrap_err();
+        assert!(matches!(error, LoopError::Range { frames: 60, .. }));
+    }
+    for half_life_secs in [f64::NAN, -1.0, 1e9] {
+        let method = LoopMethod::Exact { half_life_secs };
+        assert!(matches!(
+            close_loop(&source, 0..59, &LoopOptions { method, ratio: 0.5 }),
+            Err(LoopError::HalfLife(_))
+        ));
+    }
+    assert_eq!(closed(&source, 0..59, METHODS[0], 0.5).repeat(0).unwrap().frames(), 0);
+    assert!(
+        closed(&source, 0..59, LoopMethod::Exact { half_life_secs: 0.0 }, 0.5)
+            .clip
+            .root_translations()
+            .iter()
+            .all(|p| p.is_finite())
+    );
+}
