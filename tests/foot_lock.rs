@@ -137,3 +137,35 @@ fn every_pair() {
         }
     }
 }
+
+#[test]
+fn debug_pair() {
+    let names = std::env::var("PAIR").unwrap_or_default();
+    let names: Vec<&str> = names.split(',').collect();
+    if names.len() < 2 { return; }
+    let takes = captured(&names);
+    let (a, b) = (&takes[0], &takes[1]);
+    let (out, enter) = joined(a, b);
+    let contacts = Contacts::joined(a.profile.contacts(), b.profile.contacts(), out.transition.start, enter, out.handover);
+    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
+    println!("transition {:?} handover {} frames {}", out.transition, out.handover, clip.frames());
+    let mut worst = (0.0, 0, Side::Left);
+    for side in Side::BOTH {
+        let knee = a.roles.get(Role::shin(side)).unwrap();
+        for f in 1..clip.frames() {
+            let v = quat::angle_between(clip.rotations(f - 1)[knee], clip.rotations(f)[knee]);
+            if v > worst.0 { worst = (v, f, side); }
+        }
+        println!("{side:?} {:?}", contacts.intervals(side));
+    }
+    let (_, frame, side) = worst;
+    let [t, k, f] = [Role::thigh(side), Role::shin(side), Role::foot(side)].map(|r| a.roles.get(r).unwrap());
+    for fr in frame.saturating_sub(12)..(frame + 12).min(clip.frames()) {
+        let (w, x) = (out.clip.world_pose(fr), clip.world_pose(fr));
+        let flex = |w: &segue::skeleton::WorldPose| (w.positions[k] - w.positions[t]).angle_between(w.positions[f] - w.positions[k]).to_degrees();
+        let len = |w: &segue::skeleton::WorldPose| (w.positions[f] - w.positions[t]).length();
+        let d = x.positions[f] - w.positions[f];
+        let e = if fr>0 {quat::angle_between(clip.rotations(fr - 1)[k], clip.rotations(fr)[k]).to_degrees()*120.0} else {0.0};
+        println!("{fr} {side:?} {} flex {:.1}→{:.1} len {:.4}→{:.4} hips {:+.4} ankle shift {:+.4} {:+.4} {:+.4} knee {:.0}", contacts.planted(side, fr), flex(&w), flex(&x), len(&w), len(&x), x.positions[0].y - w.positions[0].y, d.x, d.y, d.z, e);
+    }
+}

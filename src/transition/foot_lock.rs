@@ -1,10 +1,11 @@
 use crate::blend::MOST_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
-use crate::math::quat;
+use crate::math::{curve, quat};
 use crate::skeleton::{Role, Roles, Side, WorldPose, two_bones};
 use glam::{Mat3, Quat, Vec3};
 
 mod anchor;
+mod envelope;
 mod hips;
 
 /// How feet are planted. Lengths are those of a character 1.75 m tall and are scaled to the clip's character.
@@ -151,7 +152,6 @@ struct Leg {
 /// A leg of the clip in one frame, in the world.
 #[derive(Clone, Copy, Debug)]
 struct Posed {
-    hip: Vec3,
     /// Hip to knee, and knee to ankle.
     thigh: Vec3,
     shin: Vec3,
@@ -177,7 +177,6 @@ impl Leg {
     fn pose(&self, world: &WorldPose) -> Posed {
         let [hip, knee, ankle] = self.joints.map(|joint| world.positions[joint]);
         Posed {
-            hip,
             thigh: knee - hip,
             shin: ankle - knee,
             rotations: self.joints.map(|joint| world.rotations[joint]),
@@ -219,9 +218,11 @@ impl Posed {
     fn turned(&self, shift: Vec3, usual_axis: Vec3) -> [Quat; 2] {
         let (a, b) = (self.thigh.length(), self.shin.length());
         let bend = self.bend();
-        let straight = 1.0 - crate::math::curve::smoothstep(bend.length() / PLANE_SINE);
+        let usual = self.rotations[0] * usual_axis;
+        // A knee that is bent the wrong way has no plane of its own either.
+        let own = curve::smoothstep(bend.dot(usual) / PLANE_SINE);
         let line = self.line();
-        let axis = bend + self.rotations[0] * usual_axis * PLANE_SINE * straight;
+        let axis = bend * own + usual * PLANE_SINE * (1.0 - own);
         let from = two_bones(line, a, b, axis);
         let wanted = (line + shift).clamp_length_max(self.reach());
         let mut asked = wanted;

@@ -1,6 +1,7 @@
 //! Where a planted foot belongs.
 
 use super::FootLockOptions;
+use super::envelope::{largest_around, smoothed};
 use crate::clip::{Clip, stillest_step};
 use crate::math::{Decay, curve};
 use crate::skeleton::{Roles, Side, WorldPose};
@@ -11,6 +12,8 @@ use std::ops::Range;
 const SHORTEST_SWING_SECS: f64 = 0.1;
 /// Below this speed a foot is as good as still when its place is chosen, metres per second.
 const STILL_MPS: f32 = 0.05;
+/// A foot that is lifted out of the ground is lifted smoothly over this time to either side, seconds.
+const LIFT_SECS: f64 = 0.06;
 
 /// The way of one foot through the clip.
 pub(super) struct Foot {
@@ -84,9 +87,22 @@ impl Foot {
             let shift = shifts[frame] + place;
             let length = shift.length();
             let limited = if length > 0.0 { curve::soft_limit(length, 0.5 * most, most) / length } else { 1.0 };
+            shifts[frame] = shift * limited;
+        }
+        let Some(ground) = options.ground_m else { return };
+        let depth = |frame: usize| {
             let lowest = self.at(frame).iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
-            let lift = options.ground_m.map_or(0.0, |ground| (ground - lowest).max(0.0));
-            shifts[frame] = shift * limited + Vec3::Y * lift;
+            (ground - lowest).max(0.0)
+        };
+        let depths: Vec<f32> = stance.clone().map(depth).collect();
+        if depths.iter().all(|&depth| depth == 0.0) {
+            return;
+        }
+        // A toe that dips for one frame must not kick the leg.
+        let reach = ((LIFT_SECS * fps).round() as usize).max(1);
+        let lifts = smoothed(&largest_around(&depths, reach), reach);
+        for (shift, lift) in shifts[stance.clone()].iter_mut().zip(lifts) {
+            shift.y = lift;
         }
     }
 }

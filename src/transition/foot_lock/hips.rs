@@ -1,6 +1,7 @@
 //! How far the hips are raised or lowered for planted feet.
 
 use super::Posed;
+use super::envelope::{largest_around, smoothed};
 use glam::Vec3;
 
 /// The hips follow what is needed, smoothed over this time to either side, seconds.
@@ -55,31 +56,4 @@ fn too_high<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>, height: f32) -> f
         (height - asked.y - highest - 1e-5).max(0.0)
     };
     legs.map(too_high).fold(0.0, f32::max)
-}
-
-/// A mean over `reach` values to either side with the weights of a raised cosine; at the ends over those that there are.
-fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
-    let weight = |off: isize| 1.0 + (std::f32::consts::PI * off as f32 / (reach + 1) as f32).cos();
-    let weights: Vec<f32> = (-(reach as isize)..=reach as isize).map(weight).collect();
-    let mean = |at: usize| {
-        let first = at.saturating_sub(reach);
-        let around = &values[first..(at + reach + 1).min(values.len())];
-        if around.iter().all(|&value| value == 0.0) {
-            return 0.0;
-        }
-        let weights = &weights[first + reach - at..];
-        let sum: f32 = around.iter().zip(weights).map(|(value, weight)| value * weight).sum();
-        sum / weights[..around.len()].iter().sum::<f32>()
-    };
-    (0..values.len()).map(mean).collect()
-}
-
-fn largest_around(values: &[f32], reach: usize) -> Vec<f32> {
-    let largest = |at: usize| {
-        values[at.saturating_sub(reach)..(at + reach + 1).min(values.len())]
-            .iter()
-            .copied()
-            .fold(0.0, f32::max)
-    };
-    (0..values.len()).map(largest).collect()
 }
