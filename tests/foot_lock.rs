@@ -65,7 +65,10 @@ fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
     let found = search.best(PoseWeights::default(), &SearchOptions::new(40)).expect("windows fit");
     let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });
     let options = TransitionOptions::new(Method::Inertialize(spring));
-    (concatenate(from, found.leave, to, found.enter, &options).expect("frames are there"), found.enter)
+    (
+        concatenate(from, found.leave, to, found.enter, &options).expect("frames are there"),
+        found.enter,
+    )
 }
 
 fn measured(a: &Take, b: &Take, out: &Concatenation, enter: usize, result: &Clip) -> TransitionMetrics {
@@ -93,7 +96,13 @@ fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
 /// Skate before and after, centimetres, and the fastest knee before and after, degrees per second.
 fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
     let (out, enter) = joined(a, b);
-    let contacts = Contacts::joined(a.profile.contacts(), b.profile.contacts(), out.transition.start, enter, out.handover);
+    let contacts = Contacts::joined(
+        a.profile.contacts(),
+        b.profile.contacts(),
+        out.transition.start,
+        enter,
+        out.handover,
+    );
     let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
     let skate = [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
     let knees = [&out.clip, &clip].map(|clip| fastest_knee(clip, &a.roles));
@@ -126,46 +135,22 @@ fn made_walks_and_runs_lose_their_skate_too() {
     }
 }
 
+/// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is hurried.
 #[test]
-fn every_pair() {
-    let takes = captured(&[
-        "05", "08", "11", "13", "15", "16", "17", "19", "22", "29", "33", "35", "37", "39", "41", "43", "45", "55", "57",
-    ]);
+fn pairs_of_cmu_16_stand_still() {
+    let takes = captured(&["05", "11", "15", "17", "22", "35", "43", "55"]);
+    let (mut skates, mut hurried) = (vec![], 0);
     for a in &takes {
         for b in &takes {
-            locked(a, b);
+            let (skate, knees) = locked(a, b);
+            skates.push(skate[1]);
+            hurried += usize::from(knees[1] > 1.5 * knees[0]);
         }
     }
-}
-
-#[test]
-fn debug_pair() {
-    let names = std::env::var("PAIR").unwrap_or_default();
-    let names: Vec<&str> = names.split(',').collect();
-    if names.len() < 2 { return; }
-    let takes = captured(&names);
-    let (a, b) = (&takes[0], &takes[1]);
-    let (out, enter) = joined(a, b);
-    let contacts = Contacts::joined(a.profile.contacts(), b.profile.contacts(), out.transition.start, enter, out.handover);
-    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
-    println!("transition {:?} handover {} frames {}", out.transition, out.handover, clip.frames());
-    let mut worst = (0.0, 0, Side::Left);
-    for side in Side::BOTH {
-        let knee = a.roles.get(Role::shin(side)).unwrap();
-        for f in 1..clip.frames() {
-            let v = quat::angle_between(clip.rotations(f - 1)[knee], clip.rotations(f)[knee]);
-            if v > worst.0 { worst = (v, f, side); }
-        }
-        println!("{side:?} {:?}", contacts.intervals(side));
-    }
-    let (_, frame, side) = worst;
-    let [t, k, f] = [Role::thigh(side), Role::shin(side), Role::foot(side)].map(|r| a.roles.get(r).unwrap());
-    for fr in frame.saturating_sub(12)..(frame + 12).min(clip.frames()) {
-        let (w, x) = (out.clip.world_pose(fr), clip.world_pose(fr));
-        let flex = |w: &segue::skeleton::WorldPose| (w.positions[k] - w.positions[t]).angle_between(w.positions[f] - w.positions[k]).to_degrees();
-        let len = |w: &segue::skeleton::WorldPose| (w.positions[f] - w.positions[t]).length();
-        let d = x.positions[f] - w.positions[f];
-        let e = if fr>0 {quat::angle_between(clip.rotations(fr - 1)[k], clip.rotations(fr)[k]).to_degrees()*120.0} else {0.0};
-        println!("{fr} {side:?} {} flex {:.1}→{:.1} len {:.4}→{:.4} hips {:+.4} ankle shift {:+.4} {:+.4} {:+.4} knee {:.0}", contacts.planted(side, fr), flex(&w), flex(&x), len(&w), len(&x), x.positions[0].y - w.positions[0].y, d.x, d.y, d.z, e);
+    if !skates.is_empty() {
+        skates.sort_by(f64::total_cmp);
+        let median = skates[skates.len() / 2];
+        println!("median {median:.3} cm, {hurried} of {} with a hurried knee", skates.len());
+        assert!(median < 1.0 && hurried * 20 < skates.len(), "{median} {hurried}");
     }
 }

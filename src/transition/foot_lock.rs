@@ -90,7 +90,11 @@ const PLANE_SINE: f32 = 0.2;
 pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Clip, FootLockError> {
     let check = |what, value: f64, most: f64| {
         let fits = (0.0..=most).contains(&value);
-        if fits { Ok(()) } else { Err(FootLockError::Option { what, value, most }) }
+        if fits {
+            Ok(())
+        } else {
+            Err(FootLockError::Option { what, value, most })
+        }
     };
     check("blend time (s)", options.blend_secs, MOST_SECS)?;
     check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
@@ -140,7 +144,9 @@ pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &Foot
         }
     }
     let locked = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
-    Ok(locked.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
+    Ok(locked
+        .with_translations(clip.translations().to_vec())?
+        .with_provenance(clip.provenance()))
 }
 
 /// The joints of a leg, and their parents.
@@ -164,14 +170,18 @@ impl Leg {
         let skeleton = clip.skeleton();
         let [thigh, shin, foot, _] = Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
         let joints = [thigh?, shin?, foot?];
-        let above = |joint: usize, wanted: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == wanted);
+        let above =
+            |joint: usize, wanted: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == wanted);
         let [Some(a), Some(b), Some(c)] = joints.map(|joint| skeleton.parent(joint)) else {
             return None;
         };
         let chain = above(joints[1], joints[0]) && above(joints[2], joints[1]);
         let rest = skeleton.rest_positions();
         let bones = [0, 1].map(|bone| rest[joints[bone]].distance(rest[joints[bone + 1]]));
-        (chain && bones.iter().all(|length| *length > 1e-3)).then_some(Self { joints, parents: [a, b, c] })
+        (chain && bones.iter().all(|length| *length > 1e-3)).then_some(Self {
+            joints,
+            parents: [a, b, c],
+        })
     }
 
     fn pose(&self, world: &WorldPose) -> Posed {
