@@ -31,7 +31,7 @@ mod dissolve;
 mod place;
 mod weight;
 
-pub(crate) use assembly::{Assembly, moving_joints, translation_of};
+pub(crate) use assembly::{Assembly, moving_joints, standing_over, translation_of};
 pub use concatenation::Concatenation;
 pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
 pub(crate) use dissolve::{check, common_carrier, laid_on};

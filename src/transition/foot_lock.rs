@@ -1,6 +1,7 @@
 use crate::blend::MOST_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::math::{curve, quat};
+use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Role, Roles, Side, WorldPose, two_bones};
 use glam::{Mat3, Quat, Vec3};
 
@@ -59,8 +60,6 @@ pub enum FootLockError {
     Clip(#[from] ClipError),
 }
 
-/// The height that the options' lengths are given for, metres.
-const REFERENCE_HEIGHT_M: f32 = 1.75;
 /// A leg is not stretched beyond this flexion of the knee, unless the clip itself does so: near full stretch the knee would snap.
 const LEAST_FLEXION_RADIANS: f32 = 0.14;
 /// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane takes over.
@@ -118,7 +117,7 @@ pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &Foot
             foot.push(&world);
         }
     }
-    let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
+    let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32;
     let shifts: Vec<Vec<Vec3>> = (legs.iter().zip(&feet))
         .map(|((side, _), foot)| foot.shifts(&contacts.intervals(*side), clip.fps(), scale, options))
         .collect();
