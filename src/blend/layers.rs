@@ -166,7 +166,10 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
     if frame < over.frames() {
         Ok(())
     } else {
-        Err(LayerError::NoFrame { frame, frames: over.frames() })
+        Err(LayerError::NoFrame {
+            frame,
+            frames: over.frames(),
+        })
     }
 }
 
@@ -205,7 +208,11 @@ impl Layering<'_> {
                     self.base.root_translations()[frame] + Vec3::Y * rise * self.weight(0)
                 }
             };
-            let translations: Vec<Vec3> = self.moving.iter().map(|&joint| self.translation(joint, frame, &over, &reference)).collect();
+            let translations: Vec<Vec3> = self
+                .moving
+                .iter()
+                .map(|&joint| self.translation(joint, frame, &over, &reference))
+                .collect();
             let carrier = self.carrier.filter(|_| self.options.mode == LayerMode::Override);
             made.push(root, &rotations, &translations, carrier.map(|joint| (joint, here)), &mut world);
         }
@@ -320,10 +327,21 @@ impl Layering<'_> {
     fn add(&self, frame: usize, over: &Pose, reference: &Pose, rotations: &mut Vec<Quat>) {
         rotations.clear();
         let poses = over.rotations.iter().zip(&reference.rotations);
-        rotations.extend(self.base.rotations(frame).iter().zip(poses).enumerate().map(|(joint, (&base, (over, reference)))| {
-            let weight = self.weight(joint);
-            if weight == 0.0 { base } else { added(base, *over, *reference, weight) }
-        }));
+        rotations.extend(
+            self.base
+                .rotations(frame)
+                .iter()
+                .zip(poses)
+                .enumerate()
+                .map(|(joint, (&base, (over, reference)))| {
+                    let weight = self.weight(joint);
+                    if weight == 0.0 {
+                        base
+                    } else {
+                        added(base, *over, *reference, weight)
+                    }
+                }),
+        );
     }
 
     /// The root's place in an override.

@@ -67,7 +67,9 @@ impl<'a> Body<'a> {
         let carries = |above: usize, joint: Option<usize>| joint.is_some_and(|joint| up(joint).any(|j| j == above));
         let ends = [arms[0], arms[1], joint(Role::Head)];
         // The lowest joint that two of the arms and the head hang on.
-        let chest = (0..skeleton.len()).rev().find(|&above| ends.iter().filter(|&&end| carries(above, end)).count() >= 2);
+        let chest = (0..skeleton.len())
+            .rev()
+            .find(|&above| ends.iter().filter(|&&end| carries(above, end)).count() >= 2);
         let below_chest = |end: Option<usize>| {
             let end = end?;
             up(end).take_while(|&joint| Some(joint) != chest).last()

@@ -57,6 +57,8 @@ pub struct GaitClip {
 
 /// The weight may leave 0 to 1 by this.
 const BEYOND: f64 = 0.25;
+/// A weight that lies by this beyond the gaits is theirs: a walk of 1.4 m/s sways, and its way is a little longer.
+const NEARLY: f64 = 0.02;
 /// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two gaits.
 const LEAST_SHARE: f64 = 0.1;
 /// The least difference of speeds, metres per second.
@@ -187,8 +189,7 @@ impl SpeedBlend {
             stride_m: stride,
             cadence_spm: 120.0 / cycle_secs,
             cycle_secs,
-            // Not for what rounding makes of the gaits' own speeds.
-            extrapolated: !(-1e-6..=1.0 + 1e-6).contains(&weight),
+            extrapolated: !(-NEARLY..=1.0 + NEARLY).contains(&weight),
             limited: (weight - asked).abs() > 1e-6,
         }
     }

@@ -41,10 +41,25 @@ fn agrees_with_scipy() {
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 9, 1), wander(&skeleton, 9, 2));
     let mode = LayerMode::Additive(Reference::Frame(0));
-    let out = layer(&base, &roles, &over, &LayerOptions { mode, weight: 0.7, ..options(&[BodyPart::UpperBody]) }).unwrap();
+    let out = layer(
+        &base,
+        &roles,
+        &over,
+        &LayerOptions {
+            mode,
+            weight: 0.7,
+            ..options(&[BodyPart::UpperBody])
+        },
+    )
+    .unwrap();
     let joint = roles.get(Role::LeftForearm).unwrap();
     for frame in 0..9 {
-        let wanted = added(base.rotations(frame)[joint], over.rotations(frame)[joint], over.rotations(0)[joint], 0.7);
+        let wanted = added(
+            base.rotations(frame)[joint],
+            over.rotations(frame)[joint],
+            over.rotations(0)[joint],
+            0.7,
+        );
         // The last frame of a loop is its first.
         if frame < 8 {
             assert!(quat::angle_between(out.rotations(frame)[joint], wanted) < 1e-5, "{frame}");
@@ -92,7 +107,12 @@ fn a_layer_of_itself_changes_nothing() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     for keep_orientation in [false, true] {
-        let all = LayerOptions { keep_orientation, weight: 0.6, time: LayerTime::Hold, ..options(&[BodyPart::Whole]) };
+        let all = LayerOptions {
+            keep_orientation,
+            weight: 0.6,
+            time: LayerTime::Hold,
+            ..options(&[BodyPart::Whole])
+        };
         let out = layer(&clip, &roles, &clip, &all).unwrap();
         assert!(crate::clip::fixtures::largest_distance(&out, &clip) < 1e-4);
     }
@@ -112,7 +132,10 @@ fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
     }
     // The run is shorter, and goes on from its beginning without a jump.
     let steps: Vec<f64> = got.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).collect();
-    assert!(out.frames() > run.frames() && steps.iter().all(|step| (step * 60.0 - 3.5).abs() < 0.6), "{steps:?}");
+    assert!(
+        out.frames() > run.frames() && steps.iter().all(|step| (step * 60.0 - 3.5).abs() < 0.6),
+        "{steps:?}"
+    );
 }
 
 #[test]
@@ -121,11 +144,17 @@ fn an_upper_body_can_keep_its_orientation() {
     let roles = Roles::detect(walk.skeleton());
     let head = roles.get(Role::Head).unwrap();
     let off = |keep_orientation, feather| {
-        let upper = LayerOptions { keep_orientation, feather, ..options(&[BodyPart::UpperBody]) };
+        let upper = LayerOptions {
+            keep_orientation,
+            feather,
+            ..options(&[BodyPart::UpperBody])
+        };
         let out = layer(&walk, &roles, &idle, &upper).unwrap();
         let stands = [&out, &idle].map(|clip| character_frames(clip, &roles));
-        let orientation = |clip: &Clip, frame: usize, stands: &[Planar]| stands[frame].inverse().rotation() * clip.world_pose(frame).rotations[head];
-        let angles = (0..out.frames()).map(|frame| quat::angle_between(orientation(&out, frame, &stands[0]), orientation(&idle, frame, &stands[1])));
+        let orientation =
+            |clip: &Clip, frame: usize, stands: &[Planar]| stands[frame].inverse().rotation() * clip.world_pose(frame).rotations[head];
+        let angles =
+            (0..out.frames()).map(|frame| quat::angle_between(orientation(&out, frame, &stands[0]), orientation(&idle, frame, &stands[1])));
         angles.fold(0.0, f32::max).to_degrees()
     };
     // The facing of a body is the mean of hips and shoulders: half of the walk's turn of the hips is still between the two.
@@ -140,7 +169,11 @@ fn layers_begin_and_end_when_they_are_told() {
     let (base, over) = (wander(&skeleton, 40, 1), wander(&skeleton, 11, 2));
     let joint = roles.get(Role::RightHand).unwrap();
     let at = |time, start_secs, frame: usize| {
-        let told = LayerOptions { time, start_secs, ..options(&[BodyPart::RightArm]) };
+        let told = LayerOptions {
+            time,
+            start_secs,
+            ..options(&[BodyPart::RightArm])
+        };
         layer(&base, &roles, &over, &told).unwrap().rotations(frame)[joint]
     };
     let of = |frame: usize| over.rotations(frame)[joint];
@@ -156,12 +189,23 @@ fn joints_that_move_are_blended_too() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let hand = roles.get(Role::LeftHand).unwrap();
-    let track = |x: f32| vec![JointTranslations { joint: hand, values: vec![Vec3::X * x; 5] }];
+    let track = |x: f32| {
+        vec![JointTranslations {
+            joint: hand,
+            values: vec![Vec3::X * x; 5],
+        }]
+    };
     let base = wander(&skeleton, 5, 1).with_translations(track(0.2)).unwrap();
     let over = wander(&skeleton, 5, 2).with_translations(track(0.6)).unwrap();
-    let half = LayerOptions { weight: 0.5, ..options(&[BodyPart::LeftArm]) };
+    let half = LayerOptions {
+        weight: 0.5,
+        ..options(&[BodyPart::LeftArm])
+    };
     assert!((layer(&base, &roles, &over, &half).unwrap().translations()[0].values[3].x - 0.4).abs() < 1e-6);
-    let against = LayerOptions { mode: LayerMode::Additive(Reference::Frame(0)), ..half };
+    let against = LayerOptions {
+        mode: LayerMode::Additive(Reference::Frame(0)),
+        ..half
+    };
     assert!((layer(&base, &roles, &over, &against).unwrap().translations()[0].values[3].x - 0.2).abs() < 1e-6);
 }
 
@@ -179,12 +223,29 @@ fn masks_know_the_body() {
             let spine = roles.get(Role::Spine).unwrap();
             let pelvis = std::iter::successors(roles.get(Role::LeftThigh), |&joint| skeleton.parent(joint)).any(|joint| joint == spine);
             let first = if pelvis { 0.0 } else { 1.0 / (feather + 1) as f32 };
-            assert_eq!((upper[spine], at(&lower, Role::LeftToe), at(&upper, Role::LeftHand)), (first, 1.0, 1.0), "{rig}");
+            assert_eq!(
+                (upper[spine], at(&lower, Role::LeftToe), at(&upper, Role::LeftHand)),
+                (first, 1.0, 1.0),
+                "{rig}"
+            );
             let [arm, head, back] = [BodyPart::RightArm, BodyPart::Head, BodyPart::Spine].map(of);
-            assert!(at(&arm, Role::RightHand) > 0.9 && at(&arm, Role::LeftHand) == 0.0 && at(&arm, Role::Head) == 0.0, "{rig}");
-            assert!(at(&head, Role::Head) > 0.2 && at(&head, Role::RightUpperArm) == 0.0 && at(&head, Role::Spine) == 0.0, "{rig}");
-            assert!((pelvis || at(&back, Role::Spine) > 0.0) && at(&back, Role::Head) == 0.0 && at(&back, Role::LeftUpperArm) == 0.0, "{rig}");
-            assert!(mask(&skeleton, &Roles::default(), &[BodyPart::LeftArm, BodyPart::Head], 0).iter().all(|w| *w == 0.0));
+            assert!(
+                at(&arm, Role::RightHand) > 0.9 && at(&arm, Role::LeftHand) == 0.0 && at(&arm, Role::Head) == 0.0,
+                "{rig}"
+            );
+            assert!(
+                at(&head, Role::Head) > 0.2 && at(&head, Role::RightUpperArm) == 0.0 && at(&head, Role::Spine) == 0.0,
+                "{rig}"
+            );
+            assert!(
+                (pelvis || at(&back, Role::Spine) > 0.0) && at(&back, Role::Head) == 0.0 && at(&back, Role::LeftUpperArm) == 0.0,
+                "{rig}"
+            );
+            assert!(
+                mask(&skeleton, &Roles::default(), &[BodyPart::LeftArm, BodyPart::Head], 0)
+                    .iter()
+                    .all(|w| *w == 0.0)
+            );
         }
     }
 }
@@ -194,17 +255,41 @@ fn what_cannot_be_layered_is_said() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 5, 1), wander(&skeleton, 5, 2));
-    let with = |weight, start_secs, mode| layer(&base, &roles, &over, &LayerOptions { weight, start_secs, mode, ..options(&[BodyPart::Head]) });
+    let with = |weight, start_secs, mode| {
+        layer(
+            &base,
+            &roles,
+            &over,
+            &LayerOptions {
+                weight,
+                start_secs,
+                mode,
+                ..options(&[BodyPart::Head])
+            },
+        )
+    };
     for weight in [-0.1, 1.1, f32::NAN] {
-        assert!(matches!(with(weight, 0.0, LayerMode::Override), Err(LayerError::Number { what: "weight", .. })));
+        assert!(matches!(
+            with(weight, 0.0, LayerMode::Override),
+            Err(LayerError::Number { what: "weight", .. })
+        ));
     }
-    assert!(matches!(with(1.0, f64::INFINITY, LayerMode::Override), Err(LayerError::Number { .. })));
+    assert!(matches!(
+        with(1.0, f64::INFINITY, LayerMode::Override),
+        Err(LayerError::Number { .. })
+    ));
     let late = LayerMode::Additive(Reference::Frame(5));
     assert_eq!(with(1.0, 0.0, late), Err(LayerError::NoFrame { frame: 5, frames: 5 }));
     let other = wander(&fixtures::bandai(), 5, 1);
-    assert!(matches!(layer(&base, &roles, &other, &LayerOptions::default()), Err(LayerError::Skeletons { .. })));
+    assert!(matches!(
+        layer(&base, &roles, &other, &LayerOptions::default()),
+        Err(LayerError::Skeletons { .. })
+    ));
     let none = over.crop(0..0).unwrap();
-    assert!(matches!(layer(&base, &roles, &none, &LayerOptions::default()), Err(LayerError::NoFrame { .. })));
+    assert!(matches!(
+        layer(&base, &roles, &none, &LayerOptions::default()),
+        Err(LayerError::NoFrame { .. })
+    ));
     let empty = base.crop(0..0).unwrap();
     assert_eq!(layer(&empty, &roles, &over, &LayerOptions::default()), Ok(empty.clone()));
     assert!(Arc::ptr_eq(empty.skeleton(), base.skeleton()));
