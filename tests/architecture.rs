@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of the library, each with those that its code may name beside itself.
-const LIBRARY: [(&str, &str); 14] = [
+const LIBRARY: [(&str, &str); 15] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
@@ -16,6 +16,7 @@ const LIBRARY: [(&str, &str); 14] = [
     ("transition", "math skeleton clip registration blend"),
     ("blend", "math skeleton clip registration"),
     ("metrics", "math skeleton clip blend"),
+    ("gait", "math skeleton clip registration blend transition"),
     ("graph", MOTION),
     ("path", MOTION),
     ("matching", MOTION),
@@ -32,15 +33,17 @@ const APP: [(&str, &str); 5] = [
     ("main", "app platform render ui"),
 ];
 
-const MOTION: &str = "math skeleton clip formats synth registration transition blend metrics";
-const ALL_MOTION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching";
-const ALL_MOTION_AND_SESSION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching session";
-const LIBRARY_WITHOUT_SESSION: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching scene";
-const WHOLE_LIBRARY: &str = "math skeleton clip formats synth registration transition blend metrics graph path matching session scene";
+const MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics";
+const ALL_MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics graph path matching";
+const ALL_MOTION_AND_SESSION: &str =
+    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session";
+const LIBRARY_WITHOUT_SESSION: &str =
+    "math skeleton clip formats synth registration transition gait blend metrics graph path matching scene";
+const WHOLE_LIBRARY: &str = "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene";
 const WHOLE_LIBRARY_AND_APP: &str =
-    "math skeleton clip formats synth registration transition blend metrics graph path matching session scene app";
+    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene app";
 const EVERYTHING: &str =
-    "math skeleton clip formats synth registration transition blend metrics graph path matching session scene render ui platform";
+    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene render ui platform";
 
 /// What the library never names: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 13] = [

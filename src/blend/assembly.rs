@@ -84,9 +84,7 @@ impl Assembly {
         }
         if let Some((joint, character)) = carrier {
             let moved = self.tracks.iter().map(|track| track.joint).zip(translations.iter().copied());
-            world_pose_into(&self.skeleton, root, rotations, moved, world);
-            let off = character.origin() - world.positions[joint];
-            root += Vec3::new(off.x, 0.0, off.z);
+            root = standing_over(&self.skeleton, root, rotations, moved, (joint, character), world);
         }
         self.rotations.extend_from_slice(rotations);
         self.roots.push(root);
@@ -97,6 +95,20 @@ impl Assembly {
         let clip = Clip::new(name, self.skeleton, self.fps, self.rotations, self.roots)?;
         Ok(clip.with_translations(self.tracks)?.with_provenance(self.provenance))
     }
+}
+
+/// Where the root belongs so that the carrier, a joint below it, stands over the origin of the character's frame.
+pub(crate) fn standing_over(
+    skeleton: &Skeleton,
+    root: Vec3,
+    rotations: &[Quat],
+    moved: impl IntoIterator<Item = (usize, Vec3)>,
+    (carrier, character): (usize, Planar),
+    world: &mut WorldPose,
+) -> Vec3 {
+    world_pose_into(skeleton, root, rotations, moved, world);
+    let off = character.origin() - world.positions[carrier];
+    root + Vec3::new(off.x, 0.0, off.z)
 }
 
 /// The joints other than the root that move against their parent in either clip, in order.

@@ -1,4 +1,4 @@
-//! From one clip to another: weights, placing one motion on another, and the dissolve.
+//! From one clip to another, and one over another: weights, placing one motion on another, the dissolve, and layers.
 //!
 //! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in which
 //! `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`: the convention of [`crate::registration`].
@@ -28,13 +28,17 @@
 mod assembly;
 mod concatenation;
 mod dissolve;
+mod layers;
+mod mask;
 mod place;
 mod weight;
 
-pub(crate) use assembly::{Assembly, moving_joints, translation_of};
+pub(crate) use assembly::{Assembly, moving_joints, standing_over, translation_of};
 pub use concatenation::Concatenation;
 pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
 pub(crate) use dissolve::{check, common_carrier, laid_on};
+pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer};
+pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};
 pub use weight::WeightLaw;
 

@@ -166,6 +166,15 @@ pub fn ground_height(clip: &Clip, roles: &Roles) -> f32 {
     stats::percentile(&heights, GROUND_PERCENTILE).unwrap_or(0.0)
 }
 
+/// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
+pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
+    let steps = before
+        .iter()
+        .zip(after)
+        .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
+    steps.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+}
+
 /// World positions, frame by frame.
 struct Ways {
     /// Of ankles, toe joints and toe tips, for each side that has them.

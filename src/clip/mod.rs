@@ -13,6 +13,7 @@ mod sampling;
 mod storage;
 mod velocity;
 
+pub(crate) use contacts::stillest_step;
 pub use contacts::{ContactOptions, Contacts, ground_height};
 pub use curves::{CurveKind, joint_curve};
 pub use mirror::{MirrorError, mirror};

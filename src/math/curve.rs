@@ -16,6 +16,16 @@ pub fn smootherstep(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
+/// The identity up to `from`, then bent so that it never passes `to`; its slope has no step.
+#[must_use]
+pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
+    if value <= from || to <= from {
+        return value;
+    }
+    let room = to - from;
+    from + room * (1.0 - (-(value - from) / room).exp())
+}
+
 /// Catmull-Rom: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from the neighbours `p0` and `p3`, uniform knots.
 #[must_use]
 pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
@@ -27,4 +37,16 @@ pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
 pub fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
     p0 * (2.0 * t3 - 3.0 * t2 + 1.0) + m0 * (t3 - 2.0 * t2 + t) + p1 * (3.0 * t2 - 2.0 * t3) + m1 * (t3 - t2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_soft_limit_is_smooth_and_bounded() {
+        assert_eq!(soft_limit(0.8, 0.9, 1.0), 0.8);
+        assert!((soft_limit(0.9 + 1e-3, 0.9, 1.0) - 0.901).abs() < 1e-4);
+        assert!(soft_limit(5.0, 0.9, 1.0) <= 1.0);
+    }
 }

@@ -1,7 +1,7 @@
 use crate::blend::Source;
-use crate::clip::{Clip, Contacts};
+use crate::clip::{Clip, Contacts, stillest_step};
 use crate::math::{quat, stats};
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
+use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -83,25 +83,8 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
         .unzip()
 }
 
-/// The points of a foot that may stand on the ground: ankle, ball and tip, each as a joint and a point in its frame.
-pub(super) fn foot_points(skeleton: &Skeleton, roles: &Roles, side: Side) -> Vec<(usize, Vec3)> {
-    let joint = |role| roles.get_within(role, skeleton.len());
-    let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-    let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
-    foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
-}
-
-/// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
-pub(super) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
-    let steps = before
-        .iter()
-        .zip(after)
-        .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
-    steps.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
-}
-
 fn slides(clip: &Clip, roles: &Roles) -> [Vec<f32>; 2] {
-    let points = Side::BOTH.map(|side| foot_points(clip.skeleton(), roles, side));
+    let points = Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side));
     let mut slides = [Vec::with_capacity(clip.frames()), Vec::with_capacity(clip.frames())];
     let mut before: [Vec<Vec3>; 2] = Default::default();
     let mut world = WorldPose::default();

@@ -1,6 +1,6 @@
-use super::profile::{Profile, foot_points, stillest_step, turn};
+use super::profile::{Profile, turn};
 use super::{Better, Metric};
-use crate::clip::{Clip, facing};
+use crate::clip::{Clip, facing, stillest_step};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
@@ -213,7 +213,7 @@ impl Around {
         let margin = (MARGIN_SECS * clip.fps()).round() as usize;
         let frames =
             subject.start.saturating_sub(margin.max(1)).min(clip.frames())..steps.end().saturating_add(margin + 1).min(clip.frames());
-        let points = Side::BOTH.map(|side| foot_points(clip.skeleton(), subject.roles, side));
+        let points = Side::BOTH.map(|side| subject.roles.foot_points(clip.skeleton(), side));
         let tips: Vec<(usize, Vec3)> = clip
             .skeleton()
             .joints()

@@ -12,6 +12,7 @@ mod retarget;
 mod role;
 mod roles;
 mod tree;
+mod two_bones;
 
 pub use joint_map::JointMap;
 pub use kinematics::{WorldPose, world_pose, world_pose_into};
@@ -21,3 +22,4 @@ pub use retarget::Retargeting;
 pub use role::{Role, Side};
 pub use roles::{Found, Roles};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};
+pub use two_bones::{TwoBones, two_bones};

@@ -5,13 +5,14 @@ use super::balance::hips;
 use super::body::{Body, humanoid, joint};
 use super::foot::Foot;
 use super::height::{LONGEST, least_flexion};
-use super::leg::{soft_limit, two_bones};
+use super::leg::leg;
 use super::params::{Action, Params, SynthError};
 use super::plan::{Plan, plan};
 use super::posture::{Posture, Trunk};
 use super::track::ramp;
 use super::truth::{FootContact, Synthesized, Truth};
 use crate::clip::{Clip, ClipError};
+use crate::math::curve::soft_limit;
 use crate::math::quat::{exp, log, renormalize};
 use glam::{Quat, Vec3};
 
@@ -50,7 +51,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let ankle = given_way(&body, foot, hip, plan.gait.running);
             // The knee points between where the hips and where the toes point.
             let hinge = trunk.pelvis * Vec3::X * 0.45 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
-            let (thigh, shank) = two_bones(hip, ankle, body.thigh, body.shank, hinge);
+            let (thigh, shank) = leg(hip, ankle, body.thigh, body.shank, hinge);
             local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
             local[joint::LEG[side]] = thigh.conjugate() * shank;
             local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot, body.ankle_height());

@@ -5,7 +5,7 @@
 //! all of them, with one meaning of "leave" and "enter", so that they can be compared; [`Inertializer`] does it frame by frame for whoever
 //! jumps while playing. [`close_loop`] spreads the difference between the ends of a clip over it, and [`find_cycle`] finds ends that differ little.
 //!
-//! What it does not do: feet that stood still may slide while an offset dies away; that is for a foot lock to clean up.
+//! Feet that stood still may slide while an offset dies away, or two clips are mixed: [`foot_lock`] plants them again.
 //!
 //! ```
 //! use segue::blend::Source;
@@ -33,6 +33,7 @@
 
 mod concatenate;
 mod cut_points;
+mod foot_lock;
 mod inertialize;
 mod loop_curve;
 mod loops;
@@ -40,6 +41,7 @@ mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
+pub use foot_lock::{FootLockError, FootLockOptions, foot_lock};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop};

@@ -7,6 +7,7 @@ mod tests;
 mod tokens;
 
 use super::{Role, Side, Skeleton};
+use glam::Vec3;
 use std::collections::BTreeMap;
 pub(crate) use tokens::{Tokens, are_counterparts, read};
 
@@ -177,6 +178,17 @@ impl Roles {
                 role.name()
             ),
         }
+    }
+
+    /// The points of a foot that may stand on the ground: ankle, ball and tip, as far as the skeleton has them, each as a joint and a point in its
+    /// frame (metres).
+    #[must_use]
+    pub fn foot_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(usize, Vec3)> {
+        let joint = |role| self.get_within(role, skeleton.len());
+        let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
+        // A foot without toes may have its tip at its own end.
+        let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
+        foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
     }
 
     /// The length of a leg from hip joint over knee to ankle, metres: the mean of both sides. `None` without a whole leg.

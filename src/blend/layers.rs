@@ -1,0 +1,386 @@
+use super::assembly::{Assembly, moving_joints, translation_of};
+use super::{BodyPart, mask};
+use crate::clip::{Clip, ClipError, Interpolation, character_frames, motion_root};
+use crate::math::{Planar, quat, wrap_angle};
+use crate::skeleton::{Pose, Roles, WorldPose, world_pose_into};
+use glam::{Quat, Vec3};
+
+/// How far a layer's start may lie from the base's, seconds.
+const MOST_START_SECS: f64 = 3_600.0;
+
+/// Why a layer cannot be laid over a clip.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LayerError {
+    /// The clips move different bodies.
+    #[error("`{base}` and `{over}` move different skeletons: retarget one onto the other first")]
+    Skeletons {
+        /// Name of the clip below.
+        base: String,
+        /// Name of the layer.
+        over: String,
+    },
+    /// A frame of the layer that does not exist.
+    #[error("the layer has {frames} frames, and no frame {frame}: choose another frame of reference or another clip")]
+    NoFrame {
+        /// The frame asked for.
+        frame: usize,
+        /// Frames that there are.
+        frames: usize,
+    },
+    /// A number that is none.
+    #[error("a {what} of {value} cannot be used: give a number from {least} to {most}")]
+    Number {
+        /// Which number.
+        what: &'static str,
+        /// The number given.
+        value: f64,
+        /// The smallest number.
+        least: f64,
+        /// The largest number.
+        most: f64,
+    },
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}
+
+/// What a layer's motion is measured against.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Reference {
+    /// The rest pose of the skeleton.
+    Rest,
+    /// A frame of the layer's own clip.
+    Frame(usize),
+}
+
+/// What a layer does to the base.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum LayerMode {
+    /// The layer takes the base's place, joint by joint: slerp by mask × weight.
+    Override,
+    /// What the layer does beyond a reference pose is added: `base · exp(w log(reference⁻¹ · over))`, in every joint's own frame, so that a
+    /// bent arm waves as a straight one does.
+    Additive(Reference),
+}
+
+/// How long a layer lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum LayerTime {
+    /// It begins again at its end: its last frame counts as its first.
+    #[default]
+    Loop,
+    /// It stays in its last frame, and before its beginning in its first.
+    Hold,
+}
+
+/// What a layer is made with.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct LayerOptions {
+    /// The parts of the body that it moves.
+    pub parts: Vec<BodyPart>,
+    /// Joints over which each part fades in ([`mask`]).
+    pub feather: usize,
+    /// How much of it, 0 to 1.
+    pub weight: f32,
+    /// What it does to the base.
+    pub mode: LayerMode,
+    /// What it does at its end.
+    pub time: LayerTime,
+    /// The layer's time at the base's first frame, seconds; below 0 it begins later than the base.
+    pub start_secs: f64,
+    /// Whether the joints at the border of the mask take the layer's orientation in the *character's* frame instead of against their parents. The
+    /// hips of a walk tilt and turn: an upper body that only keeps its angles to other hips nods with them. Only in override.
+    pub keep_orientation: bool,
+}
+
+impl Default for LayerOptions {
+    fn default() -> Self {
+        Self {
+            parts: vec![BodyPart::UpperBody],
+            feather: 2,
+            weight: 1.0,
+            mode: LayerMode::Override,
+            time: LayerTime::Loop,
+            start_secs: 0.0,
+            keep_orientation: false,
+        }
+    }
+}
+
+/// Lays a part of one clip over another: the upper body of `over` on the legs of `base`.
+///
+/// The result has the base's frames and rate; the layer is read between its frames where its rate or start do not fit. Joints outside the mask, and the
+/// root with them, are the base's, bit for bit. Where the mask takes in the root: its lean and its height are those of the layer by weight, in the character's
+/// frame; over the ground, an override blends the steps of both characters by the root's weight and integrates them from the base's first
+/// frame, and an additive layer leaves the base's way. Joints that move against their parents are blended likewise.
+///
+/// # Errors
+/// [`LayerError`] when the clips move different skeletons, the layer has no such frame, or a number is none.
+pub fn layer(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions) -> Result<Clip, LayerError> {
+    check(base, over, options)?;
+    let mask = mask(base.skeleton(), roles, &options.parts, options.feather);
+    if options.weight == 0.0 || mask.iter().all(|&weight| weight == 0.0) || base.frames() == 0 {
+        return Ok(base.clone());
+    }
+    let turned = options.keep_orientation && options.mode == LayerMode::Override;
+    // Where characters stand matters only to their roots, and to orientations.
+    let stands = |clip: &Clip| {
+        if mask[0] > 0.0 || turned {
+            character_frames(clip, roles)
+        } else {
+            vec![Planar::IDENTITY; clip.frames()]
+        }
+    };
+    let carrier = motion_root(base, roles);
+    let layering = Layering {
+        base_stands: stands(base),
+        over_stands: stands(over),
+        moving: moving_joints(base, over),
+        carrier: Some(carrier).filter(|&joint| joint != 0 && mask[0] > 0.0 && joint == motion_root(over, roles)),
+        base,
+        over,
+        mask,
+        options,
+        turned,
+    };
+    Ok(layering.clip()?)
+}
+
+fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerError> {
+    if base.skeleton() != over.skeleton() {
+        let (base, over) = (base.name().to_owned(), over.name().to_owned());
+        return Err(LayerError::Skeletons { base, over });
+    }
+    let number = |what, value: f64, range: std::ops::RangeInclusive<f64>| {
+        let (least, most) = (*range.start(), *range.end());
+        let fits = range.contains(&value);
+        let error = LayerError::Number { what, value, least, most };
+        if fits { Ok(()) } else { Err(error) }
+    };
+    number("weight", f64::from(options.weight), 0.0..=1.0)?;
+    number("start (s)", options.start_secs, -MOST_START_SECS..=MOST_START_SECS)?;
+    let frame = match options.mode {
+        LayerMode::Additive(Reference::Frame(frame)) => frame,
+        _ => 0,
+    };
+    if frame < over.frames() {
+        Ok(())
+    } else {
+        Err(LayerError::NoFrame {
+            frame,
+            frames: over.frames(),
+        })
+    }
+}
+
+struct Layering<'a> {
+    base: &'a Clip,
+    over: &'a Clip,
+    base_stands: Vec<Planar>,
+    over_stands: Vec<Planar>,
+    moving: Vec<usize>,
+    carrier: Option<usize>,
+    mask: Vec<f32>,
+    options: &'a LayerOptions,
+    turned: bool,
+}
+
+impl Layering<'_> {
+    fn clip(&self) -> Result<Clip, ClipError> {
+        let mut made = Assembly::new(self.base, self.over, self.base.frames());
+        let reference = self.reference();
+        let mut here = self.base_stands[0];
+        let (mut rotations, mut world) = (Vec::new(), WorldPose::default());
+        for frame in 0..self.base.frames() {
+            let secs = self.options.start_secs + self.base.time_of(frame);
+            let Some(over) = self.pose(secs) else { continue };
+            if frame > 0 {
+                here = here.after(&self.step(frame, secs));
+            }
+            let root = match self.options.mode {
+                LayerMode::Override => {
+                    self.replace(frame, &over, &here, &mut rotations, &mut world);
+                    self.root(frame, &over, &here)
+                }
+                LayerMode::Additive(_) => {
+                    self.add(frame, &over, &reference, &mut rotations);
+                    let rise = over.root_translation.y - reference.root_translation.y;
+                    self.base.root_translations()[frame] + Vec3::Y * rise * self.weight(0)
+                }
+            };
+            let translations: Vec<Vec3> = self
+                .moving
+                .iter()
+                .map(|&joint| self.translation(joint, frame, &over, &reference))
+                .collect();
+            let carrier = self.carrier.filter(|_| self.options.mode == LayerMode::Override);
+            made.push(root, &rotations, &translations, carrier.map(|joint| (joint, here)), &mut world);
+        }
+        made.finish(format!("{} + {}", self.base.name(), self.over.name()))
+    }
+
+    fn weight(&self, joint: usize) -> f32 {
+        self.mask[joint] * self.options.weight
+    }
+
+    /// The layer's own time, seconds.
+    fn local(&self, secs: f64) -> f64 {
+        let duration = self.over.duration_secs();
+        match self.options.time {
+            LayerTime::Loop if duration > 0.0 => secs.rem_euclid(duration),
+            _ => secs.clamp(0.0, duration),
+        }
+    }
+
+    /// The layer's pose at a time, with its root in the character's frame.
+    fn pose(&self, secs: f64) -> Option<Pose> {
+        let secs = self.local(secs);
+        let pose = self.over.sample(secs, Interpolation::Linear)?;
+        Some(in_character_frame(pose, &self.stands_at(secs)))
+    }
+
+    /// Where the layer's character stands at its own time.
+    fn stands_at(&self, secs: f64) -> Planar {
+        let last = self.over_stands.len().saturating_sub(1);
+        let at = (secs * self.over.fps()).clamp(0.0, last as f64);
+        let frame = at.floor() as usize;
+        let (from, to) = (&self.over_stands[frame], &self.over_stands[(frame + 1).min(last)]);
+        Planar {
+            yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * at.fract()),
+            shift: from.shift.lerp(to.shift, at.fract()),
+        }
+    }
+
+    /// The step into a frame: the base's, and in an override the layer's by the root's weight.
+    fn step(&self, frame: usize, secs: f64) -> Planar {
+        let base = self.base_stands[frame - 1].inverse().after(&self.base_stands[frame]);
+        let weight = f64::from(self.weight(0));
+        if weight == 0.0 || self.options.mode != LayerMode::Override {
+            return base;
+        }
+        let (from, to) = (self.local(secs - self.base.fps().recip()), self.local(secs));
+        let between = |from: f64, to: f64| self.stands_at(from).inverse().after(&self.stands_at(to));
+        let over = if to >= from {
+            between(from, to)
+        } else {
+            // Over its end: the rest of the layer, then its beginning.
+            between(from, self.over.duration_secs()).after(&between(0.0, to))
+        };
+        let yaw = wrap_angle(base.yaw) * (1.0 - weight) + wrap_angle(over.yaw) * weight;
+        Planar {
+            yaw,
+            shift: base.shift.lerp(over.shift, weight),
+        }
+    }
+
+    fn reference(&self) -> Pose {
+        match self.options.mode {
+            LayerMode::Additive(Reference::Frame(frame)) => in_character_frame(self.over.pose(frame), &self.over_stands[frame]),
+            _ => Pose {
+                root_translation: self.over.skeleton().joints()[0].offset,
+                rotations: vec![Quat::IDENTITY; self.mask.len()],
+                translations: vec![],
+            },
+        }
+    }
+
+    /// Rotations with the layer in the base's place.
+    fn replace(&self, frame: usize, over: &Pose, here: &Planar, rotations: &mut Vec<Quat>, world: &mut WorldPose) {
+        let base = self.base.rotations(frame);
+        let joints = self.base.skeleton().joints();
+        let turn = here.rotation();
+        if self.turned {
+            // Orientations of the layer in the character's frame.
+            world_pose_into(self.over.skeleton(), Vec3::ZERO, &over.rotations, [], world);
+        }
+        // Orientations of the result, as far as it is made.
+        let mut made: Vec<Quat> = Vec::with_capacity(if self.turned { joints.len() } else { 0 });
+        rotations.clear();
+        for (joint, (&base, &over)) in base.iter().zip(&over.rotations).enumerate() {
+            let weight = self.weight(joint);
+            let parent = joints[joint].parent;
+            let target = match parent {
+                None => turn * over,
+                Some(parent) if self.turned && self.mask[parent] < 1.0 => made[parent].conjugate() * turn * world.rotations[joint],
+                Some(_) => over,
+            };
+            let base = match parent {
+                // The base's lean, where the character stands and faces in the result.
+                None if weight > 0.0 => turn * self.base_stands[frame].inverse().rotation() * base,
+                _ => base,
+            };
+            let rotation = if weight == 0.0 {
+                base
+            } else if weight == 1.0 {
+                target
+            } else {
+                quat::slerp(base, target, weight)
+            };
+            rotations.push(rotation);
+            if self.turned {
+                made.push(parent.map_or(rotation, |parent| made[parent] * rotation));
+            }
+        }
+    }
+
+    /// Rotations with the layer's difference to the reference on top.
+    fn add(&self, frame: usize, over: &Pose, reference: &Pose, rotations: &mut Vec<Quat>) {
+        rotations.clear();
+        let poses = over.rotations.iter().zip(&reference.rotations);
+        rotations.extend(
+            self.base
+                .rotations(frame)
+                .iter()
+                .zip(poses)
+                .enumerate()
+                .map(|(joint, (&base, (over, reference)))| {
+                    let weight = self.weight(joint);
+                    if weight == 0.0 {
+                        base
+                    } else {
+                        added(base, *over, *reference, weight)
+                    }
+                }),
+        );
+    }
+
+    /// The root's place in an override.
+    fn root(&self, frame: usize, over: &Pose, here: &Planar) -> Vec3 {
+        let (base, weight) = (self.base.root_translations()[frame], self.weight(0));
+        if weight == 0.0 {
+            return base;
+        }
+        let base = self.base_stands[frame].inverse().apply(base);
+        here.apply(base.lerp(over.root_translation, weight))
+    }
+
+    fn translation(&self, joint: usize, frame: usize, over: &Pose, reference: &Pose) -> Vec3 {
+        let base = translation_of(self.base, joint, frame);
+        let of = |pose: &Pose| {
+            let moved = pose.translations.iter().find(|(moved, _)| *moved == joint);
+            moved.map_or(self.over.skeleton().joints()[joint].offset, |(_, value)| *value)
+        };
+        match self.options.mode {
+            LayerMode::Override => base.lerp(of(over), self.weight(joint)),
+            LayerMode::Additive(_) => base + (of(over) - of(reference)) * self.weight(joint),
+        }
+    }
+}
+
+/// `base · exp(w log(reference⁻¹ · over))`.
+fn added(base: Quat, over: Quat, reference: Quat, weight: f32) -> Quat {
+    quat::renormalize(base * quat::exp(quat::log(reference.conjugate() * over) * weight))
+}
+
+/// A pose with its root seen from where the character stands.
+fn in_character_frame(mut pose: Pose, stands: &Planar) -> Pose {
+    let here = stands.inverse();
+    pose.root_translation = here.apply(pose.root_translation);
+    if let Some(root) = pose.rotations.first_mut() {
+        *root = quat::renormalize(here.rotation() * *root);
+    }
+    pose
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,160 @@
+use super::GaitError;
+use super::phase::Events;
+use crate::blend::Source;
+use crate::clip::{Contacts, ground_speed};
+use crate::math::{quat, stats};
+use crate::skeleton::Side;
+use crate::transition::{Loop, LoopOptions, close_loop};
+use std::ops::Range;
+
+/// One cycle of a walk or run, from a strike of the left foot to its next one, closed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaitCycle {
+    /// The cycle. The frame behind its last is its first again.
+    pub(super) looped: Loop,
+    /// The joint that carries the character.
+    pub(super) motion_root: usize,
+    range: Range<usize>,
+    events: Events,
+    speed_mps: f64,
+}
+
+/// Cycles are no shorter and no longer, seconds.
+const CYCLE_SECS: Range<f64> = 0.3..3.0;
+
+impl GaitCycle {
+    /// Finds the most regular cycle of a clip, and closes it ([`close_loop`], half of the difference at each end).
+    ///
+    /// A cycle goes from a strike of the left foot to the next one and has one strike of the right foot. Of all cycles that one is taken which
+    /// differs least from the median in duration, speed, and the phases of strike and lift, and whose ends are most alike; a foot that stands in
+    /// the clip's first frame is taken to strike there only if there is no other cycle. `contacts` are those of the clip.
+    ///
+    /// # Errors
+    /// [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`] when it cannot be closed.
+    pub fn find(source: &Source, contacts: &Contacts) -> Result<Self, GaitError> {
+        let none = || GaitError::NoCycle {
+            name: source.clip().name().to_owned(),
+        };
+        let mut candidates = candidates(source, contacts);
+        if candidates.iter().any(|candidate| candidate.range.start > 0) {
+            candidates.retain(|candidate| candidate.range.start > 0);
+        }
+        let measures: Vec<[f32; 5]> = candidates.iter().map(|candidate| candidate.measures(source)).collect();
+        let median = |index: usize| {
+            let values: Vec<f32> = measures.iter().map(|measures| measures[index]).collect();
+            stats::percentile(&values, 0.5).unwrap_or(0.0)
+        };
+        let medians = [0, 1, 2, 3, 4].map(median);
+        let odd = |index: usize| -> f32 {
+            let apart: f32 = measures[index]
+                .iter()
+                .zip(medians)
+                .map(|(value, median)| (value - median).abs())
+                .sum();
+            apart + candidates[index].gap(source)
+        };
+        let best = (0..candidates.len()).min_by(|&a, &b| odd(a).total_cmp(&odd(b))).ok_or_else(none)?;
+        let Candidate { range, events } = candidates.swap_remove(best);
+        let looped = close_loop(source, range.clone(), &LoopOptions::default())?;
+        let mut frames = looped.frames.clone();
+        frames.extend(frames.first().map(|first| looped.cycle.after(first)));
+        Ok(Self {
+            speed_mps: f64::from(ground_speed(&frames, looped.clip.fps())),
+            motion_root: source.motion_root(),
+            looped,
+            range,
+            events,
+        })
+    }
+
+    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again.
+    #[must_use]
+    pub fn range(&self) -> Range<usize> {
+        self.range.clone()
+    }
+
+    /// When the feet meet and leave the ground.
+    #[must_use]
+    pub fn events(&self) -> Events {
+        self.events
+    }
+
+    /// The length of the way over the ground over its duration, metres per second ([`ground_speed`]).
+    #[must_use]
+    pub fn speed_mps(&self) -> f64 {
+        self.speed_mps
+    }
+
+    /// The duration of a cycle, seconds.
+    #[must_use]
+    pub fn secs(&self) -> f64 {
+        self.looped.clip.frames() as f64 / self.looped.clip.fps()
+    }
+
+    /// The closed cycle.
+    #[must_use]
+    pub fn looped(&self) -> &Loop {
+        &self.looped
+    }
+
+    /// Where in its cycle the clip's first frame lies.
+    pub(super) fn first_phase(&self) -> f64 {
+        -(self.range.start as f64) / self.range.len() as f64
+    }
+}
+
+struct Candidate {
+    range: Range<usize>,
+    events: Events,
+}
+
+fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
+    let fps = source.clip().fps();
+    let last = source.clip().frames().min(contacts.frames());
+    let (left, right) = (contacts.intervals(Side::Left), contacts.intervals(Side::Right));
+    let candidate = |pair: &[Range<usize>]| {
+        let (stance, range) = (&pair[0], pair[0].start..pair[1].start);
+        let mut strikes = right.iter().filter(|stance| stance.start > range.start && stance.start < range.end);
+        let (only, more) = (strikes.next()?, strikes.next());
+        if more.is_some() || range.end >= last || !CYCLE_SECS.contains(&(range.len() as f64 / fps)) {
+            return None;
+        }
+        let phase = |frame: usize| (frame - range.start) as f64 / range.len() as f64;
+        let events = Events {
+            left_lift: phase(stance.end),
+            right_strike: phase(only.start),
+            right_lift: phase(only.end),
+        };
+        // A stance that the clip's end cuts off tells no lift.
+        (events.right_lift < events.right_strike + 1.0 && only.end < last).then_some(Candidate { range, events })
+    };
+    left.windows(2).filter_map(candidate).collect()
+}
+
+impl Candidate {
+    /// Duration and speed (logarithms), and the phases of the events: what is to be usual.
+    fn measures(&self, source: &Source) -> [f32; 5] {
+        let speed = ground_speed(&source.frames()[self.range.start..=self.range.end], source.clip().fps());
+        [
+            (self.range.len() as f32).ln(),
+            speed.max(1e-3).ln(),
+            self.events.left_lift as f32,
+            self.events.right_strike as f32,
+            (self.events.right_lift - self.events.right_strike) as f32,
+        ]
+    }
+
+    /// The root mean square of the angles between the poses at both ends, radians.
+    fn gap(&self, source: &Source) -> f32 {
+        let (clip, frames) = (source.clip(), source.frames());
+        let ends = [self.range.start, self.range.end].map(|frame| {
+            let mut rotations = clip.rotations(frame).to_vec();
+            if let Some(root) = rotations.first_mut() {
+                *root = frames[frame].inverse().rotation() * *root;
+            }
+            rotations
+        });
+        let squares = ends[0].iter().zip(&ends[1]).map(|(&a, &b)| quat::angle_between(a, b).powi(2));
+        (squares.sum::<f32>() / ends[0].len().max(1) as f32).sqrt()
+    }
+}

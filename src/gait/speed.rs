@@ -1,0 +1,439 @@
+use super::phase::{Events, Part, PhaseAlignment};
+use super::{GaitCycle, GaitError, SpeedPlayer};
+use crate::blend::{Assembly, moving_joints, standing_over, translation_of};
+use crate::clip::{Clip, Contacts};
+use crate::math::{Planar, quat, wrap_angle};
+use crate::skeleton::{Pose, Role, Roles, Side, WorldPose};
+use glam::{DVec3, Quat, Vec3};
+use std::ops::RangeInclusive;
+
+/// What a blend by speed is made with.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SpeedOptions {
+    /// How the gaits are laid on one phase.
+    pub alignment: PhaseAlignment,
+    /// How quickly a [`SpeedPlayer`] takes on another speed: the half-life of a critically damped spring, seconds. 0 is at once.
+    pub half_life_secs: f64,
+}
+
+impl Default for SpeedOptions {
+    fn default() -> Self {
+        Self {
+            alignment: PhaseAlignment::Feet,
+            half_life_secs: 0.15,
+        }
+    }
+}
+
+/// What goes with a speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaitFacts {
+    /// The speed that is made, metres per second: the one asked for, or the nearest one that can be made.
+    pub speed_mps: f64,
+    /// The weight of the second gait, -0.25 to 1.25.
+    pub weight: f64,
+    /// The way of one cycle (two steps), metres.
+    pub stride_m: f64,
+    /// Steps per minute.
+    pub cadence_spm: f64,
+    /// The time of one cycle, seconds.
+    pub cycle_secs: f64,
+    /// The speed lies beyond the two gaits: what is made is a guess.
+    pub extrapolated: bool,
+    /// The speed asked for was too far beyond the two gaits, and a nearer one was taken.
+    pub limited: bool,
+}
+
+/// A motion at a speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaitClip {
+    /// The motion; it begins at the origin, facing +Z.
+    pub clip: Clip,
+    /// When which foot is on the ground, as it was blended.
+    pub contacts: Contacts,
+    /// What goes with the (last) speed.
+    pub facts: GaitFacts,
+}
+
+/// The weight may leave 0 to 1 by this.
+const BEYOND: f64 = 0.25;
+/// A weight that lies by this beyond the gaits is theirs: a walk of 1.4 m/s sways, and its way is a little longer.
+const NEARLY: f64 = 0.02;
+/// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two gaits.
+const LEAST_SHARE: f64 = 0.1;
+/// The least difference of speeds, metres per second.
+const LEAST_DIFFERENCE_MPS: f64 = 0.1;
+/// The longest clip, seconds.
+const MOST_SECS: f64 = 600.0;
+
+/// Two gaits prepared to be blended to any speed; poses cost microseconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedBlend {
+    gaits: [Sampled; 2],
+    parts: Vec<Part>,
+    moving: Vec<usize>,
+    carrier: Option<usize>,
+    options: SpeedOptions,
+    weights: [f64; 2],
+    name: String,
+}
+
+/// A cycle as poses in the character's frame, and its way.
+#[derive(Clone, Debug, PartialEq)]
+struct Sampled {
+    clip: Clip,
+    rotations: Vec<Quat>,
+    translations: Vec<Vec3>,
+    /// Sums of the steps in the character's own frame (sideways, yaw, forward) up to each frame, one more than there are frames.
+    way: Vec<DVec3>,
+    events: Events,
+    first_phase: f64,
+    speed_mps: f64,
+    secs: f64,
+}
+
+impl SpeedBlend {
+    /// Prepares two gaits of one skeleton. Their frame rates may differ; results have that of the first.
+    ///
+    /// # Errors
+    /// [`GaitError`] when the gaits move different skeletons, their speeds are (nearly) the same, one does not go anywhere, or the half-life is
+    /// none.
+    pub fn new(a: &GaitCycle, b: &GaitCycle, roles: &Roles, options: &SpeedOptions) -> Result<Self, GaitError> {
+        let (first, second) = (&a.looped.clip, &b.looped.clip);
+        if first.skeleton() != second.skeleton() {
+            let (a, b) = (first.name().to_owned(), second.name().to_owned());
+            return Err(GaitError::Skeletons { a, b });
+        }
+        let (a_mps, b_mps) = (a.speed_mps(), b.speed_mps());
+        let differ = (a_mps - b_mps).abs() >= LEAST_DIFFERENCE_MPS && a_mps.min(b_mps) >= LEAST_DIFFERENCE_MPS;
+        if !differ {
+            return Err(GaitError::Speeds { a_mps, b_mps });
+        }
+        checked("half-life (s)", options.half_life_secs, 60.0)?;
+        let moving = moving_joints(first, second);
+        let gaits = [a, b].map(|cycle| Sampled::new(cycle, &moving));
+        let skeleton = first.skeleton();
+        let mut parts = vec![Part::Body; skeleton.len()];
+        for side in Side::BOTH {
+            let thigh = roles.get_within(Role::thigh(side), skeleton.len());
+            for joint in 0..skeleton.len() {
+                // Parents come first.
+                let above = skeleton.parent(joint).is_some_and(|parent| parts[parent] == Part::Leg(side));
+                if Some(joint) == thigh || above {
+                    parts[joint] = Part::Leg(side);
+                }
+            }
+        }
+        let mut blend = Self {
+            gaits,
+            parts,
+            moving,
+            carrier: Some(a.motion_root).filter(|&joint| joint != 0 && joint == b.motion_root),
+            options: *options,
+            weights: [-BEYOND, 1.0 + BEYOND],
+            name: format!("{} ~ {}", first.name(), second.name()),
+        };
+        // Far beyond the slower gait there may be no speed, or no stride, left.
+        let (speeds, strides) = ([a_mps, b_mps], [a_mps * a.secs(), b_mps * b.secs()]);
+        for [from, to] in [speeds, strides] {
+            let least = LEAST_SHARE * from.min(to);
+            let limit = (least - from) / (to - from);
+            if to > from {
+                blend.weights[0] = blend.weights[0].max(limit);
+            } else if to < from {
+                blend.weights[1] = blend.weights[1].min(limit);
+            }
+        }
+        Ok(blend)
+    }
+
+    /// The speeds of the two gaits, metres per second.
+    #[must_use]
+    pub fn speeds_mps(&self) -> [f64; 2] {
+        [0, 1].map(|gait: usize| self.gaits[gait].speed_mps)
+    }
+
+    /// The speeds that can be made, metres per second.
+    #[must_use]
+    pub fn range_mps(&self) -> RangeInclusive<f64> {
+        let ends = self.weights.map(|weight| self.mixed(weight, |gait| gait.speed_mps));
+        ends[0].min(ends[1])..=ends[0].max(ends[1])
+    }
+
+    /// What the blend is made with.
+    #[must_use]
+    pub fn options(&self) -> &SpeedOptions {
+        &self.options
+    }
+
+    fn mixed(&self, weight: f64, of: impl Fn(&Sampled) -> f64) -> f64 {
+        of(&self.gaits[0]) * (1.0 - weight) + of(&self.gaits[1]) * weight
+    }
+
+    /// What goes with a speed. NaN counts as the speed of the first gait.
+    #[must_use]
+    pub fn facts(&self, speed_mps: f64) -> GaitFacts {
+        let [a, b] = self.speeds_mps();
+        let asked = (speed_mps - a) / (b - a);
+        let weight = if asked.is_nan() {
+            0.0
+        } else {
+            asked.clamp(self.weights[0], self.weights[1])
+        };
+        let speed = self.mixed(weight, |gait| gait.speed_mps);
+        let stride = self.mixed(weight, |gait| gait.speed_mps * gait.secs);
+        let cycle_secs = stride / speed;
+        GaitFacts {
+            speed_mps: speed,
+            weight,
+            stride_m: stride,
+            cadence_spm: 120.0 / cycle_secs,
+            cycle_secs,
+            extrapolated: !(-NEARLY..=1.0 + NEARLY).contains(&weight),
+            limited: (weight - asked).abs() > 1e-6,
+        }
+    }
+
+    /// When the feet meet and leave the ground at a weight.
+    fn events(&self, weight: f64) -> Events {
+        let stride = |gait: &Sampled| gait.speed_mps * gait.secs;
+        let share = weight * stride(&self.gaits[1]) / self.mixed(weight, stride);
+        self.gaits[0].events.between(&self.gaits[1].events, share)
+    }
+
+    /// Where each gait is, in cycles, when the blend is at `phase`.
+    fn phases(&self, gait: &Sampled, events: &Events, phase: f64) -> [f64; 3] {
+        let alignment = self.options.alignment;
+        let begin = if alignment == PhaseAlignment::None { gait.first_phase } else { 0.0 };
+        Part::ALL.map(|part| begin + gait.events.warped(events, phase, part, alignment))
+    }
+
+    /// The step over the ground from one phase to another at a weight, in the character's frame at the first.
+    pub(super) fn step(&self, weight: f64, from: f64, to: f64) -> Planar {
+        let events = self.events(weight);
+        let made = |gait: &Sampled| {
+            let at = |phase| gait.way_at(self.phases(gait, &events, phase)[Part::Body.index()]);
+            at(to) - at(from)
+        };
+        let way = made(&self.gaits[0]) * (1.0 - weight) + made(&self.gaits[1]) * weight;
+        Planar::new(wrap_angle(way.y), way.x, way.z)
+    }
+
+    pub(super) fn planted(&self, weight: f64, phase: f64) -> [bool; 2] {
+        if self.options.alignment == PhaseAlignment::None {
+            let gait = &self.gaits[usize::from(weight > 0.5)];
+            return Side::BOTH.map(|side| gait.events.planted(side, gait.first_phase + phase));
+        }
+        let events = self.events(weight);
+        Side::BOTH.map(|side| events.planted(side, phase))
+    }
+
+    /// The blended pose at a phase, in the character's frame: rotations, and translations of the root and of the joints that move.
+    fn pose_into(&self, weight: f64, phase: f64, rotations: &mut Vec<Quat>, translations: &mut Vec<Vec3>) {
+        let events = self.events(weight);
+        let places = [0, 1].map(|index: usize| {
+            let gait = &self.gaits[index];
+            self.phases(gait, &events, phase).map(|phase| gait.place(phase))
+        });
+        let [a, b] = &self.gaits;
+        let t = weight as f32;
+        rotations.clear();
+        rotations.extend(self.parts.iter().enumerate().map(|(joint, part)| {
+            let [at_a, at_b] = places.map(|places| places[part.index()]);
+            if weight == 0.0 {
+                a.rotation(joint, at_a)
+            } else if weight == 1.0 {
+                b.rotation(joint, at_b)
+            } else {
+                quat::slerp(a.rotation(joint, at_a), b.rotation(joint, at_b), t)
+            }
+        }));
+        translations.clear();
+        let body = places.map(|places| places[Part::Body.index()]);
+        translations.extend((0..=self.moving.len()).map(|slot| {
+            let slots = self.moving.len() + 1;
+            a.translation(slot, slots, body[0]).lerp(b.translation(slot, slots, body[1]), t)
+        }));
+    }
+
+    /// The blended pose at a phase of a character that stands at `here`.
+    pub(super) fn pose(&self, weight: f64, phase: f64, here: &Planar) -> Pose {
+        let (mut rotations, mut translations) = (Vec::new(), Vec::new());
+        self.pose_into(weight, phase, &mut rotations, &mut translations);
+        if let Some(root) = rotations.first_mut() {
+            *root = quat::renormalize(here.rotation() * *root);
+        }
+        let mut pose = Pose {
+            root_translation: here.apply(translations.first().copied().unwrap_or_default()),
+            rotations,
+            translations: self.moving.iter().copied().zip(translations.into_iter().skip(1)).collect(),
+        };
+        if let Some(joint) = self.carrier {
+            let moved = pose.translations.iter().copied();
+            let mut world = WorldPose::default();
+            let skeleton = self.gaits[0].clip.skeleton();
+            pose.root_translation = standing_over(skeleton, pose.root_translation, &pose.rotations, moved, (joint, *here), &mut world);
+        }
+        pose
+    }
+
+    /// One cycle, from a strike of the left foot to its next, at the nearest whole number of frames: with `n` steps from frame to frame it has
+    /// `n + 1` frames at the phases `i / n`, so that the last is the first again, one stride on. The speed is off by up to half a
+    /// frame of its duration for that.
+    ///
+    /// # Errors
+    /// [`GaitError::Clip`] when the result is no clip.
+    pub fn cycle_at(&self, speed_mps: f64) -> Result<GaitClip, GaitError> {
+        let facts = self.facts(speed_mps);
+        let steps = (facts.cycle_secs * self.gaits[0].clip.fps()).round().max(2.0);
+        let phases = (0..=steps as usize).map(|step| (facts.weight, step as f64 / steps));
+        self.made(facts, phases)
+    }
+
+    /// Several cycles at one speed, `secs` long.
+    ///
+    /// # Errors
+    /// [`GaitError::Option`] when `secs` is not between 0 and 600.
+    pub fn clip_of(&self, speed_mps: f64, secs: f64) -> Result<GaitClip, GaitError> {
+        let facts = self.facts(speed_mps);
+        let steps = self.steps_in(secs)?;
+        let per_step = (facts.cycle_secs * self.gaits[0].clip.fps()).recip();
+        self.made(facts, (0..=steps).map(|step| (facts.weight, step as f64 * per_step)))
+    }
+
+    /// A motion whose speed changes: `speed_mps` is asked for the speed at every time (seconds), and the motion follows it as a
+    /// [`SpeedPlayer`] does.
+    ///
+    /// # Errors
+    /// [`GaitError::Option`] when `secs` is not between 0 and 600.
+    pub fn clip_along(&self, secs: f64, speed_mps: impl Fn(f64) -> f64) -> Result<GaitClip, GaitError> {
+        let (steps, fps) = (self.steps_in(secs)?, self.gaits[0].clip.fps());
+        let mut player = SpeedPlayer::new(self, speed_mps(0.0));
+        let mut phases = vec![(player.facts(self).weight, player.phase())];
+        for step in 1..=steps {
+            player.go(self, fps.recip(), speed_mps(step as f64 / fps));
+            phases.push((player.facts(self).weight, player.phase()));
+        }
+        self.made(player.facts(self), phases.into_iter())
+    }
+
+    fn steps_in(&self, secs: f64) -> Result<usize, GaitError> {
+        checked("duration (s)", secs, MOST_SECS)?;
+        Ok((secs * self.gaits[0].clip.fps()).round() as usize)
+    }
+
+    /// Frames at these weights and (rising) phases.
+    fn made(&self, facts: GaitFacts, phases: impl Iterator<Item = (f64, f64)>) -> Result<GaitClip, GaitError> {
+        let [a, b] = &self.gaits;
+        let mut made = Assembly::new(&a.clip, &b.clip, phases.size_hint().0);
+        let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+        let mut planted = [Vec::new(), Vec::new()];
+        let mut here = Planar::IDENTITY;
+        let mut before = None;
+        for (weight, phase) in phases {
+            if let Some(before) = before {
+                here = here.after(&self.step(weight, before, phase));
+            }
+            before = Some(phase);
+            self.pose_into(weight, phase, &mut rotations, &mut translations);
+            rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
+            let root = here.apply(translations[0]);
+            made.push(
+                root,
+                &rotations,
+                &translations[1..],
+                self.carrier.map(|joint| (joint, here)),
+                &mut world,
+            );
+            for (flags, down) in planted.iter_mut().zip(self.planted(weight, phase)) {
+                flags.push(down);
+            }
+        }
+        Ok(GaitClip {
+            clip: made.finish(self.name.clone())?,
+            contacts: Contacts::from_flags(planted),
+            facts,
+        })
+    }
+}
+
+fn checked(what: &'static str, value: f64, most: f64) -> Result<(), GaitError> {
+    let fits = (0.0..=most).contains(&value);
+    if fits {
+        Ok(())
+    } else {
+        Err(GaitError::Option { what, value, most })
+    }
+}
+
+/// A frame of a cycle, the next, and how far between.
+type Place = (usize, usize, f32);
+
+impl Sampled {
+    fn new(cycle: &GaitCycle, moving: &[usize]) -> Self {
+        let (clip, frames) = (&cycle.looped.clip, &cycle.looped.frames);
+        let mut rotations = Vec::with_capacity(clip.frames() * clip.skeleton().len());
+        let mut translations = Vec::with_capacity(clip.frames() * (moving.len() + 1));
+        let mut way = vec![DVec3::ZERO];
+        for (frame, here) in frames.iter().enumerate() {
+            let first = rotations.len();
+            rotations.extend_from_slice(clip.rotations(frame));
+            if let Some(root) = rotations.get_mut(first) {
+                *root = quat::renormalize(here.inverse().rotation() * *root);
+            }
+            translations.push(here.inverse().apply(clip.root_translations()[frame]));
+            translations.extend(moving.iter().map(|&joint| translation_of(clip, joint, frame)));
+            let next = frames.get(frame + 1).copied();
+            let next = next.or_else(|| frames.first().map(|first| cycle.looped.cycle.after(first)));
+            let step = next.map_or(Planar::IDENTITY, |next| here.inverse().after(&next));
+            let sum = way[frame] + DVec3::new(step.shift.x, wrap_angle(step.yaw), step.shift.y);
+            way.push(sum);
+        }
+        Self {
+            clip: clip.clone(),
+            rotations,
+            translations,
+            way,
+            events: cycle.events(),
+            first_phase: cycle.first_phase(),
+            speed_mps: cycle.speed_mps(),
+            secs: cycle.secs(),
+        }
+    }
+
+    /// Where a phase lies among the frames. A frame that is met but for rounding is met.
+    fn place(&self, phase: f64) -> Place {
+        let count = self.clip.frames();
+        let at = phase.rem_euclid(1.0) * count as f64;
+        let nearest = at.round();
+        let at = if (at - nearest).abs() < 1e-9 * count as f64 { nearest } else { at };
+        let frame = at.floor() as usize % count.max(1);
+        (frame, (frame + 1) % count.max(1), at.fract() as f32)
+    }
+
+    fn rotation(&self, joint: usize, (frame, next, part): Place) -> Quat {
+        let joints = self.clip.skeleton().len();
+        let from = self.rotations[frame * joints + joint];
+        if part == 0.0 {
+            from
+        } else {
+            quat::slerp(from, self.rotations[next * joints + joint], part)
+        }
+    }
+
+    fn translation(&self, slot: usize, slots: usize, (frame, next, part): Place) -> Vec3 {
+        self.translations[frame * slots + slot].lerp(self.translations[next * slots + slot], part)
+    }
+
+    /// The sum of steps up to a phase, over as many cycles as it counts.
+    fn way_at(&self, phase: f64) -> DVec3 {
+        let (cycles, last) = (phase.floor(), self.way.len() - 1);
+        let at = (phase - cycles) * last as f64;
+        let frame = (at.floor() as usize).min(last.saturating_sub(1));
+        let within = self.way[frame].lerp(self.way[(frame + 1).min(last)], at - frame as f64);
+        self.way[last] * cycles + within
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,267 @@
+use crate::blend::MOST_SECS;
+use crate::clip::{Clip, ClipError, Contacts};
+use crate::math::{curve, quat};
+use crate::registration::REFERENCE_HEIGHT_M;
+use crate::skeleton::{Role, Roles, Side, WorldPose, two_bones};
+use glam::{Mat3, Quat, Vec3};
+
+mod anchor;
+mod envelope;
+mod hips;
+
+/// How feet are planted. Lengths are those of a character 1.75 m tall and are scaled to the clip's character.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FootLockOptions {
+    /// Seconds over which a foot leaves its own way before a stance, and comes back to it after one; less where the next stance is nearer.
+    pub blend_secs: f64,
+    /// How far a foot may be moved over the ground, metres. The correction bends towards this limit from its half on; what is beyond it
+    /// slides as before. A foot that is said to stand while it swings would tear the leg otherwise.
+    pub max_shift_m: f32,
+    /// The height of the ground, metres: planted feet are lifted out of it. `None` leaves heights as they are.
+    pub ground_m: Option<f32>,
+}
+
+impl Default for FootLockOptions {
+    fn default() -> Self {
+        Self {
+            blend_secs: 0.2,
+            max_shift_m: 0.3,
+            ground_m: Some(0.0),
+        }
+    }
+}
+
+/// Why feet cannot be planted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FootLockError {
+    /// No leg of thigh, shin and foot, one below the other.
+    #[error("this skeleton has no leg with thigh, shin and foot: choose these joints by hand to lock its feet")]
+    NoLegs,
+    /// The contacts are those of another clip.
+    #[error("the contacts are known for {contacts} frames, but the clip has {frames}: detect them on this clip")]
+    Contacts {
+        /// Frames of the contacts.
+        contacts: usize,
+        /// Frames of the clip.
+        frames: usize,
+    },
+    /// A number that is none.
+    #[error("a {what} of {value} cannot be used: give a number from 0 to {most}")]
+    Option {
+        /// Which option.
+        what: &'static str,
+        /// The number given.
+        value: f64,
+        /// The largest number.
+        most: f64,
+    },
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}
+
+/// A leg is not stretched beyond this flexion of the knee, unless the clip itself does so: near full stretch the knee would snap.
+const LEAST_FLEXION_RADIANS: f32 = 0.14;
+/// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane takes over.
+const PLANE_SINE: f32 = 0.2;
+
+/// Plants the feet: while `contacts` say that a foot is on the ground, it does not slide.
+///
+/// *What is held.* In every step between two planted frames the point of the foot (ball, tip, or ankle; the ankle alone where there are no
+/// toes) that moves least over the ground is the one that stands. The foot is moved so that it stands exactly; the foot's own turning stays, so it still
+/// rolls from heel to ball to tip, and stays as flat as in the clip. Over a stance this fixes the foot's place up to a constant, which
+/// is chosen so that the correction vanishes where the foot is stillest: a mean over the stance with weights of inverse squared speed.
+/// What is below the ground is lifted out of it. Before and behind a stance the correction dies away with its own velocity
+/// ([`Decay::Cubic`](crate::math::Decay)), so that a foot does not jerk off the ground.
+///
+/// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to its place, then the leg is swung the shortest way
+/// ([`two_bones`]); joints between hip, knee and ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
+/// the knee keeps its plane, also when it is nearly straight.
+///
+/// *How the hips help.* A nearly straight leg has to bend a lot to become a little shorter, and cannot become longer. The hips are raised or lowered to
+/// where both knees change least (least squares of the change of flexion), smoothed, and lowered further where a leg would have to
+/// stretch past [its reach](crate::skeleton::two_bones); where even that does not help, the foot slides.
+///
+/// Frames where nothing needs to be corrected stay exactly as they are. Cost: O(frames × joints), one pass of forward kinematics.
+///
+/// # Errors
+/// [`FootLockError`] when there are no legs, the contacts do not fit the clip, or an option is out of range.
+pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Clip, FootLockError> {
+    let check = |what, value: f64, most: f64| {
+        let fits = (0.0..=most).contains(&value);
+        if fits {
+            Ok(())
+        } else {
+            Err(FootLockError::Option { what, value, most })
+        }
+    };
+    check("blend time (s)", options.blend_secs, MOST_SECS)?;
+    check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
+    let legs: Vec<(Side, Leg)> = (Side::BOTH.into_iter())
+        .filter_map(|side| Some((side, Leg::find(clip, roles, side)?)))
+        .collect();
+    if legs.is_empty() {
+        return Err(FootLockError::NoLegs);
+    }
+    if contacts.frames() != clip.frames() {
+        let (contacts, frames) = (contacts.frames(), clip.frames());
+        return Err(FootLockError::Contacts { contacts, frames });
+    }
+    let mut feet: Vec<anchor::Foot> = legs.iter().map(|(side, _)| anchor::Foot::new(clip, roles, *side)).collect();
+    let mut posed: Vec<Vec<Posed>> = legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect();
+    let mut world = WorldPose::default();
+    for frame in 0..clip.frames() {
+        clip.world_pose_into(frame, &mut world);
+        for (((_, leg), posed), foot) in legs.iter().zip(&mut posed).zip(&mut feet) {
+            posed.push(leg.pose(&world));
+            foot.push(&world);
+        }
+    }
+    let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32;
+    let shifts: Vec<Vec<Vec3>> = (legs.iter().zip(&feet))
+        .map(|((side, _), foot)| foot.shifts(&contacts.intervals(*side), clip.fps(), scale, options))
+        .collect();
+    if shifts.iter().flatten().all(|shift| *shift == Vec3::ZERO) {
+        return Ok(clip.clone());
+    }
+    let axes: Vec<Vec3> = posed.iter().map(|posed| usual_axis(posed)).collect();
+    let heights = hips::heights(&posed, &shifts, clip.fps());
+
+    let mut rotations = Vec::with_capacity(clip.frames() * clip.skeleton().len());
+    let mut roots = clip.root_translations().to_vec();
+    for (frame, (root, &height)) in roots.iter_mut().zip(&heights).enumerate() {
+        let first = rotations.len();
+        rotations.extend_from_slice(clip.rotations(frame));
+        let local = &mut rotations[first..];
+        root.y += height;
+        for (index, (_, leg)) in legs.iter().enumerate() {
+            let shift = shifts[index][frame];
+            if shift != Vec3::ZERO || height != 0.0 {
+                let [upper, lower] = posed[index][frame].turned(shift - Vec3::Y * height, axes[index]);
+                leg.write(&posed[index][frame], upper, lower, local);
+            }
+        }
+    }
+    let locked = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
+    Ok(locked
+        .with_translations(clip.translations().to_vec())?
+        .with_provenance(clip.provenance()))
+}
+
+/// The joints of a leg, and their parents.
+struct Leg {
+    joints: [usize; 3],
+    parents: [usize; 3],
+}
+
+/// A leg of the clip in one frame, in the world.
+#[derive(Clone, Copy, Debug)]
+struct Posed {
+    /// Hip to knee, and knee to ankle.
+    thigh: Vec3,
+    shin: Vec3,
+    rotations: [Quat; 3],
+    parents: [Quat; 3],
+}
+
+impl Leg {
+    fn find(clip: &Clip, roles: &Roles, side: Side) -> Option<Self> {
+        let skeleton = clip.skeleton();
+        let [thigh, shin, foot, _] = Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
+        let joints = [thigh?, shin?, foot?];
+        let above =
+            |joint: usize, wanted: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == wanted);
+        let [Some(a), Some(b), Some(c)] = joints.map(|joint| skeleton.parent(joint)) else {
+            return None;
+        };
+        let chain = above(joints[1], joints[0]) && above(joints[2], joints[1]);
+        let rest = skeleton.rest_positions();
+        let bones = [0, 1].map(|bone| rest[joints[bone]].distance(rest[joints[bone + 1]]));
+        (chain && bones.iter().all(|length| *length > 1e-3)).then_some(Self {
+            joints,
+            parents: [a, b, c],
+        })
+    }
+
+    fn pose(&self, world: &WorldPose) -> Posed {
+        let [hip, knee, ankle] = self.joints.map(|joint| world.positions[joint]);
+        Posed {
+            thigh: knee - hip,
+            shin: ankle - knee,
+            rotations: self.joints.map(|joint| world.rotations[joint]),
+            parents: self.parents.map(|joint| world.rotations[joint]),
+        }
+    }
+
+    /// Local rotations after thigh and shin were turned in the world, and the foot was not.
+    fn write(&self, posed: &Posed, upper: Quat, lower: Quat, local: &mut [Quat]) {
+        let [thigh, shin, foot] = self.joints;
+        let (rotations, parents) = (posed.rotations, posed.parents);
+        local[thigh] = quat::renormalize(parents[0].conjugate() * upper * rotations[0]);
+        local[shin] = quat::renormalize((upper * parents[1]).conjugate() * lower * rotations[1]);
+        local[foot] = quat::renormalize((lower * parents[2]).conjugate() * rotations[2]);
+    }
+}
+
+impl Posed {
+    fn line(&self) -> Vec3 {
+        self.thigh + self.shin
+    }
+
+    /// The area that the bones span, which points along the axis that the knee is bent about, over both lengths: the sine of the flexion.
+    fn bend(&self) -> Vec3 {
+        self.thigh.cross(self.shin) / (self.thigh.length() * self.shin.length()).max(1e-9)
+    }
+
+    /// How long this leg may become.
+    fn reach(&self) -> f32 {
+        let (a, b) = (self.thigh.length(), self.shin.length());
+        let reach = (a * a + b * b + 2.0 * a * b * LEAST_FLEXION_RADIANS.cos()).sqrt();
+        reach.max(self.line().length())
+    }
+
+    /// World turns of thigh and shin that move the ankle by `shift` against the hip.
+    ///
+    /// `usual_axis` is the axis of the knee in the thigh's frame. Where the leg is not bent in one plane about the axis used, or the knee is bent
+    /// the wrong way, a difference of angles does not quite reach; what is missing is asked for once more.
+    fn turned(&self, shift: Vec3, usual_axis: Vec3) -> [Quat; 2] {
+        let (a, b) = (self.thigh.length(), self.shin.length());
+        let bend = self.bend();
+        let usual = self.rotations[0] * usual_axis;
+        // A knee that is bent the wrong way has no plane of its own either.
+        let own = curve::smoothstep(bend.dot(usual) / PLANE_SINE);
+        let line = self.line();
+        let axis = bend * own + usual * PLANE_SINE * (1.0 - own);
+        let from = two_bones(line, a, b, axis);
+        let wanted = (line + shift).clamp_length_max(self.reach());
+        let mut asked = wanted;
+        let mut turns = [Quat::IDENTITY; 2];
+        for _ in 0..3 {
+            let swing = quat::between_directions(line, asked);
+            let to = two_bones(asked, a, b, swing * from.hinge);
+            turns = [(from.upper, to.upper), (from.lower, to.lower)]
+                .map(|(bone, turned)| quat::renormalize(basis(turned, to.hinge) * basis(bone, from.hinge).conjugate()));
+            let missing = wanted - (turns[0] * self.thigh + turns[1] * self.shin);
+            if missing.length_squared() < 1e-10 {
+                break;
+            }
+            asked = (asked + missing).clamp_length_max(self.reach());
+        }
+        turns
+    }
+}
+
+/// The rotation that takes X to `hinge` and Y to `bone`, unit vectors square to each other.
+fn basis(bone: Vec3, hinge: Vec3) -> Quat {
+    Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
+}
+
+/// The axis about which a knee bends over the whole clip, in the thigh's frame; bent frames count more.
+fn usual_axis(posed: &[Posed]) -> Vec3 {
+    let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
+    // A clip of straight legs: across the body, which at rest faces +Z.
+    sum.try_normalize().unwrap_or(Vec3::X)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,157 @@
+//! Where a planted foot belongs.
+
+use super::FootLockOptions;
+use super::envelope::{largest_around, smoothed};
+use crate::clip::{Clip, stillest_step};
+use crate::math::{Decay, curve};
+use crate::skeleton::{Roles, Side, WorldPose};
+use glam::Vec3;
+use std::ops::Range;
+
+/// Stances with less than this between them are one, seconds and metres: the foot is not lifted and set down again in so short a time, or so near.
+const SHORTEST_SWING_SECS: f64 = 0.14;
+const SHORTEST_SWING_M: f32 = 0.05;
+/// Below this speed a foot is as good as still when its place is chosen, metres per second.
+const STILL_MPS: f32 = 0.05;
+/// A foot that is lifted out of the ground is lifted smoothly over this time to either side, seconds.
+const LIFT_SECS: f64 = 0.06;
+
+/// The way of one foot through the clip.
+pub(super) struct Foot {
+    points: Vec<(usize, Vec3)>,
+    /// World positions of the points, frame by frame.
+    way: Vec<Vec3>,
+}
+
+impl Foot {
+    pub(super) fn new(clip: &Clip, roles: &Roles, side: Side) -> Self {
+        let points = roles.foot_points(clip.skeleton(), side);
+        let way = Vec::with_capacity(points.len() * clip.frames());
+        Self { points, way }
+    }
+
+    pub(super) fn push(&mut self, world: &WorldPose) {
+        self.way.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
+    }
+
+    fn at(&self, frame: usize) -> &[Vec3] {
+        let count = self.points.len();
+        self.way.get(frame * count..(frame + 1) * count).unwrap_or(&[])
+    }
+
+    /// What is added to the foot's place in every frame, metres.
+    pub(super) fn shifts(&self, stances: &[Range<usize>], fps: f64, scale: f32, options: &FootLockOptions) -> Vec<Vec3> {
+        let frames = self.way.len() / self.points.len().max(1);
+        let mut shifts = vec![Vec3::ZERO; frames];
+        let stances = self.parted(stances, fps, scale);
+        for stance in &stances {
+            self.hold(stance, fps, scale, options, &mut shifts);
+        }
+        for (index, stance) in stances.iter().enumerate() {
+            let next = stances.get(index + 1).map_or(frames, |next| next.start);
+            let before = index
+                .checked_sub(1)
+                .and_then(|before| stances.get(before))
+                .map_or(0, |before| before.end);
+            let last = stance.end - 1;
+            // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
+            let inside = |frame: usize| shifts[frame.clamp(stance.start, last)];
+            let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
+            let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
+            fade(into, options.blend_secs, fps, shifts[before..stance.start].iter_mut().rev());
+            fade(out, options.blend_secs, fps, shifts[stance.end..next].iter_mut());
+        }
+        shifts
+    }
+
+    /// Stances with next to nothing between them as one. Where the foot goes far in so short a time it needs longer: both stances give up frames.
+    fn parted(&self, stances: &[Range<usize>], fps: f64, scale: f32) -> Vec<Range<usize>> {
+        let shortest = (SHORTEST_SWING_SECS * fps).round() as usize;
+        let mut parted: Vec<Range<usize>> = Vec::with_capacity(stances.len());
+        for stance in stances {
+            let mut stance = stance.clone();
+            if let Some(last) = parted.last_mut()
+                && stance.start < last.end + shortest
+            {
+                if self.drift(last.end..stance.start + 1).length() < SHORTEST_SWING_M * scale {
+                    last.end = stance.end;
+                    continue;
+                }
+                let missing = last.end + shortest - stance.start;
+                last.end -= (missing / 2).min(last.len() / 2);
+                stance.start += missing.div_ceil(2).min(stance.len() / 2);
+            }
+            parted.push(stance);
+        }
+        parted
+    }
+
+    /// What the stillest points slide in the steps into these frames.
+    fn drift(&self, frames: Range<usize>) -> Vec3 {
+        frames.map(|frame| self.step_into(frame)).sum()
+    }
+
+    fn step_into(&self, frame: usize) -> Vec3 {
+        let before = frame.checked_sub(1).map_or(&[][..], |before| self.at(before));
+        stillest_step(before, self.at(frame)).unwrap_or(Vec3::ZERO)
+    }
+
+    /// The shifts of one stance.
+    fn hold(&self, stance: &Range<usize>, fps: f64, scale: f32, options: &FootLockOptions, shifts: &mut [Vec3]) {
+        let still = STILL_MPS * scale / fps as f32;
+        let (mut drift, mut sum, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        let mut before = Vec3::ZERO;
+        for frame in stance.clone() {
+            let step = if frame > stance.start { self.step_into(frame) } else { Vec3::ZERO };
+            drift += step;
+            shifts[frame] = -drift;
+            // A frame is as still as the steps on both sides of it; the first has no step before it.
+            let weight = (still * still + before.length_squared().max(step.length_squared())).recip();
+            if frame > stance.start || stance.len() == 1 {
+                sum += drift * weight;
+                weights += weight;
+            }
+            before = step;
+        }
+        let place = sum / weights.max(f32::MIN_POSITIVE);
+        let most = options.max_shift_m * scale;
+        for frame in stance.clone() {
+            let shift = shifts[frame] + place;
+            let length = shift.length();
+            let limited = if length > 0.0 {
+                curve::soft_limit(length, 0.5 * most, most) / length
+            } else {
+                1.0
+            };
+            shifts[frame] = shift * limited;
+        }
+        let Some(ground) = options.ground_m else { return };
+        let depth = |frame: usize| {
+            let lowest = self.at(frame).iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
+            (ground - lowest).max(0.0)
+        };
+        let depths: Vec<f32> = stance.clone().map(depth).collect();
+        if depths.iter().all(|&depth| depth == 0.0) {
+            return;
+        }
+        // A toe that dips for one frame must not kick the leg.
+        let reach = ((LIFT_SECS * fps).round() as usize).max(1);
+        let lifts = smoothed(&largest_around(&depths, reach), reach);
+        for (shift, lift) in shifts[stance.clone()].iter_mut().zip(lifts) {
+            shift.y = lift;
+        }
+    }
+}
+
+/// Adds what dies away from a shift and its step into the frames behind it; all of it is gone at their end.
+fn fade<'a>((shift, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl ExactSizeIterator<Item = &'a mut Vec3>) {
+    let blend_secs = blend_secs.min((frames.len() + 1) as f64 / fps);
+    let decay = Decay::Cubic { blend_secs };
+    for (index, frame) in frames.enumerate() {
+        let secs = (index + 1) as f64 / fps;
+        if secs >= blend_secs {
+            break;
+        }
+        *frame += decay.of_vec3(shift, step * fps as f32, secs).0;
+    }
+}

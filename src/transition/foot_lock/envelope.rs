@@ -1,0 +1,29 @@
+//! Smooth curves along and above rough ones.
+
+/// A mean over `reach` values to either side with the weights of a raised cosine; at the ends over those that there are.
+pub(super) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
+    let weight = |off: isize| 1.0 + (std::f32::consts::PI * off as f32 / (reach + 1) as f32).cos();
+    let weights: Vec<f32> = (-(reach as isize)..=reach as isize).map(weight).collect();
+    let mean = |at: usize| {
+        let first = at.saturating_sub(reach);
+        let around = &values[first..(at + reach + 1).min(values.len())];
+        if around.iter().all(|&value| value == 0.0) {
+            return 0.0;
+        }
+        let weights = &weights[first + reach - at..];
+        let sum: f32 = around.iter().zip(weights).map(|(value, weight)| value * weight).sum();
+        sum / weights[..around.len()].iter().sum::<f32>()
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+/// The largest of the values within `reach`; 0 where none is positive.
+pub(super) fn largest_around(values: &[f32], reach: usize) -> Vec<f32> {
+    let largest = |at: usize| {
+        values[at.saturating_sub(reach)..(at + reach + 1).min(values.len())]
+            .iter()
+            .copied()
+            .fold(0.0, f32::max)
+    };
+    (0..values.len()).map(largest).collect()
+}

@@ -1,0 +1,249 @@
+use super::*;
+use crate::clip::fixtures::wander_by;
+use crate::clip::{ContactOptions, stillest_step};
+use crate::registration::fixtures::Walk;
+use crate::skeleton::{Joint, Skeleton, fixtures};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+/// A walk whose feet slide: its root is too fast for its steps.
+fn sliding(speed: f32) -> (Clip, Roles) {
+    let walk = Walk {
+        frames: 240,
+        speed,
+        cadence: 0.9,
+        ..Walk::default()
+    };
+    let clip = walk.clip();
+    let roles = Roles::detect(clip.skeleton());
+    (clip, roles)
+}
+
+/// A foot stands while it goes backwards under the hips.
+fn backwards(clip: &Clip, roles: &Roles) -> Contacts {
+    let planted = |side| {
+        let foot = roles.get(Role::foot(side)).unwrap();
+        let ahead: Vec<f32> = (0..clip.frames())
+            .map(|frame| clip.world_pose(frame))
+            .map(|w| w.positions[foot].z - w.positions[0].z)
+            .collect();
+        (0..clip.frames())
+            .map(|frame| frame > 0 && ahead[frame] < ahead[frame - 1])
+            .collect()
+    };
+    Contacts::from_flags(Side::BOTH.map(planted))
+}
+
+/// How far the stillest point of a planted foot moves in a step, at most, metres.
+fn worst_step(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
+    let mut worst = 0.0_f32;
+    for side in Side::BOTH {
+        let points = roles.foot_points(clip.skeleton(), side);
+        let way: Vec<Vec<Vec3>> = (0..clip.frames())
+            .map(|frame| clip.world_pose(frame))
+            .map(|world| points.iter().map(|&(joint, point)| world.point(joint, point)).collect())
+            .collect();
+        for stance in contacts.intervals(side) {
+            for frame in stance.skip(1) {
+                worst = worst.max(stillest_step(&way[frame - 1], &way[frame]).unwrap().length());
+            }
+        }
+    }
+    worst
+}
+
+/// The same motion on a body with a twist joint in the middle of every thigh and shin, which is turned by a little.
+fn with_helpers(clip: &Clip, roles: &Roles) -> (Clip, Roles) {
+    let old = clip.skeleton();
+    let (mut joints, mut places): (Vec<Joint>, Vec<usize>) = (vec![], vec![]);
+    for (index, joint) in old.joints().iter().enumerate() {
+        let mut joint = joint.clone();
+        let parent = joint.parent.map(|parent| places[parent]);
+        joint.parent = parent;
+        if Side::BOTH
+            .iter()
+            .any(|&side| [Role::shin(side), Role::foot(side)].contains(&roles.role_of(index).unwrap_or(Role::Head)))
+        {
+            let half = joint.offset * 0.5;
+            joints.push(Joint {
+                name: format!("{} twist", joint.name),
+                parent,
+                offset: half,
+                end_site: None,
+                channels: vec![],
+            });
+            joint.parent = Some(joints.len() - 1);
+            joint.offset = half;
+        }
+        places.push(joints.len());
+        joints.push(joint);
+    }
+    let skeleton = Arc::new(Skeleton::new(joints).unwrap());
+    let poses = (0..clip.frames()).map(|frame| {
+        let mut pose = clip.pose(frame);
+        let turned = Quat::from_rotation_x(0.05 * (frame as f32 * 0.1).sin());
+        let mut rotations = vec![turned; skeleton.len()];
+        for (&place, rotation) in places.iter().zip(&pose.rotations) {
+            rotations[place] = *rotation;
+        }
+        pose.rotations = rotations;
+        pose
+    });
+    let clip = Clip::from_poses("helpers", Arc::clone(&skeleton), clip.fps(), poses).unwrap();
+    let mut there = Roles::default();
+    for role in Role::ALL {
+        there.set(role, roles.get(role).map(|joint| places[joint]));
+    }
+    (clip, there)
+}
+
+#[test]
+fn planted_feet_stand_and_stay_as_flat_as_they_were() {
+    for speed in [0.9, 1.3, 1.6] {
+        let (clip, roles) = sliding(speed);
+        for (clip, roles) in [with_helpers(&clip, &roles), (clip, roles)] {
+            let contacts = backwards(&clip, &roles);
+            let far = FootLockOptions {
+                max_shift_m: 1.0,
+                ..FootLockOptions::default()
+            };
+            let locked = foot_lock(&clip, &roles, &contacts, &far).unwrap();
+            let (before, after) = (worst_step(&clip, &roles, &contacts), worst_step(&locked, &roles, &contacts));
+            assert!(before > 5e-3 && after < 2e-4, "{speed}: {before} {after}");
+            for frame in 0..clip.frames() {
+                let (was, is) = (clip.world_pose(frame), locked.world_pose(frame));
+                for side in Side::BOTH {
+                    let foot = roles.get(Role::foot(side)).unwrap();
+                    assert!(quat::angle_between(was.rotations[foot], is.rotations[foot]) < 2e-3, "{frame}");
+                }
+                // Nothing but the legs and the height of the body changes.
+                let head = roles.get(Role::Head).unwrap();
+                let moved = is.positions[head] - was.positions[head];
+                assert!(moved.x.abs() + moved.z.abs() < 1e-5 && moved.y.abs() < 0.15, "{frame} {moved}");
+            }
+        }
+    }
+}
+
+#[test]
+fn without_contacts_nothing_changes() {
+    for (rig, skeleton, _) in fixtures::all() {
+        let clip = wander_by(&skeleton, 30, 3, 0.4);
+        let roles = fixtures::roles(&skeleton);
+        let none = Contacts::from_flags([vec![false; 30], vec![false; 30]]);
+        assert_eq!(foot_lock(&clip, &roles, &none, &FootLockOptions::default()), Ok(clip), "{rig}");
+    }
+}
+
+#[test]
+fn frames_far_from_a_correction_stay_as_they_are() {
+    let (clip, roles) = sliding(1.5);
+    let mut flags = vec![false; clip.frames()];
+    flags[100..130].fill(true);
+    let contacts = Contacts::from_flags([flags, vec![false; clip.frames()]]);
+    let locked = foot_lock(&clip, &roles, &contacts, &FootLockOptions::default()).unwrap();
+    // Blending, and the smoothing of the hips around it.
+    let margin = (0.5 * clip.fps()) as usize;
+    for frame in (0..100 - margin).chain(130 + margin..clip.frames()) {
+        assert_eq!(locked.pose(frame), clip.pose(frame), "{frame}");
+    }
+    assert_ne!(locked.pose(101), clip.pose(101));
+}
+
+#[test]
+fn feet_come_out_of_the_ground() {
+    let (clip, roles) = sliding(1.2);
+    let lowest = |clip: &Clip, frame: usize, side| {
+        let world = clip.world_pose(frame);
+        let points = roles.foot_points(clip.skeleton(), side);
+        points
+            .iter()
+            .map(|&(joint, point)| world.point(joint, point).y)
+            .fold(f32::INFINITY, f32::min)
+    };
+    let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
+    let all = || {
+        Side::BOTH
+            .into_iter()
+            .flat_map(|side| contacts.intervals(side).into_iter().flatten().map(move |frame| (frame, side)))
+    };
+    let ground = all().map(|(frame, side)| lowest(&clip, frame, side)).fold(f32::INFINITY, f32::min) + 0.02;
+    let lock = |ground_m| {
+        let options = FootLockOptions {
+            ground_m,
+            ..FootLockOptions::default()
+        };
+        foot_lock(&clip, &roles, &contacts, &options).unwrap()
+    };
+    let (lifted, left) = (lock(Some(ground)), lock(None));
+    for (frame, side) in all() {
+        assert!(lowest(&lifted, frame, side) >= ground - 1e-4, "{frame}");
+        assert!((lowest(&left, frame, side) - lowest(&clip, frame, side)).abs() < 1e-3, "{frame}");
+    }
+    assert!(all().any(|(frame, side)| lowest(&clip, frame, side) < ground - 0.015));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// One leg: it reaches what it can, stops before it is stretched, and does nothing for nothing.
+    #[test]
+    fn a_leg_reaches_or_stops(flexion in -0.1f32..1.8, tilt in -0.6f32..0.6, x in -0.4f32..0.4, y in -0.5f32..0.3, z in -0.4f32..0.4, turn in -3.0f32..3.0) {
+        let world = Quat::from_rotation_y(turn) * Quat::from_rotation_x(tilt);
+        let leg = Posed {
+            thigh: world * Vec3::NEG_Y * 0.43,
+            shin: world * Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
+            rotations: [world; 3],
+            parents: [world; 3],
+        };
+        let [a, b] = leg.turned(Vec3::ZERO, Vec3::X);
+        prop_assert!(quat::log(a).length() < 1e-3 && quat::log(b).length() < 1e-3);
+        let shift = Vec3::new(x, y, z);
+        let [a, b] = leg.turned(shift, Vec3::X);
+        let (reached, asked) = (a * leg.thigh + b * leg.shin, leg.line() + shift);
+        // A knee that is bent the wrong way is turned over on the way.
+        let tolerance = if flexion < 0.05 { 2e-2 } else { 1e-4 };
+        if asked.length() < leg.reach() {
+            prop_assume!(asked.length() > 0.15);
+            prop_assert!(reached.distance(asked) < tolerance, "{reached} {asked}");
+        } else {
+            prop_assert!(reached.normalize().distance(asked.normalize()) < 1e-2);
+            prop_assert!(reached.length() <= leg.reach() + 1e-4);
+        }
+        // The knee never bends to the other side.
+        let hinge = a * world * Vec3::X;
+        prop_assert!((a * leg.thigh).cross(b * leg.shin).dot(hinge) > -0.03);
+    }
+}
+
+#[test]
+fn what_cannot_be_locked_is_said() {
+    let (clip, roles) = sliding(1.3);
+    let contacts = backwards(&clip, &roles);
+    let lock = |roles: &Roles, contacts: &Contacts, options: &FootLockOptions| foot_lock(&clip, roles, contacts, options);
+    let options = FootLockOptions::default();
+    assert_eq!(lock(&Roles::default(), &contacts, &options), Err(FootLockError::NoLegs));
+    assert!(matches!(
+        lock(&roles, &Contacts::from_flags([vec![true; 7], vec![true; 7]]), &options),
+        Err(FootLockError::Contacts { contacts: 7, .. })
+    ));
+    for blend_secs in [-0.1, f64::NAN, 1e9] {
+        let wrong = FootLockOptions { blend_secs, ..options };
+        assert!(matches!(lock(&roles, &contacts, &wrong), Err(FootLockError::Option { .. })));
+    }
+    // Roles of another skeleton, or in the wrong order, are no leg; one leg is enough.
+    let mut one = roles.clone();
+    one.set(Role::LeftShin, Some(9_999));
+    assert!(lock(&one, &contacts, &options).is_ok());
+    one.set(Role::RightShin, roles.get(Role::Head));
+    assert_eq!(lock(&one, &contacts, &options), Err(FootLockError::NoLegs));
+    // No blending at all is a jump, not an error; nor are no frames.
+    let hard = FootLockOptions {
+        blend_secs: 0.0,
+        max_shift_m: 0.0,
+        ..options
+    };
+    assert!(lock(&roles, &contacts, &hard).is_ok());
+    let empty = clip.crop(0..0).unwrap();
+    assert_eq!(foot_lock(&empty, &roles, &Contacts::default(), &options), Ok(empty));
+}

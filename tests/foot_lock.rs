@@ -1,0 +1,156 @@
+//! Feet that slide in a transition are planted: on captured motion, where this machine has it, and on made motion everywhere.
+
+#[path = "formats_common/mod.rs"]
+mod formats_common;
+
+use formats_common::shared_data;
+use segue::blend::{Concatenation, Source};
+use segue::clip::{Clip, ContactOptions, Contacts};
+use segue::formats::ImportOptions;
+use segue::formats::acclaim::{read_motion, read_skeleton};
+use segue::math::{Decay, quat};
+use segue::metrics::{Profile, Subject, TransitionMetrics};
+use segue::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
+use segue::skeleton::{Role, Roles, Side};
+use segue::synth::{Action, Params, synthesize};
+use segue::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
+use std::sync::Arc;
+
+struct Take {
+    name: String,
+    profile: Profile,
+    roles: Roles,
+}
+
+impl Take {
+    fn new(name: &str, clip: Clip) -> Self {
+        let roles = Roles::detect(clip.skeleton());
+        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
+        let source = Arc::new(Source::new(Arc::new(clip), &roles));
+        Self {
+            name: name.to_owned(),
+            profile: Profile::new(source, &roles, contacts),
+            roles,
+        }
+    }
+
+    fn clip(&self) -> &Arc<Clip> {
+        self.profile.source().clip()
+    }
+}
+
+/// The takes of subject 16 of the CMU database whose names end like this; none where the data is not there.
+fn captured(wanted: &[&str]) -> Vec<Take> {
+    let Some(folder) = shared_data().map(|data| data.join("cmu/16")) else {
+        return vec![];
+    };
+    let Ok(bytes) = std::fs::read(folder.join("16.asf")) else {
+        return vec![];
+    };
+    let skeleton = read_skeleton("16.asf", &bytes, &ImportOptions::default()).expect("the skeleton is read");
+    let take = |name: &&str| {
+        let bytes = std::fs::read(folder.join(format!("16_{name}.amc"))).expect("the take is there");
+        let mut read = read_motion(name, &bytes, &skeleton, &ImportOptions::default()).expect("the take is read");
+        Take::new(name, read.clips.remove(0).clip)
+    };
+    wanted.iter().map(take).collect()
+}
+
+fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
+    let weights = limb_weights(a.clip().skeleton());
+    let height = f64::from(a.roles.body_height(a.clip().skeleton()));
+    let (from, to) = (a.profile.source(), b.profile.source());
+    let mut search = PoseSearch::new((from.clip(), from.frames()), (to.clip(), to.frames()), &weights, height).expect("one rig");
+    search.advance(usize::MAX);
+    let found = search.best(PoseWeights::default(), &SearchOptions::new(40)).expect("windows fit");
+    let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });
+    let options = TransitionOptions::new(Method::Inertialize(spring));
+    (
+        concatenate(from, found.leave, to, found.enter, &options).expect("frames are there"),
+        found.enter,
+    )
+}
+
+fn measured(a: &Take, b: &Take, out: &Concatenation, enter: usize, result: &Clip) -> TransitionMetrics {
+    TransitionMetrics::measure(&Subject {
+        result,
+        start: out.transition.start,
+        end: out.transition.end,
+        handover: out.handover,
+        enter,
+        a: &a.profile,
+        b: &b.profile,
+        roles: &a.roles,
+        ground_m: 0.0,
+    })
+}
+
+/// The largest angular velocity of a knee, degrees per second.
+fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
+    let knees = Side::BOTH.map(|side| roles.get(Role::shin(side)).expect("legs have knees"));
+    let step = |frame: usize, knee: usize| quat::angle_between(clip.rotations(frame - 1)[knee], clip.rotations(frame)[knee]);
+    let steps = (1..clip.frames()).flat_map(|frame| knees.map(|knee| step(frame, knee)));
+    steps.fold(0.0, f32::max).to_degrees() * clip.fps() as f32
+}
+
+/// Skate before and after, centimetres, and the fastest knee before and after, degrees per second.
+fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
+    let (out, enter) = joined(a, b);
+    let contacts = Contacts::joined(
+        a.profile.contacts(),
+        b.profile.contacts(),
+        out.transition.start,
+        enter,
+        out.handover,
+    );
+    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
+    let skate = [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
+    let knees = [&out.clip, &clip].map(|clip| fastest_knee(clip, &a.roles));
+    println!(
+        "{} → {} at {} {enter}: skate {:.2} → {:.3} cm, knee {:.0} → {:.0} °/s",
+        a.name, b.name, out.transition.start, skate[0], skate[1], knees[0], knees[1]
+    );
+    (skate, knees)
+}
+
+#[test]
+fn walk_to_run_of_cmu_16_loses_nine_tenths_of_its_skate_and_no_knee_pops() {
+    for pair in captured(&["15", "35"]).chunks_exact(2) {
+        let (skate, knees) = locked(&pair[0], &pair[1]);
+        assert!(skate[0] > 0.5 && skate[1] <= 0.1 * skate[0], "{skate:?}");
+        assert!(knees[1] <= 1.5 * knees[0], "{knees:?}");
+    }
+}
+
+#[test]
+fn made_walks_and_runs_lose_their_skate_too() {
+    let [walk, run] = [Action::Walk, Action::Run].map(|action| {
+        let made = synthesize(&Params::new(action)).expect("defaults can be made");
+        Take::new(made.clip.name(), made.clip.clone())
+    });
+    for (a, b) in [(&walk, &run), (&run, &walk)] {
+        let (skate, knees) = locked(a, b);
+        assert!(skate[1] <= 0.1 * skate[0], "{skate:?}");
+        assert!(knees[1] <= 1.5 * knees[0], "{knees:?}");
+    }
+}
+
+/// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is hurried.
+#[test]
+fn pairs_of_cmu_16_stand_still() {
+    let takes = captured(&["05", "11", "15", "17", "22", "35", "43", "55"]);
+    let (mut skates, mut hurried) = (vec![], 0);
+    for a in &takes {
+        for b in &takes {
+            let (skate, knees) = locked(a, b);
+            skates.push(skate[1]);
+            hurried += usize::from(knees[1] > 1.5 * knees[0]);
+        }
+    }
+    if !skates.is_empty() {
+        skates.sort_by(f64::total_cmp);
+        let median = skates[skates.len() / 2];
+        println!("median {median:.3} cm, {hurried} of {} with a hurried knee", skates.len());
+        assert!(median < 1.0 && hurried * 20 < skates.len(), "{median} {hurried}");
+    }
+}
