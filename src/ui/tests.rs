@@ -1,5 +1,7 @@
 //! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
+
 use super::*;
 use crate::ui::theme::Theme;
 use eframe::egui::{Key as Keyboard, Rect, Shape, Vec2, vec2};
@@ -8,7 +10,7 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use segue::formats::FileKind;
-use segue::session::export::{ExportFormat, export};
+use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
 use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
 use std::fmt::Write as _;
@@ -103,7 +105,7 @@ fn picture(name: &str, harness: &mut Harness<'_, Page>) {
 /// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
 fn file(session: &Session) -> String {
     let motion = session.library().find("walk").and_then(|entry| entry.motion.clone()).unwrap();
-    let text = String::from_utf8(export(&motion, &[], &Default::default()).unwrap()).unwrap();
+    let text = String::from_utf8(export(&motion, &[], &ExportOptions::default()).unwrap()).unwrap();
     let (head, rows) = text.split_once("MOTION\n").unwrap();
     let frames = motion.clip.frames();
     let root_end = head
