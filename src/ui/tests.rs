@@ -25,6 +25,11 @@ const LIGHT: Theme = Theme {
     projector: false,
 };
 
+const HALL: Theme = Theme {
+    dark: true,
+    projector: true,
+};
+
 /// A page without a renderer.
 struct Page {
     session: Session,
@@ -172,6 +177,7 @@ fn the_clip_panel_tells_what_was_read() {
     for (name, size, theme) in [
         ("view-desk-dark", DESK, DARK),
         ("view-desk-light", DESK, LIGHT),
+        ("view-projector", vec2(1280.0, 720.0), HALL),
         ("view-phone-dark", PHONE, DARK),
         ("view-phone-light", PHONE, LIGHT),
     ] {
@@ -264,7 +270,11 @@ fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
 
 #[test]
 fn the_library_opens_the_same_panel_under_the_row() {
-    for (name, size, theme) in [("details-desk-dark", DESK, DARK), ("details-phone-light", PHONE, LIGHT)] {
+    for (name, size, theme) in [
+        ("details-desk-dark", DESK, DARK),
+        ("details-projector", vec2(1280.0, 720.0), HALL),
+        ("details-phone-light", PHONE, LIGHT),
+    ] {
         let mut page = with_file("lab=blend&play=off");
         page.state.details = Some(loaded(&page).id.clone());
         page.state.library_open = true;
