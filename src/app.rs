@@ -456,7 +456,10 @@ impl Segue {
             Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
             Action::Save { which, how } => match self.export_as(which, how) {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
-                Err(reason) => self.session.say(Level::Error, format!("The file could not be saved: {reason}.")),
+                Err(reason) => self.session.say(
+                    Level::Error,
+                    format!("The file could not be saved: {}.", reason.trim_end_matches('.')),
+                ),
             },
             Action::SavePicture => {
                 if let Some(stage) = self.picture.place() {

@@ -9,7 +9,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use segue::formats::FileKind;
+use segue::formats::{FileKind, ImportOptions};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
 use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
@@ -27,6 +27,11 @@ const LIGHT: Theme = Theme {
     projector: false,
 };
 
+const HALL: Theme = Theme {
+    dark: true,
+    projector: true,
+};
+
 /// A page without a renderer.
 struct Page {
     session: Session,
@@ -39,7 +44,7 @@ struct Page {
 
 fn page(link: &str) -> Page {
     let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
+    session.apply(Command::OpenLink(link.into())).expect("a page as the tests need it");
     while session.work() {}
     Page {
         session,
@@ -72,7 +77,7 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
             let out = ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
             for command in &out.commands {
                 if page.obeys {
-                    page.session.apply(command.clone()).unwrap();
+                    page.session.apply(command.clone()).expect("a page as the tests need it");
                 }
             }
             page.out.commands.extend(out.commands);
@@ -104,26 +109,37 @@ fn picture(name: &str, harness: &mut Harness<'_, Page>) {
 
 /// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
 fn file(session: &Session) -> String {
-    let motion = session.library().find("walk").and_then(|entry| entry.motion.clone()).unwrap();
-    let text = String::from_utf8(export(&motion, &[], &ExportOptions::default()).unwrap()).unwrap();
-    let (head, rows) = text.split_once("MOTION\n").unwrap();
+    let motion = session
+        .library()
+        .find("walk")
+        .and_then(|entry| entry.motion.clone())
+        .expect("a page as the tests need it");
+    let text = String::from_utf8(export(&motion, &[], &ExportOptions::default()).expect("a page as the tests need it"))
+        .expect("a page as the tests need it");
+    let (head, rows) = text.split_once("MOTION\n").expect("a page as the tests need it");
     let frames = motion.clip.frames();
     let root_end = head
         .match_indices('\n')
         .filter(|(at, _)| head[..*at].contains("CHANNELS"))
         .map(|(at, _)| at)
         .next()
-        .unwrap();
+        .expect("a page as the tests need it");
     let tail = "\n  JOINT Tail\n  {\n    OFFSET 0 0 -20\n    CHANNELS 0\n    End Site\n    {\n      OFFSET 0 0 -20\n    }\n  }";
     let (time, rows) = rows
         .split_once("Frame Time")
-        .map(|(_, rest)| rest.split_once('\n').unwrap())
-        .unwrap();
-    let columns = rows.lines().next().unwrap().split_whitespace().count();
-    let mut first: Vec<&str> = rows.lines().next().unwrap().split_whitespace().take(3).collect();
+        .map(|(_, rest)| rest.split_once('\n').expect("a page as the tests need it"))
+        .expect("a page as the tests need it");
+    let columns = rows.lines().next().expect("a page as the tests need it").split_whitespace().count();
+    let mut first: Vec<&str> = rows
+        .lines()
+        .next()
+        .expect("a page as the tests need it")
+        .split_whitespace()
+        .take(3)
+        .collect();
     first.resize(columns, "0");
     let mut out = format!("{}{tail}{}MOTION\n", &head[..root_end], &head[root_end..]);
-    write!(out, "Frames: {}\nFrame Time{time}\n{}\n{rows}", frames + 1, first.join(" ")).unwrap();
+    write!(out, "Frames: {}\nFrame Time{time}\n{}\n{rows}", frames + 1, first.join(" ")).expect("a page as the tests need it");
     out
 }
 
@@ -132,22 +148,26 @@ fn with_file(link: &str) -> Page {
     let mut page = page(link);
     page.session.make_all();
     let text = file(&page.session);
-    page.session.load("takes/tailed.bvh", Arc::from(text.into_bytes())).unwrap();
+    page.session
+        .load("takes/tailed.bvh", Arc::from(text.into_bytes()))
+        .expect("a page as the tests need it");
     while page.session.work() {}
     page.session
         .apply(Command::Dismiss(page.session.notices().list().last().map_or(0, |n| n.id)))
-        .unwrap();
+        .expect("a page as the tests need it");
     page.out = Out::default();
     page
 }
 
 fn loaded(page: &Page) -> &Entry {
     let mut entries = page.session.library().entries().iter();
-    entries.find(|entry| matches!(entry.origin, Origin::File(_))).unwrap()
+    entries
+        .find(|entry| matches!(entry.origin, Origin::File(_)))
+        .expect("a page as the tests need it")
 }
 
 fn outcome(page: &Page) -> &Outcome {
-    page.session.main_outcome().unwrap()
+    page.session.main_outcome().expect("a page as the tests need it")
 }
 
 #[test]
@@ -159,14 +179,13 @@ fn the_clip_panel_tells_what_was_read() {
     for (name, size, theme) in [
         ("view-desk-dark", DESK, DARK),
         ("view-desk-light", DESK, LIGHT),
+        ("view-projector", vec2(1280.0, 720.0), HALL),
         ("view-phone-dark", PHONE, DARK),
         ("view-phone-light", PHONE, LIGHT),
     ] {
         let mut harness = harness(size, theme, with_file("lab=view&play=off"));
-        for label in ["Unit", "Up axis", "Leave out the T-pose", "File format", "Body parts"] {
-            if label != "File format" {
-                harness.get_by_label(label);
-            }
+        for label in ["Unit", "Up axis", "Leave out the T-pose", "GLB", "Body parts"] {
+            harness.get_by_label(label);
         }
         harness.get_by_label(&format!("Joints: {joints} "));
         harness.get_by_label_contains("Root: position X Y Z");
@@ -183,10 +202,6 @@ fn the_clip_panel_tells_what_was_read() {
 fn what_is_said_by_hand_reads_the_file_again() {
     let mut page = with_file("lab=view&play=off");
     page.obeys = false;
-    let options = match &loaded(&page).origin {
-        Origin::File(file) => file.options,
-        _ => unreachable!(),
-    };
     let mut harness = harness(DESK, DARK, page);
     let mut choose = |row: &str, item: &str| {
         press(row, &mut harness);
@@ -199,7 +214,6 @@ fn what_is_said_by_hand_reads_the_file_again() {
     assert_eq!(choose("Unit", "inch").metres_per_unit, Some(0.0254));
     assert_eq!(choose("Up axis", "Z").up, Some(segue::clip::UpAxis::Z));
     assert_eq!(choose("Frame rate", "25").fps, Some(25.0));
-    assert!(!options.drop_t_pose || options == Default::default());
     press("Leave out the T-pose", &mut harness);
     let command = harness.state_mut().out.commands.pop();
     assert!(
@@ -258,7 +272,11 @@ fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
 
 #[test]
 fn the_library_opens_the_same_panel_under_the_row() {
-    for (name, size, theme) in [("details-desk-dark", DESK, DARK), ("details-phone-light", PHONE, LIGHT)] {
+    for (name, size, theme) in [
+        ("details-desk-dark", DESK, DARK),
+        ("details-projector", vec2(1280.0, 720.0), HALL),
+        ("details-phone-light", PHONE, LIGHT),
+    ] {
         let mut page = with_file("lab=blend&play=off");
         page.state.details = Some(loaded(&page).id.clone());
         page.state.library_open = true;
@@ -327,7 +345,7 @@ fn a_clip_without_a_motion_says_why() {
         kind: FileKind::Bvh,
         companion: None,
         index: 0,
-        options: Default::default(),
+        options: ImportOptions::default(),
     };
     let being_read = Entry {
         origin: Origin::File(large),
