@@ -237,6 +237,8 @@ parameters! {
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that feet slide less.";
 
+    FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
+
     Method "method" "Method" Transition Kind::Choice(METHODS), Start::Word("inertialize"), "", "How A goes over into B.";
     HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How lazily the difference to A dies away: half of it is left after 1.2 half-lives.";
     BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left: for cubic, quintic and dead blend.";

@@ -108,6 +108,7 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
@@ -214,6 +215,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

@@ -162,6 +162,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
 pub(crate) const METRICS: &[(&str, &str)] = &[
     ("seam_dps", "seam °/s"),
     ("skate_cm", "skate cm"),
+    ("skate_before_cm", "unlocked cm"),
     ("lag_s", "lag s"),
     ("spin_deg", "spin"),
     ("seam_deg", "jump"),

@@ -386,3 +386,24 @@ fn mix_frames_are_frames_of_each_clip() {
         (90.0, 12.0)
     );
 }
+
+#[test]
+fn foot_lock_stills_the_feet_and_tells_what_it_did() {
+    let mut session = Session::new();
+    session
+        .apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into()))
+        .unwrap();
+    settle(&mut session);
+    let outcome = session.main_outcome().unwrap();
+    let value = |id: &str| outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap();
+    let (before, after) = (value("skate_before_cm"), value("skate_cm"));
+    assert!(before > 3.0 && after < 0.1 * before, "{before} cm, {after} cm");
+    session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(false))])).unwrap();
+    let skate = session
+        .main_outcome()
+        .unwrap()
+        .metrics
+        .iter()
+        .find(|metric| metric.id == "skate_cm");
+    assert_eq!(skate.unwrap().value, Some(before));
+}

@@ -1,13 +1,13 @@
 use super::{Outcome, Retargeted, Slot, Source, Transition};
 use crate::blend::{self, RootBlend, WeightLaw};
-use crate::clip::{Contacts, Interpolation, resample, retarget};
+use crate::clip::{Clip, Contacts, Interpolation, resample, retarget};
 use crate::math::{Decay, Planar};
-use crate::metrics::{Profile, Subject, TransitionMetrics};
+use crate::metrics::{Better, Metric, Profile, Subject, TransitionMetrics};
 use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
 use crate::skeleton::Retargeting;
-use crate::transition::{Inertialization, Method, TransitionOptions, concatenate};
+use crate::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -16,11 +16,15 @@ pub(in crate::session) struct BlendInputs {
     pair: Arc<Pair>,
     place: Place,
     options: TransitionOptions,
+    foot_lock: bool,
 }
 
 impl PartialEq for BlendInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pair, &other.pair) && self.place == other.place && self.options == other.options
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && self.place == other.place
+            && self.options == other.options
+            && self.foot_lock == other.foot_lock
     }
 }
 
@@ -193,6 +197,7 @@ impl Blender {
         Ok(BlendInputs {
             pair,
             place,
+            foot_lock: params.is_on(Key::FootLock),
             options: TransitionOptions {
                 method,
                 align: params.is_on(Key::Align),
@@ -310,7 +315,12 @@ impl Blender {
 impl BlendInputs {
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        let Self { pair, place, options } = self;
+        let Self {
+            pair,
+            place,
+            options,
+            foot_lock: is_locked,
+        } = self;
         let [a, b] = &pair.profiles;
         let made = concatenate(a.source(), place.leave, b.source(), place.enter, options).map_err(|error| error.to_string())?;
         let fps = made.clip.fps();
@@ -326,24 +336,44 @@ impl BlendInputs {
         };
         let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, made.handover);
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
+        let roles = pair.a.roles.clone();
+        let free = Arc::new(made.clip.with_name(name));
+        let clip = if *is_locked {
+            let locked = foot_lock(&free, &roles, &contacts, &FootLockOptions::default());
+            Arc::new(locked.map_err(|error| error.to_string())?)
+        } else {
+            Arc::clone(&free)
+        };
         let motion = Motion {
-            clip: Arc::new(made.clip.with_name(name)),
-            roles: pair.a.roles.clone(),
+            clip,
+            roles,
             contacts,
             ground_frames: made.frames,
         };
-        let subject = Subject {
-            result: &motion.clip,
-            start: window.start,
-            end: window.end,
-            handover: made.handover,
-            enter: place.enter,
-            a,
-            b,
-            roles: &motion.roles,
-            ground_m: 0.0,
+        let measured = |result: &Clip| {
+            TransitionMetrics::measure(&Subject {
+                result,
+                start: window.start,
+                end: window.end,
+                handover: made.handover,
+                enter: place.enter,
+                a,
+                b,
+                roles: &motion.roles,
+                ground_m: 0.0,
+            })
         };
-        let metrics = TransitionMetrics::measure(&subject).list().to_vec();
+        let mut metrics = measured(&motion.clip).list().to_vec();
+        if *is_locked {
+            metrics.push(Metric {
+                id: "skate_before_cm",
+                label: "Foot slide before the lock",
+                value: measured(&free).skate_cm,
+                unit: "cm",
+                better: Better::Neutral,
+                help: "How far a planted foot slides in the worst stance without the foot lock.",
+            });
+        }
         let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
             slot,
             motion: Arc::clone(motion),
