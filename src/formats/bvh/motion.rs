@@ -161,6 +161,8 @@ impl Rows<'_, '_> {
     }
 
     /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
+    // Not inlined: browsers only optimise a function from one call to its next, and a file would be over before its reader is fast.
+    #[inline(never)]
     fn plain_line(&mut self) -> bool {
         // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
         if self.lexer.commas {

@@ -249,11 +249,20 @@ fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, JsValue> {
     Ok(worker)
 }
 
-/// The worker's part: reads a file and hands its report out, first the head, then the pieces.
+/// The worker's part: reads a file, whose SHA-256 the browser may know, and hands its report out, first the head, then the pieces.
 #[wasm_bindgen(js_name = readFile)]
 #[expect(unreachable_pub, reason = "the worker calls it from JavaScript")]
-pub fn read_file(name: &str, bytes: Vec<u8>, setup: &str, progress: &Function, head: &Function, piece: &Function) -> Result<(), JsValue> {
-    let setup: ReadSetup = serde_json::from_str(setup).map_err(|error| error.to_string())?;
+pub fn read_file(
+    name: &str,
+    bytes: Vec<u8>,
+    setup: &str,
+    sha256: Option<String>,
+    progress: &Function,
+    head: &Function,
+    piece: &Function,
+) -> Result<(), JsValue> {
+    let mut setup: ReadSetup = serde_json::from_str(setup).map_err(|error| error.to_string())?;
+    setup.sha256 = setup.sha256.or(sha256);
     let report = read(name, &bytes, &setup, &mut |done| {
         progress.call1(&JsValue::NULL, &JsValue::from(done as f64)).is_ok()
     });

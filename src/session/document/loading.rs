@@ -251,6 +251,7 @@ impl Session {
                 None if file.kind == FileKind::Amc => self.companions(),
                 None => Vec::new(),
             },
+            sha256: Some(file.sha256.clone()),
         }
     }
 

@@ -51,6 +51,9 @@ pub struct ReadSetup {
     pub roles: BTreeMap<usize, Roles>,
     /// Files that this one may lean on: skeletons for the motion of another file.
     pub companions: Vec<Companion>,
+    /// SHA-256 of the file's bytes, where it is known already; lower-case hexadecimal.
+    #[serde(default)]
+    pub sha256: Option<String>,
 }
 
 /// A small file that others lean on: the skeleton of a motion.
@@ -139,7 +142,8 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
         FileKind::Gzip => unpack_gzip(name, bytes, most).map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
             let skeletons = skeletons_of(&setup.companions, &setup.options);
-            let file = One { name, bytes, kind };
+            let sha256 = setup.sha256.as_deref();
+            let file = One { name, bytes, kind, sha256 };
             return Some(ReadReport {
                 files: vec![file.read(setup, &skeletons, &|_| None, progress)?],
                 notes: Vec::new(),
@@ -188,7 +192,13 @@ fn read_several(
             continue;
         }
         let mut scaled = |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
-        let mut file = One { name, bytes, kind }.read(setup, &skeletons, &beside, &mut scaled)?;
+        let mut file = One {
+            name,
+            bytes,
+            kind,
+            sha256: None,
+        }
+        .read(setup, &skeletons, &beside, &mut scaled)?;
         file.unpacked = Some(bytes.clone());
         report.files.push(file);
         before += bytes.len();
@@ -215,6 +225,7 @@ struct One<'a> {
     name: &'a str,
     bytes: &'a [u8],
     kind: FileKind,
+    sha256: Option<&'a str>,
 }
 
 impl One<'_> {
@@ -225,7 +236,7 @@ impl One<'_> {
         beside: &dyn Fn(&str) -> Option<Arc<[u8]>>,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Option<ReadFile> {
-        let Self { name, bytes, kind } = *self;
+        let Self { name, bytes, kind, .. } = *self;
         let mut companion = None;
         let imported = match kind {
             FileKind::Amc => {
@@ -251,7 +262,7 @@ impl One<'_> {
         };
         Some(ReadFile {
             name: name.to_owned(),
-            sha256: sha256_hex(bytes),
+            sha256: self.sha256.map_or_else(|| sha256_hex(bytes), str::to_owned),
             size: bytes.len() as u64,
             kind,
             unpacked: None,
@@ -318,7 +329,10 @@ impl ReadClip {
 /// SHA-256 in lower-case hexadecimal.
 fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+    // In pieces: browsers only optimise a function from one call to its next.
+    let mut digest = Sha256::new();
+    bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));
+    digest.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
         // Writing to a string cannot fail.
         write!(hex, "{byte:02x}").ok();
         hex

@@ -1,0 +1,67 @@
+// Measures, and judges nothing: how fast BVH text is read, by Segue's worker and by three.js' BVHLoader, in the same page.
+//   node tests/browser/speed.mjs [--frames 9600,60000]      frames of a body of 31 joints, some 730 bytes each
+
+import { readFileSync } from "node:fs";
+import process from "node:process";
+import { fileURLToPath } from "node:url";
+import { parseArgs } from "node:util";
+import { striding } from "./help.mjs";
+import { close, openSegue } from "./segue.mjs";
+
+const { values } = parseArgs({ options: { frames: { type: "string", default: "9600,60000" } } });
+const three = (path) => readFileSync(fileURLToPath(new URL(`node_modules/three/${path}`, import.meta.url)), "utf8");
+const SCRIPTS = {
+  "three.module.js": () => three("build/three.module.js"),
+  "three.core.js": () => three("build/three.core.js"),
+  "BVHLoader.js": () => three("examples/jsm/loaders/BVHLoader.js").replace(/from 'three'/, "from './three.module.js'"),
+};
+
+const rows = {};
+try {
+  const { page } = await openSegue("webgl2", "lab=view&play=off", { viewport: [640, 480], prepare: (page) => page.route("**/three/*", serve) });
+  for (const frames of values.frames.split(",").map(Number)) {
+    const bytes = striding({ frames });
+    rows[`${(bytes.length / 1e6).toFixed(1)} MB`] = await measure(page, bytes);
+  }
+} finally {
+  await close();
+}
+console.table(rows);
+process.exit();
+
+async function measure(page, bytes) {
+  // Through a file input, so that no text of this size travels as JSON.
+  await page.evaluate(() => document.body.append(Object.assign(document.createElement("input"), { type: "file", id: "speed", hidden: true })));
+  await page.setInputFiles("#speed", { name: "speed.bvh", mimeType: "text/plain", buffer: bytes });
+  return page.evaluate(async () => {
+    const input = document.getElementById("speed");
+    const buffer = await input.files[0].arrayBuffer();
+    input.remove();
+    const { BVHLoader } = await import("./three/BVHLoader.js");
+    const megabytes = buffer.byteLength / 1e6;
+    const best = async (times, run) => {
+      let least = Infinity;
+      for (let time = 0; time < times; time++) {
+        const start = performance.now();
+        await run(time);
+        least = Math.min(least, performance.now() - start);
+      }
+      return megabytes / (least / 1e3);
+    };
+    const text = new TextDecoder().decode(buffer);
+    const theirs = await best(1, () => new BVHLoader().parse(text));
+    // The whole way: to the worker, read, analysed, and back into the library.
+    const whole = await best(3, (time) => window.segue.load(`speed${time}.bvh`, new Uint8Array(buffer)));
+    return {
+      "three.js MB/s": Number(theirs.toFixed(1)),
+      "Segue, until it is in the library MB/s": Number(whole.toFixed(1)),
+      times: Number((whole / theirs).toFixed(1)),
+    };
+  });
+}
+
+function serve(route) {
+  const name = new URL(route.request().url()).pathname.split("/").at(-1);
+  const script = SCRIPTS[name];
+  return script ? route.fulfill({ contentType: "text/javascript", body: script() }) : route.abort();
+}
