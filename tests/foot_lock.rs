@@ -106,7 +106,7 @@ fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
     let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
     let skate = [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
     let knees = [&out.clip, &clip].map(|clip| fastest_knee(clip, &a.roles));
-    println!(
+    eprintln!(
         "{} → {} at {} {enter}: skate {:.2} → {:.3} cm, knee {:.0} → {:.0} °/s",
         a.name, b.name, out.transition.start, skate[0], skate[1], knees[0], knees[1]
     );

@@ -84,13 +84,13 @@ proptest! {
             let some = layer(&base, &roles, &over, &with(1.0, &[part])).unwrap();
             let weights = mask(&skeleton, &roles, &[part], feather);
             for frame in 0..12 {
-                for joint in 1..skeleton.len() {
+                for (joint, &weight) in weights.iter().enumerate().skip(1) {
                     if !additive {
                         prop_assert!(quat::angle_between(whole.rotations(frame)[joint], over.rotations(frame)[joint]) < 1e-6);
                     }
-                    if weights[joint] == 0.0 {
+                    if weight == 0.0 {
                         prop_assert_eq!(some.rotations(frame)[joint], base.rotations(frame)[joint]);
-                    } else if weights[joint] == 1.0 {
+                    } else if weight == 1.0 {
                         prop_assert!(quat::angle_between(some.rotations(frame)[joint], whole.rotations(frame)[joint]) < 1e-6);
                     }
                 }
@@ -145,8 +145,8 @@ fn an_upper_body_can_keep_its_orientation() {
     let head = roles.get(Role::Head).unwrap();
     let off = |keep_orientation, feather| {
         let upper = LayerOptions {
-            keep_orientation,
             feather,
+            keep_orientation,
             ..options(&[BodyPart::UpperBody])
         };
         let out = layer(&walk, &roles, &idle, &upper).unwrap();
@@ -262,8 +262,8 @@ fn what_cannot_be_layered_is_said() {
             &over,
             &LayerOptions {
                 weight,
-                start_secs,
                 mode,
+                start_secs,
                 ..options(&[BodyPart::Head])
             },
         )

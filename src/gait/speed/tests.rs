@@ -54,7 +54,7 @@ fn agrees_with_numpy() {
         events: Events,
     }
     #[derive(serde::Deserialize)]
-    struct Speed {
+    struct Case {
         speed: f64,
         made: f64,
         weight: f64,
@@ -69,7 +69,7 @@ fn agrees_with_numpy() {
         walk: Gait,
         run: Gait,
         ats: Vec<f64>,
-        speeds: Vec<Speed>,
+        speeds: Vec<Case>,
     }
     let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/gaits.json")).unwrap();
     let (mut blend, _) = blend(&SpeedOptions::default());
