@@ -52,7 +52,7 @@ fn living(c: &mut Criterion) {
         bench.iter(|| GaitCycle::find(black_box(&sources[0]), &contacts[0]).expect("whole cycles"));
     });
     c.bench_function("one cycle at a speed", |bench| {
-        bench.iter(|| blend.cycle_at(black_box(2.3)).expect("a speed"))
+        bench.iter(|| blend.cycle_at(black_box(2.3)).expect("a speed"));
     });
     c.bench_function("600 frames at a speed", |bench| {
         bench.iter(|| blend.clip_of(black_box(2.3), 10.0).expect("a speed"));

@@ -80,7 +80,7 @@ const PLANE_SINE: f32 = 0.2;
 ///
 /// *How the hips help.* A nearly straight leg has to bend a lot to become a little shorter, and cannot become longer. The hips are raised or lowered to
 /// where both knees change least (least squares of the change of flexion), smoothed, and lowered further where a leg would have to
-/// stretch past [its reach](crate::skeleton::two_bones); where even that does not help, the foot slides.
+/// stretch past its reach; where even that does not help, the foot slides.
 ///
 /// Frames where nothing needs to be corrected stay exactly as they are. Cost: O(frames × joints), one pass of forward kinematics.
 ///

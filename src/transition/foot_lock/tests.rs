@@ -216,6 +216,28 @@ proptest! {
     }
 }
 
+/// Captured knees are bent the wrong way by some degrees when a leg is straight; a shorter leg bends them the right way all the same.
+#[test]
+fn knees_never_flip() {
+    let mut before: Option<f32> = None;
+    for step in 0..=40 {
+        let flexion = 0.1 - 0.005 * step as f32;
+        let leg = Posed {
+            thigh: Vec3::NEG_Y * 0.43,
+            shin: Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
+            rotations: [Quat::IDENTITY; 3],
+            parents: [Quat::IDENTITY; 3],
+        };
+        let [a, b] = leg.turned(Vec3::Y * 0.05, Vec3::X);
+        let bend = (a * leg.thigh).cross(b * leg.shin).x / (0.43 * 0.42);
+        assert!(
+            bend > 0.3 && before.is_none_or(|before| (bend - before).abs() < 0.05),
+            "{flexion} {bend} {before:?}"
+        );
+        before = Some(bend);
+    }
+}
+
 #[test]
 fn what_cannot_be_locked_is_said() {
     let (clip, roles) = sliding(1.3);
