@@ -1,7 +1,5 @@
 //! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
-
 use super::*;
 use crate::ui::theme::Theme;
 use eframe::egui::{Key as Keyboard, Rect, Shape, Vec2, vec2};

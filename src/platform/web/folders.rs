@@ -103,7 +103,7 @@ async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystem
         if part.length() == 0 {
             return Ok(children);
         }
-        children.extend(part.iter().map(|entry| entry.unchecked_into::<FileSystemEntry>()));
+        children.extend(part.iter().map(JsValue::unchecked_into::<FileSystemEntry>));
     }
 }
 
