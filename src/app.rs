@@ -374,7 +374,12 @@ impl Segue {
                         self.session.finish_reading(task.id, gone);
                     }
                 }
-                Request::StopReading(task) => self.reader.stop(task),
+                Request::StopReading { task, forget } => {
+                    self.reader.stop(task);
+                    if let Some(key) = forget {
+                        self.vault.drop_file(&key);
+                    }
+                }
             }
         }
         let wanted = self.session.params().text(Key::Src);

@@ -72,6 +72,11 @@ pub enum Request {
     Fetch(String),
     /// A file that takes too long to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
     Read(ReadTask),
-    /// Nobody waits for this task any longer.
-    StopReading(u64),
+    /// Nobody waits for a task any longer.
+    StopReading {
+        /// The task's number.
+        task: u64,
+        /// The key of a file outside that nobody else needs.
+        forget: Option<String>,
+    },
 }

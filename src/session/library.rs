@@ -74,6 +74,8 @@ pub struct Entry {
     pub origin: Origin,
     /// The motion; `None` for a sample that was not loaded yet, a preset that was not needed yet, and a file that is being read.
     pub motion: Option<Arc<Motion>>,
+    /// Why there is no motion though the file is known: reading it failed or was stopped. It is read again when that is asked for.
+    pub unread: Option<String>,
     /// How its file was read; `None` for what comes from no file, and until it is read.
     pub about: Option<About>,
     /// What was odd in the file, one sentence each.
@@ -90,6 +92,7 @@ impl Entry {
             name: name.into(),
             origin,
             motion: None,
+            unread: None,
             about: None,
             warnings: Vec::new(),
             roles_by_hand: None,
@@ -233,6 +236,7 @@ mod tests {
             name: name.into(),
             origin: Origin::File(file),
             motion: None,
+            unread: None,
             about: None,
             warnings: vec![],
             roles_by_hand: None,

@@ -74,6 +74,7 @@ impl Session {
         let same =
             |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
         if !self.reading.iter().any(same) {
+            self.mark_unread(&file.sha256, None);
             self.begin(&file.name, file.content, file.size, setup, true);
         }
     }
@@ -112,7 +113,11 @@ impl Session {
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
-                self.say(Level::Error, format!("{} could not be read: {reason}.", task.name));
+                let text = format!("{} could not be read: {reason}.", task.name);
+                if again {
+                    self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
+                }
+                self.say(Level::Error, text);
                 self.refresh();
                 return Some(Err(reason));
             }
@@ -125,8 +130,10 @@ impl Session {
         Some(if again {
             let refilled = self.refill(report, &task.setup.options);
             if let Err(error) = &refilled {
+                self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
                 self.say(Level::Error, error.to_string());
             }
+            self.drop_used_skeletons();
             self.refresh();
             refilled.map_err(|error| error.to_string())
         } else {
@@ -136,8 +143,27 @@ impl Session {
 
     /// Gives up a task.
     pub(super) fn stop_reading(&mut self, task: u64) {
-        self.reading.retain(|reading| reading.task.id != task);
-        self.requests.push(Request::StopReading(task));
+        let forget = self.reading_key(task).map(str::to_owned);
+        let Some(at) = self.reading.iter().position(|reading| reading.task.id == task) else {
+            return;
+        };
+        let Reading { task, again, .. } = self.reading.remove(at);
+        if again {
+            let text = format!("Reading {} was stopped. Choose how it is read to read it again.", task.name);
+            self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
+        }
+        self.requests.push(Request::StopReading {
+            task: task.id,
+            forget: forget.filter(|_| !again),
+        });
+    }
+
+    /// Notes with the clips of a file why they have no motion, so that it is not read over and over.
+    fn mark_unread(&mut self, sha256: &str, why: Option<&str>) {
+        let entries = self.library.entries().to_vec();
+        for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {
+            self.library.change(&entry.id, |entry| entry.unread = why.map(str::to_owned));
+        }
     }
 
     pub(super) fn reading_jobs(&self) -> impl Iterator<Item = Job> + '_ {
@@ -160,6 +186,9 @@ impl Session {
         self.remember(None);
         let mut loaded = Loaded::default();
         let mut names = Vec::new();
+        let brings_skeleton =
+            |file: &ReadFile| file.kind == FileKind::Asf || file.result.as_ref().is_ok_and(|read| read.companion.is_some());
+        let skeleton_came = report.files.iter().any(brings_skeleton);
         for file in report.files {
             let name = file.name.clone();
             match file_entries(file, content, &setup.options) {
@@ -178,8 +207,10 @@ impl Session {
             }
         }
         loaded.warnings.extend(report.notes);
-        self.read_waiting();
-        self.drop_used_skeletons();
+        if skeleton_came {
+            self.read_waiting();
+            self.drop_used_skeletons();
+        }
         self.history.settle();
         self.library_revision += 1;
         if !names.is_empty() {

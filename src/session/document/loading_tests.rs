@@ -69,6 +69,28 @@ fn a_motion_waits_for_its_skeleton() {
 }
 
 #[test]
+fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
+    let mut session = Session::new();
+    let task = session.begin_reading("01_02.amc", Content::Outside("file 1".into()), 2 << 20);
+    let report = |setup: &_| crate::session::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap();
+    session.finish_reading(task, Ok(report(&Default::default()))).unwrap().unwrap();
+    session.take_requests();
+    let asked = |session: &mut Session| {
+        session.take_requests().into_iter().find_map(|request| match request {
+            Request::Read(task) => Some(task),
+            _ => None,
+        })
+    };
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    assert_eq!(asked(&mut session), None);
+    session.load("01.asf", bytes(ASF)).unwrap();
+    let again = asked(&mut session).unwrap();
+    session.finish_reading(again.id, Ok(report(&again.setup))).unwrap().unwrap();
+    let names: Vec<String> = files(&session).into_iter().map(|(name, ..)| name).collect();
+    assert_eq!(names, ["01_02", "walk"], "the skeleton has no row of its own any longer");
+}
+
+#[test]
 fn a_skeleton_serves_all_its_motions() {
     let mut session = Session::new();
     session.load("01.asf", bytes(ASF)).unwrap();

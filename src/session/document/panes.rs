@@ -112,6 +112,7 @@ impl Session {
             Origin::File(file) if entry.awaits_skeleton() => {
                 return Err(format!("{} waits for its skeleton: drop its .asf file.", file.name));
             }
+            Origin::File(_) if entry.unread.is_some() => return Err(entry.unread.clone().unwrap_or_default()),
             Origin::File(file) => {
                 let file = file.clone();
                 if !file.is_large() {

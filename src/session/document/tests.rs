@@ -324,7 +324,11 @@ fn reading_can_be_given_up() {
     let clips = session.clip_infos();
     let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
     session.apply(Command::StopReading(task)).unwrap();
-    assert!(session.take_requests().contains(&Request::StopReading(task)));
+    let stop = Request::StopReading {
+        task,
+        forget: Some("file 1".into()),
+    };
+    assert!(session.take_requests().contains(&stop));
     assert!(session.finish_reading(task, Err("stopped".into())).is_none());
     assert_eq!(session.clip_infos(), clips);
 }
@@ -406,4 +410,52 @@ fn foot_lock_stills_the_feet_and_tells_what_it_did() {
         .iter()
         .find(|metric| metric.id == "skate_cm");
     assert_eq!(skate.unwrap().value, Some(before));
+}
+
+/// A session whose slot A holds a large file from storage, that is being read.
+fn with_stored_large_file() -> (Session, crate::session::reading::ReadTask) {
+    let bytes = made_bvh(6.0);
+    let mut session = Session::new();
+    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    let setup = asked(&mut session).setup;
+    session
+        .finish_reading(task, Ok(read("long.bvh", &bytes, &setup, &mut |_| true).unwrap()))
+        .unwrap()
+        .unwrap();
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), |key| Some(Content::Outside(key.into())), None);
+    let task = asked(&mut restored);
+    (restored, task)
+}
+
+#[test]
+fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
+    let reads = |session: &mut Session| {
+        session
+            .take_requests()
+            .iter()
+            .filter(|request| matches!(request, Request::Read(_)))
+            .count()
+    };
+    let (mut session, task) = with_stored_large_file();
+    session.finish_reading(task.id, Err("it is gone".into())).unwrap().unwrap_err();
+    blend_window(&mut session, 20.0);
+    assert_eq!(reads(&mut session), 0);
+    assert!(
+        session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("it is gone")),
+        "{:?}",
+        session.panes()[0].problem
+    );
+
+    let (mut session, task) = with_stored_large_file();
+    session.apply(Command::StopReading(task.id)).unwrap();
+    blend_window(&mut session, 20.0);
+    assert_eq!(reads(&mut session), 0);
+    assert!(session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("stopped")));
+    // Asked for by hand it is read once more.
+    let id = session.slot(Slot::A).unwrap().id.clone();
+    session
+        .apply(Command::Reimport(id, crate::formats::ImportOptions::default()))
+        .unwrap();
+    assert_eq!(reads(&mut session), 1);
 }

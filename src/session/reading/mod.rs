@@ -141,7 +141,9 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
         }),
         FileKind::Gzip => unpack_gzip(name, bytes, most).map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
-            let skeletons = skeletons_of(&setup.companions, &setup.options);
+            // Only a motion leans on them.
+            let companions = if kind == FileKind::Amc { setup.companions.as_slice() } else { &[] };
+            let skeletons = skeletons_of(companions, &setup.options);
             let sha256 = setup.sha256.as_deref();
             let file = One { name, bytes, kind, sha256 };
             return Some(ReadReport {
@@ -151,7 +153,7 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
         }
     };
     match unpacked {
-        Ok((files, notes)) => read_several(&files, notes, bytes.len(), setup, progress),
+        Ok((files, notes)) => read_several(files, notes, bytes.len(), setup, progress),
         Err(error) => Some(ReadReport {
             files: vec![ReadFile {
                 name: name.to_owned(),
@@ -168,7 +170,7 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
 
 /// Reads what came out of an archive of `packed` bytes.
 fn read_several(
-    files: &[(String, Vec<u8>)],
+    mut files: Vec<(String, Vec<u8>)>,
     notes: Vec<String>,
     packed: usize,
     setup: &ReadSetup,
@@ -185,30 +187,35 @@ fn read_several(
     };
     let total = files.iter().map(|(_, bytes)| bytes.len()).sum::<usize>().max(1) as f64;
     let mut before = 0;
-    let mut report = ReadReport { files: Vec::new(), notes };
-    for ((name, bytes), kind) in files.iter().zip(kinds) {
+    let mut read = Vec::new();
+    for (index, ((name, bytes), kind)) in files.iter().zip(kinds).enumerate() {
         // What glTF files lean on is no motion.
         if kind == FileKind::Unknown {
             continue;
         }
         let mut scaled = |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
-        let mut file = One {
+        let file = One {
             name,
             bytes,
             kind,
             sha256: None,
         }
         .read(setup, &skeletons, &beside, &mut scaled)?;
-        file.unpacked = Some(bytes.clone());
-        report.files.push(file);
+        read.push((index, file));
         before += bytes.len();
     }
     // A skeleton that has a motion is not looked at by itself.
-    let used: Vec<String> = (report.files.iter())
-        .filter_map(|file| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
+    let used: Vec<String> = (read.iter())
+        .filter_map(|(_, file)| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
         .collect();
-    report.files.retain(|file| !used.contains(&file.sha256));
-    Some(report)
+    read.retain(|(_, file)| !used.contains(&file.sha256));
+    for (index, file) in &mut read {
+        file.unpacked = files.get_mut(*index).map(|(_, bytes)| std::mem::take(bytes));
+    }
+    Some(ReadReport {
+        files: read.into_iter().map(|(_, file)| file).collect(),
+        notes,
+    })
 }
 
 /// The skeleton files that can be read.
