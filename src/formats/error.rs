@@ -1,4 +1,4 @@
-use super::text::position;
+use super::text::{position, quoted};
 
 /// Why a file could not be read: where, what stood there, and what would have been right.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
@@ -54,6 +54,16 @@ impl Fault {
             expected: expected.into(),
             hint: None,
         }
+    }
+
+    /// At `at` stands `token`, which is empty at the end of the file.
+    pub(super) fn at_token(at: usize, token: &[u8], expected: impl Into<String>) -> Self {
+        let found = if token.is_empty() {
+            "the end of the file".to_owned()
+        } else {
+            quoted(token)
+        };
+        Self::new(at, found, expected)
     }
 
     pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {

@@ -138,20 +138,28 @@ mod tests {
     use crate::skeleton::Roles;
     use std::sync::Arc;
 
+    fn source_of(walk: &Walk) -> Source {
+        let clip = walk.clip();
+        let roles = Roles::detect(clip.skeleton());
+        Source::new(Arc::new(clip), &roles)
+    }
+
+    fn free(source: &Source) -> View<'_> {
+        View {
+            source,
+            moving: &[],
+            fixed: None,
+        }
+    }
+
     #[test]
     fn clips_go_on_beyond_their_ends_as_in_their_last_step() {
-        let clip = Walk {
+        let source = source_of(&Walk {
             frames: 40,
             turning: 0.7,
             ..Walk::default()
-        }
-        .clip();
-        let source = Source::new(Arc::new(clip.clone()), &Roles::detect(clip.skeleton()));
-        let view = View {
-            source: &source,
-            moving: &[],
-            fixed: None,
-        };
+        });
+        let (clip, view) = (source.clip(), free(&source));
         let dt = clip.dt_secs();
         // The pose before a frame, one step on, is the frame; before the first frame with the step behind it, behind the last with the one before.
         for (frame, arrives_at, step) in [
@@ -181,18 +189,12 @@ mod tests {
 
     #[test]
     fn steady_travel_has_no_sway() {
-        let clip = Walk {
+        let source = source_of(&Walk {
             frames: 400,
             cadence: 1.0,
             ..Walk::default()
-        }
-        .clip();
-        let source = Source::new(Arc::new(clip.clone()), &Roles::detect(clip.skeleton()));
-        let view = View {
-            source: &source,
-            moving: &[],
-            fixed: None,
-        };
+        });
+        let view = free(&source);
         for frame in [0, 7, 200, 395, 400] {
             let (pose, _) = view.before(frame);
             assert!(

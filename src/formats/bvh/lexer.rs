@@ -1,6 +1,6 @@
 use super::number::{Scan, scan, token_end};
 use crate::formats::error::Fault;
-use crate::formats::text::{is_space, quoted};
+use crate::formats::text::is_space;
 use crate::formats::warning::{Tally, WarningKind};
 
 /// Why reading stopped before the end.
@@ -121,12 +121,7 @@ impl<'a> Lexer<'a> {
     /// An error at the next token.
     pub(super) fn unexpected(&mut self, expected: impl Into<String>) -> Fault {
         let token = self.peek();
-        let found = if token.is_empty() {
-            "the end of the file".to_owned()
-        } else {
-            quoted(token)
-        };
-        Fault::new(self.at, found, expected)
+        Fault::at_token(self.at, token, expected)
     }
 }
 

@@ -93,6 +93,16 @@ impl Retargeted {
     }
 }
 
+/// What a match depends on, besides the two clips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wanted {
+    window: usize,
+    leave: Option<usize>,
+    enter: Option<usize>,
+    /// Single poses are compared by these, else windows.
+    weights: Option<PoseWeights>,
+}
+
 /// The method of the Transition lab; `window` is that of its dissolves.
 fn method_of(params: &Params, window: usize) -> Method {
     let blend_secs = params.number(Key::BlendTime);
@@ -138,6 +148,8 @@ pub(in crate::session) struct Blender {
     search: Option<TransitionSearch>,
     /// Begun when a lab asks for it.
     poses: Option<PoseSearch>,
+    /// The last match that was found, and what was asked: panes share one, and most changes leave it as it is.
+    found: Option<(Wanted, Place)>,
     progress: f32,
 }
 
@@ -188,7 +200,13 @@ impl Blender {
             rotation: params.number(Key::MatchRotation),
             velocity: params.number(Key::MatchVelocity),
         });
-        let place = self.place(&pair, match_window, leave, enter, weights)?;
+        let wanted = Wanted {
+            window: match_window,
+            leave,
+            enter,
+            weights,
+        };
+        let place = self.place(&pair, wanted)?;
         let root = if params.is_on(Key::RootBlend) {
             RootBlend::Velocity
         } else {
@@ -225,6 +243,7 @@ impl Blender {
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(&pair));
         self.poses = None;
+        self.found = None;
         self.compare_rows(ROWS_AT_ONCE);
         Ok(pair)
     }
@@ -244,21 +263,25 @@ impl Blender {
     }
 
     /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
-    ///
-    /// With `weights` the best match is that of single poses, else that of windows.
-    fn place(
-        &mut self,
-        pair: &Pair,
-        window: usize,
-        leave: Option<usize>,
-        enter: Option<usize>,
-        weights: Option<PoseWeights>,
-    ) -> Result<Place, String> {
-        if weights.is_some() && self.poses.is_none() {
+    fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, String> {
+        if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pair.pose_search()?);
             self.compare_rows(ROWS_AT_ONCE);
         }
+        let Wanted { window, leave, enter, .. } = wanted;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        if self.is_searching() {
+            return Ok(Place {
+                leave: leave.unwrap_or((frames_a * 3 / 4).min(frames_a.saturating_sub(window))),
+                enter: enter.unwrap_or(0),
+                distance_cm: f32::NAN,
+            });
+        }
+        if let Some((asked, place)) = self.found
+            && asked == wanted
+        {
+            return Ok(place);
+        }
         let mut options = SearchOptions::new(window);
         if let Some(frame) = leave {
             options.leave = Region::frame(frame, frames_a);
@@ -266,15 +289,7 @@ impl Blender {
         if let Some(frame) = enter {
             options.enter = Region::frame(frame, frames_b);
         }
-        if self.is_searching() {
-            let place = Place {
-                leave: leave.unwrap_or((frames_a * 3 / 4).min(frames_a.saturating_sub(window))),
-                enter: enter.unwrap_or(0),
-                distance_cm: f32::NAN,
-            };
-            return Ok(place);
-        }
-        let (best_leave, best_enter, distance_cm) = match (weights, &self.poses, &self.search) {
+        let (best_leave, best_enter, distance_cm) = match (wanted.weights, &self.poses, &self.search) {
             (Some(weights), Some(search), _) => {
                 let best = search.best(weights, &options).map_err(|error| error.to_string())?;
                 (best.leave, best.enter, best.position_cm)
@@ -285,11 +300,13 @@ impl Blender {
             }
             _ => return Err("there are no clips to match".to_owned()),
         };
-        Ok(Place {
+        let place = Place {
             leave: leave.unwrap_or(best_leave),
             enter: enter.unwrap_or(best_enter),
             distance_cm: distance_cm as f32,
-        })
+        };
+        self.found = Some((wanted, place));
+        Ok(place)
     }
 
     /// One slice of comparing frames. `false` when there was nothing to do.
