@@ -72,8 +72,13 @@ fn a_motion_waits_for_its_skeleton() {
 fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
     let mut session = Session::new();
     let task = session.begin_reading("01_02.amc", Content::Outside("file 1".into()), 2 << 20);
-    let report = |setup: &_| crate::session::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap();
-    session.finish_reading(task, Ok(report(&Default::default()))).unwrap().unwrap();
+    let report = |setup: &crate::session::reading::ReadSetup| {
+        crate::session::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap()
+    };
+    session
+        .finish_reading(task, Ok(report(&crate::session::reading::ReadSetup::default())))
+        .unwrap()
+        .unwrap();
     session.take_requests();
     let asked = |session: &mut Session| {
         session.take_requests().into_iter().find_map(|request| match request {
