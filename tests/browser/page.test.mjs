@@ -26,12 +26,16 @@ const STAND_IN = `
     exportClip() { return new Uint8Array([1, 2, 3]); }
   }`;
 
+/** The smallest module there is: the page compiles it before it hands it to the bindings. */
+const EMPTY_MODULE = Buffer.from([0x00, 0x61, 0x73, 0x6d, 0x01, 0x00, 0x00, 0x00]);
+const fulfillWasm = (route) => route.fulfill({ contentType: "application/wasm", body: EMPTY_MODULE });
+
 const isBundle = (url) => /\/segue-[^/]*\.js$/.test(url.pathname);
 const isWasm = (url) => url.pathname.endsWith(".wasm");
 
 async function standIn(page) {
   await page.route(isBundle, (route) => route.fulfill({ contentType: "text/javascript", body: STAND_IN }));
-  await page.route(isWasm, (route) => route.fulfill({ contentType: "application/wasm", body: "" }));
+  await page.route(isWasm, fulfillWasm);
 }
 
 const panelOf = (page) => page.locator(".veil .panel");
@@ -68,7 +72,7 @@ onBackend("webgl2", "a download that fails is said and can be tried again", asyn
   await assert.rejects(ready(), /could not be downloaded: .*503/);
   assert.match(await panelOf(page).innerText(), /could not be downloaded/);
   await page.unroute(isWasm);
-  await page.route(isWasm, (route) => route.fulfill({ contentType: "application/wasm", body: "" }));
+  await page.route(isWasm, fulfillWasm);
   await page.getByRole("button", { name: "Try again" }).click();
   await page.waitForFunction(() => window.segue?.version === "9.9.9");
 });
