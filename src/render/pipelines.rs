@@ -1,9 +1,10 @@
-//! The render pipelines, made once per device.
+//! The render pipelines of a device.
 
 use super::frame::{FigureUniform, LimbInstance, RingInstance, StrokeInstance, ViewUniform};
 use super::mesh::ConeVertex;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use eframe::wgpu;
+use std::sync::OnceLock;
 use wgpu::CompareFunction::{Less, LessEqual};
 use wgpu::Face::{Back, Front};
 
@@ -15,31 +16,89 @@ pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("l
 pub(super) const RING: &str = concat!(include_str!("view.wgsl"), include_str!("ring.wgsl"));
 pub(super) const COMPOSITE: &str = include_str!("composite.wgsl");
 
+/// What a stage is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Brush {
+    Ground,
+    Shadow,
+    Shade,
+    Ring,
+    /// On the ground and over everything: no depth.
+    FlatLine,
+    SpaceLine,
+    Solid,
+    Edge,
+    /// Only the depth of the limbs' fronts.
+    Front,
+    Ghost,
+}
+
+impl Brush {
+    const ALL: [Self; 10] = [
+        Self::Ground,
+        Self::Shadow,
+        Self::Shade,
+        Self::FlatLine,
+        Self::Front,
+        Self::Solid,
+        Self::Ghost,
+        Self::Edge,
+        Self::SpaceLine,
+        Self::Ring,
+    ];
+}
+
+/// The pipelines of a device. Each is made when it is first needed, for making them all takes a good part of the time to the first frame.
 pub(super) struct Pipelines {
+    device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
     pub(super) figure_layout: wgpu::BindGroupLayout,
     pub(super) composite_layout: wgpu::BindGroupLayout,
     pub(super) composite_sampler: wgpu::Sampler,
-    pub(super) ground: wgpu::RenderPipeline,
-    pub(super) shadow: wgpu::RenderPipeline,
-    pub(super) shade: wgpu::RenderPipeline,
-    pub(super) ring: wgpu::RenderPipeline,
-    /// On the ground and over everything: no depth.
-    pub(super) flat_line: wgpu::RenderPipeline,
-    pub(super) space_line: wgpu::RenderPipeline,
-    pub(super) solid: wgpu::RenderPipeline,
-    pub(super) edge: wgpu::RenderPipeline,
-    /// Only the depth of the limbs' fronts.
-    pub(super) front: wgpu::RenderPipeline,
-    pub(super) ghost: wgpu::RenderPipeline,
     pub(super) composite: wgpu::RenderPipeline,
     pub(super) sample_count: u32,
+    /// For what lies on the ground and in space.
+    plain: wgpu::PipelineLayout,
+    /// For bodies.
+    bodily: wgpu::PipelineLayout,
+    limb: Shader,
+    shadow: Shader,
+    ground: Shader,
+    line: Shader,
+    ring: Shader,
+    made: [OnceLock<wgpu::RenderPipeline>; Brush::ALL.len()],
+}
+
+/// A shader that is compiled when the first pipeline needs it.
+struct Shader {
+    label: &'static str,
+    source: &'static str,
+    module: OnceLock<wgpu::ShaderModule>,
+}
+
+impl Shader {
+    const fn new(label: &'static str, source: &'static str) -> Self {
+        Self {
+            label,
+            source,
+            module: OnceLock::new(),
+        }
+    }
+
+    fn module(&self, device: &wgpu::Device) -> &wgpu::ShaderModule {
+        self.module.get_or_init(|| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(self.label),
+                source: wgpu::ShaderSource::Wgsl(self.source.into()),
+            })
+        })
+    }
 }
 
 /// What differs between the pipelines of the stage.
 struct Recipe<'a> {
     label: &'a str,
-    shader: &'a wgpu::ShaderModule,
+    shader: &'a Shader,
     layout: &'a wgpu::PipelineLayout,
     entries: [&'a str; 2],
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
@@ -121,17 +180,45 @@ impl Pipelines {
                 immediate_size: 0,
             })
         };
-        let plain = layout("stage", &[Some(&view_layout)]);
-        let bodily = layout("stage bodies", &[Some(&view_layout), Some(&figure_layout)]);
-        let shader = |label, source: &'static str| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            })
-        };
-        let (limb, shadow, ground) = (shader("limb", LIMB), shader("shadow", SHADOW), shader("ground", GROUND));
-        let (line, ring) = (shader("line", LINE), shader("ring", RING));
+        let (composite_layout, composite) = composite_pipeline(device, output_format);
+        Self {
+            plain: layout("stage", &[Some(&view_layout)]),
+            bodily: layout("stage bodies", &[Some(&view_layout), Some(&figure_layout)]),
+            limb: Shader::new("limb", LIMB),
+            shadow: Shader::new("shadow", SHADOW),
+            ground: Shader::new("ground", GROUND),
+            line: Shader::new("line", LINE),
+            ring: Shader::new("ring", RING),
+            made: std::array::from_fn(|_| OnceLock::new()),
+            view_layout,
+            figure_layout,
+            composite_layout,
+            composite_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("stage composite"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            }),
+            composite,
+            sample_count,
+            device: device.clone(),
+        }
+    }
 
+    /// The pipeline, made now if it has not been.
+    pub(super) fn get(&self, brush: Brush) -> &wgpu::RenderPipeline {
+        self.made[brush as usize].get_or_init(|| self.make(brush))
+    }
+
+    /// Makes one that nothing has needed yet, so that its first use will not stop the picture.
+    pub(super) fn make_ahead(&self) {
+        if let Some(&brush) = Brush::ALL.iter().find(|&&brush| self.made[brush as usize].get().is_none()) {
+            self.get(brush);
+        }
+    }
+
+    fn make(&self, brush: Brush) -> wgpu::RenderPipeline {
+        let device = &self.device;
         let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
         let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4];
         let line_attributes = wgpu::vertex_attr_array![
@@ -158,11 +245,10 @@ impl Pipelines {
         let line_buffers = [Some(instances(size_of::<StrokeInstance>(), &line_attributes[..]))];
         let ring_buffers = [Some(instances(size_of::<RingInstance>(), &ring_attributes[..]))];
 
-        let make = |recipe: &Recipe<'_>| stage_pipeline(device, recipe, sample_count);
         let ground_recipe = |label, entry, blend| Recipe {
             label,
-            shader: &ground,
-            layout: &plain,
+            shader: &self.ground,
+            layout: &self.plain,
             entries: ["vs_ground", entry],
             buffers: &[],
             blend,
@@ -174,7 +260,7 @@ impl Pipelines {
         };
         let quad = wgpu::PrimitiveTopology::TriangleStrip;
         let line_recipe = |label, depth| Recipe {
-            shader: &line,
+            shader: &self.line,
             entries: ["vs_line", "fs_line"],
             buffers: &line_buffers,
             topology: quad,
@@ -183,8 +269,8 @@ impl Pipelines {
         };
         let limb_recipe = |label, entries, depth, blend, cull| Recipe {
             label,
-            shader: &limb,
-            layout: &bodily,
+            shader: &self.limb,
+            layout: &self.bodily,
             entries,
             buffers: &limb_buffers,
             blend,
@@ -194,60 +280,50 @@ impl Pipelines {
             cull: Some(cull),
             stencil: wgpu::StencilState::default(),
         };
-        let (composite_layout, composite) = composite_pipeline(device, output_format);
-        Self {
-            ground: make(&ground_recipe("ground", "fs_ground", None)),
-            shade: make(&ground_recipe("shade", "fs_shade", Some(SHADE))),
-            shadow: make(&Recipe {
-                shader: &shadow,
-                layout: &bodily,
+        let recipe = match brush {
+            Brush::Ground => ground_recipe("ground", "fs_ground", None),
+            Brush::Shade => ground_recipe("shade", "fs_shade", Some(SHADE)),
+            Brush::Shadow => Recipe {
+                shader: &self.shadow,
+                layout: &self.bodily,
                 entries: ["vs_shadow", "fs_shadow"],
                 buffers: &shadow_buffers,
                 writes: wgpu::ColorWrites::ALPHA,
                 topology: quad,
                 ..ground_recipe("shadow", "", Some(DARKEN))
-            }),
-            ring: make(&Recipe {
-                shader: &ring,
+            },
+            Brush::Ring => Recipe {
+                shader: &self.ring,
                 entries: ["vs_ring", "fs_ring"],
                 buffers: &ring_buffers,
                 topology: quad,
                 ..ground_recipe("ring", "", Some(OVER))
-            }),
-            flat_line: make(&line_recipe("line", None)),
-            space_line: make(&line_recipe("line in space", Some((LessEqual, true)))),
-            solid: make(&limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back)),
-            edge: make(&limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)),
-            front: make(&Recipe {
+            },
+            Brush::FlatLine => line_recipe("line", None),
+            Brush::SpaceLine => line_recipe("line in space", Some((LessEqual, true))),
+            Brush::Solid => limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back),
+            Brush::Edge => limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front),
+            Brush::Front => Recipe {
                 writes: wgpu::ColorWrites::empty(),
                 ..limb_recipe("limb front", ["vs_limb", "fs_depth"], (Less, true), None, Back)
-            }),
-            ghost: make(&Recipe {
+            },
+            Brush::Ghost => Recipe {
                 stencil: once_per_ghost(),
                 ..limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)
-            }),
-            view_layout,
-            figure_layout,
-            composite_layout,
-            composite_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("stage composite"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..wgpu::SamplerDescriptor::default()
-            }),
-            composite,
-            sample_count,
-        }
+            },
+        };
+        stage_pipeline(device, &recipe, self.sample_count)
     }
 }
 
 fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32) -> wgpu::RenderPipeline {
+    let module = recipe.shader.module(device);
     let (compare, write) = recipe.depth.unwrap_or((wgpu::CompareFunction::Always, false));
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(recipe.label),
         layout: Some(recipe.layout),
         vertex: wgpu::VertexState {
-            module: recipe.shader,
+            module,
             entry_point: Some(recipe.entries[0]),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: recipe.buffers,
@@ -269,7 +345,7 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             ..wgpu::MultisampleState::default()
         },
         fragment: Some(wgpu::FragmentState {
-            module: recipe.shader,
+            module,
             entry_point: Some(recipe.entries[1]),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {

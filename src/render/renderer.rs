@@ -1,6 +1,6 @@
 use super::frame::{FigureUniform, Frame, PaneDraw, ViewUniform};
 use super::mesh::ConeMesh;
-use super::pipelines::Pipelines;
+use super::pipelines::{Brush, Pipelines};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
 use eframe::wgpu;
 use segue::scene::Stage;
@@ -265,6 +265,9 @@ impl StageRenderer {
         let small = self.coarse_size(size);
         self.scratch.build(stage, size, small.unwrap_or(size), self.quality);
         let changed = view.shown == Shown::Nothing || view.drawn != self.scratch;
+        if view.shown != Shown::Nothing {
+            self.pipelines.make_ahead();
+        }
         let draw = match (changed, small) {
             (true, Some(small)) => {
                 let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
@@ -398,19 +401,7 @@ impl StageRenderer {
     }
 
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) {
-        let Pipelines {
-            ground,
-            shadow,
-            shade,
-            ring,
-            flat_line,
-            space_line,
-            solid,
-            edge,
-            front,
-            ghost,
-            ..
-        } = &self.pipelines;
+        let brush = |brush| self.pipelines.get(brush);
         let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else {
             return;
         };
@@ -420,55 +411,55 @@ impl StageRenderer {
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
-        pass.set_pipeline(ground);
+        pass.set_pipeline(brush(Brush::Ground));
         pass.draw(0..3, 0..1);
         if figures().any(|(_, figure)| !figure.casting.is_empty()) {
-            pass.set_pipeline(shadow);
+            pass.set_pipeline(brush(Brush::Shadow));
             pass.set_vertex_buffer(0, limbs.slice(..));
             for (index, figure) in figures().filter(|(_, figure)| !figure.casting.is_empty()) {
                 set_figure(pass, index);
                 pass.draw(0..4, figure.casting.clone());
             }
-            pass.set_pipeline(shade);
+            pass.set_pipeline(brush(Brush::Shade));
             pass.draw(0..3, 0..1);
         }
-        let quads = |pass: &mut wgpu::RenderPass<'_>, pipeline, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
+        let quads = |pass: &mut wgpu::RenderPass<'_>, kind, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
             if !range.is_empty() {
-                pass.set_pipeline(pipeline);
+                pass.set_pipeline(brush(kind));
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..4, range.clone());
             }
         };
-        quads(pass, flat_line, strokes, &pane.strokes[0]);
-        quads(pass, ring, rings, &pane.rings);
+        quads(pass, Brush::FlatLine, strokes, &pane.strokes[0]);
+        quads(pass, Brush::Ring, rings, &pane.rings);
 
         let solids = || figures().filter(|(_, figure)| !figure.ghost);
         pass.set_vertex_buffer(1, limbs.slice(..));
         // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
-        for (pipeline, wanted) in [
-            (front, true),
-            (solid, true),
-            (edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
+        for (kind, wanted) in [
+            (Brush::Front, true),
+            (Brush::Solid, true),
+            (Brush::Edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
         ] {
             if wanted && solids().next().is_some() {
-                pass.set_pipeline(pipeline);
+                pass.set_pipeline(brush(kind));
                 for (index, figure) in solids() {
                     set_figure(pass, index);
                     self.draw_limbs(pass, figure);
                 }
             }
         }
-        quads(pass, space_line, strokes, &pane.strokes[1]);
+        quads(pass, Brush::SpaceLine, strokes, &pane.strokes[1]);
         // Each ghost first finds its front, then colours it: far ones first.
         for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
             set_figure(pass, index);
             pass.set_stencil_reference(number as u32 % 255 + 1);
-            for pipeline in [front, ghost] {
-                pass.set_pipeline(pipeline);
+            for kind in [Brush::Front, Brush::Ghost] {
+                pass.set_pipeline(brush(kind));
                 self.draw_limbs(pass, figure);
             }
         }
-        quads(pass, flat_line, strokes, &pane.strokes[2]);
+        quads(pass, Brush::FlatLine, strokes, &pane.strokes[2]);
     }
 
     fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &super::frame::FigureDraw) {
