@@ -183,6 +183,8 @@ impl Segue {
             generation: self.window.generation + 1,
             ..Window::default()
         };
+        // Fonts take effect with the next frame: this way it is the first one, and the work is done while the storage opens.
+        self.dress(&cc.egui_ctx);
         let Some(state) = &cc.wgpu_render_state else {
             return;
         };
