@@ -36,9 +36,7 @@ async function start(jsUrl, wasmUrl) {
   try {
     const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
     // Compiled here and not by the bindings: the worker that reads files runs the same code.
-    const code = WebAssembly.compileStreaming(download(wasmUrl));
-    wakeGraphics();
-    compiled = await code;
+    compiled = await WebAssembly.compileStreaming(download(wasmUrl));
     bindings = await module;
     await bindings.default({ module_or_path: compiled });
   } catch (reason) {
@@ -74,19 +72,6 @@ async function start(jsUrl, wasmUrl) {
   window.segue = api;
   answerParent(api);
   return api;
-}
-
-/**
- * Has the browser start its graphics process while the code is still on its way: a context that is never drawn to costs
- * a fraction of a second in both, and the app's own then comes at once.
- */
-function wakeGraphics() {
-  const wanted = new URLSearchParams(location.search).get("backend");
-  if (navigator.gpu && wanted !== "webgl2") {
-    navigator.gpu.requestAdapter().catch(() => {});
-  } else {
-    document.createElement("canvas").getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
-  }
 }
 
 /** A worker that reads files; see reader.js. */
