@@ -53,7 +53,10 @@ impl CallbackTrait for StageCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<StageRenderer>() {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
-            if renderer.prepare(device, queue, encoder, self.id, &self.stage, size).to_be_refined {
+            let prepared = renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
+            if !prepared.complete {
+                self.ctx.request_repaint();
+            } else if prepared.to_be_refined {
                 self.ctx.request_repaint_after(REFINE_AFTER);
             }
         }

@@ -34,21 +34,28 @@ pub(super) enum Brush {
 }
 
 impl Brush {
+    /// In the order in which they are missed.
     const ALL: [Self; 10] = [
         Self::Ground,
+        Self::Front,
+        Self::Solid,
         Self::Shadow,
         Self::Shade,
         Self::FlatLine,
-        Self::Front,
-        Self::Solid,
         Self::Ghost,
         Self::Edge,
         Self::SpaceLine,
         Self::Ring,
     ];
+
+    /// Whether there is no picture without it.
+    const fn is_vital(self) -> bool {
+        matches!(self, Self::Ground | Self::Front | Self::Solid)
+    }
 }
 
-/// The pipelines of a device. Each is made when it is first needed, for making them all takes a good part of the time to the first frame.
+/// The pipelines of a device. WebGL takes long to make one: the first picture comes with those that it cannot do without, and the others are made
+/// one in a frame.
 pub(super) struct Pipelines {
     device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
@@ -205,16 +212,20 @@ impl Pipelines {
         }
     }
 
-    /// The pipeline, made now if it has not been.
-    pub(super) fn get(&self, brush: Brush) -> &wgpu::RenderPipeline {
-        self.made[brush as usize].get_or_init(|| self.make(brush))
+    /// The pipeline; `None` where the picture can do without it until it is made.
+    pub(super) fn get(&self, brush: Brush) -> Option<&wgpu::RenderPipeline> {
+        let slot = &self.made[brush as usize];
+        if brush.is_vital() {
+            Some(slot.get_or_init(|| self.make(brush)))
+        } else {
+            slot.get()
+        }
     }
 
-    /// Makes one that nothing has needed yet, so that its first use will not stop the picture.
-    pub(super) fn make_ahead(&self) {
-        if let Some(&brush) = Brush::ALL.iter().find(|&&brush| self.made[brush as usize].get().is_none()) {
-            self.get(brush);
-        }
+    /// Makes the next one that is missing; `false` when none is.
+    pub(super) fn make_next(&self) -> bool {
+        let missing = Brush::ALL.iter().find(|&&brush| self.made[brush as usize].get().is_none());
+        missing.is_some_and(|&brush| self.made[brush as usize].set(self.make(brush)).is_ok())
     }
 
     fn make(&self, brush: Brush) -> wgpu::RenderPipeline {

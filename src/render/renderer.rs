@@ -4,6 +4,7 @@ use super::pipelines::{Brush, Pipelines};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
 use eframe::wgpu;
 use segue::scene::Stage;
+use std::cell::Cell;
 use wgpu::util::DeviceExt as _;
 
 /// How much light is worth its time.
@@ -43,6 +44,8 @@ pub(super) struct View {
     coarse: Option<Targets>,
     drawn: Frame,
     shown: Shown,
+    /// Whether nothing was left out of it.
+    complete: bool,
     limbs: GrowingBuffer,
     strokes: GrowingBuffer,
     rings: GrowingBuffer,
@@ -69,6 +72,8 @@ enum Shown {
 pub(crate) struct Prepared {
     /// Whether anything was drawn.
     pub(crate) drawn: bool,
+    /// Whether nothing of it was left out; else it is to be drawn once more at once.
+    pub(crate) complete: bool,
     /// Whether the picture is to be drawn once more, finer, when nothing moves any longer.
     pub(crate) to_be_refined: bool,
 }
@@ -132,6 +137,7 @@ impl View {
             coarse: None,
             drawn: Frame::default(),
             shown: Shown::Nothing,
+            complete: false,
             limbs: GrowingBuffer::new("limbs", vertex),
             strokes: GrowingBuffer::new("strokes", vertex),
             rings: GrowingBuffer::new("rings", vertex),
@@ -195,8 +201,13 @@ impl StageRenderer {
             }
         };
         let limits = device.limits();
+        let pipelines = Pipelines::new(device, output_format, if smooth { 4 } else { 1 });
+        // Only a browser takes so long that it shows.
+        if cfg!(not(target_arch = "wasm32")) {
+            while pipelines.make_next() {}
+        }
         Self {
-            pipelines: Pipelines::new(device, output_format, if smooth { 4 } else { 1 }),
+            pipelines,
             fine: mesh(40, 8),
             coarse: mesh(16, 4),
             alignment: limits.min_uniform_buffer_offset_alignment.max(16) as usize,
@@ -244,6 +255,7 @@ impl StageRenderer {
         if size.contains(&0) {
             return Prepared {
                 drawn: false,
+                complete: true,
                 to_be_refined: false,
             };
         }
@@ -261,13 +273,14 @@ impl StageRenderer {
             view.targets = self.targets(device, size);
             view.coarse = None;
             view.shown = Shown::Nothing;
+            view.complete = false;
         }
         let small = self.coarse_size(size);
         self.scratch.build(stage, size, small.unwrap_or(size), self.quality);
-        let changed = view.shown == Shown::Nothing || view.drawn != self.scratch;
         if view.shown != Shown::Nothing {
-            self.pipelines.make_ahead();
+            self.pipelines.make_next();
         }
+        let changed = !view.complete || view.drawn != self.scratch;
         let draw = match (changed, small) {
             (true, Some(small)) => {
                 let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
@@ -288,15 +301,16 @@ impl StageRenderer {
                 self.scratch.build(stage, size, size, self.quality);
                 std::mem::swap(&mut view.drawn, &mut self.scratch);
                 self.upload(device, queue, &mut view);
-                self.encode(encoder, &view);
+                view.complete = self.encode(encoder, &view);
                 std::mem::swap(&mut view.drawn, &mut self.scratch);
             } else {
                 self.upload(device, queue, &mut view);
-                self.encode(encoder, &view);
+                view.complete = self.encode(encoder, &view);
             }
         }
         let prepared = Prepared {
             drawn: draw.is_some(),
+            complete: view.complete,
             to_be_refined: view.shown == Shown::Coarse,
         };
         self.views.push((id, view));
@@ -351,7 +365,8 @@ impl StageRenderer {
         }
     }
 
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
+    /// Draws all panes. `false` where something is left out because its pipeline is yet to be made.
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
         let targets = view.current();
         let clear = view.drawn.clear.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -388,22 +403,35 @@ impl StageRenderer {
             }),
             ..Default::default()
         });
+        let mut complete = true;
         for (index, pane) in view.drawn.panes.iter().enumerate() {
             let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
             pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
-            self.encode_pane(&mut pass, view, pane);
+            complete &= self.encode_pane(&mut pass, view, pane);
         }
         // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor would cut.
         let [width, height] = targets.size;
         pass.set_scissor_rect(0, 0, width, height);
+        complete
     }
 
-    fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) {
-        let brush = |brush| self.pipelines.get(brush);
+    /// Draws one pane. `false` where something is left out because its pipeline is yet to be made.
+    fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) -> bool {
         let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else {
-            return;
+            return true;
+        };
+        let complete = Cell::new(true);
+        let take = |pass: &mut wgpu::RenderPass<'_>, brush| {
+            let pipeline = self.pipelines.get(brush);
+            if let Some(pipeline) = pipeline {
+                pass.set_pipeline(pipeline);
+            }
+            if pipeline.is_none() {
+                complete.set(false);
+            }
+            pipeline.is_some()
         };
         let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
@@ -411,21 +439,21 @@ impl StageRenderer {
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
-        pass.set_pipeline(brush(Brush::Ground));
-        pass.draw(0..3, 0..1);
-        if figures().any(|(_, figure)| !figure.casting.is_empty()) {
-            pass.set_pipeline(brush(Brush::Shadow));
+        if take(pass, Brush::Ground) {
+            pass.draw(0..3, 0..1);
+        }
+        if figures().any(|(_, figure)| !figure.casting.is_empty()) && take(pass, Brush::Shadow) {
             pass.set_vertex_buffer(0, limbs.slice(..));
             for (index, figure) in figures().filter(|(_, figure)| !figure.casting.is_empty()) {
                 set_figure(pass, index);
                 pass.draw(0..4, figure.casting.clone());
             }
-            pass.set_pipeline(brush(Brush::Shade));
-            pass.draw(0..3, 0..1);
+            if take(pass, Brush::Shade) {
+                pass.draw(0..3, 0..1);
+            }
         }
-        let quads = |pass: &mut wgpu::RenderPass<'_>, kind, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
-            if !range.is_empty() {
-                pass.set_pipeline(brush(kind));
+        let quads = |pass: &mut wgpu::RenderPass<'_>, brush, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
+            if !range.is_empty() && take(pass, brush) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..4, range.clone());
             }
@@ -436,13 +464,12 @@ impl StageRenderer {
         let solids = || figures().filter(|(_, figure)| !figure.ghost);
         pass.set_vertex_buffer(1, limbs.slice(..));
         // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
-        for (kind, wanted) in [
+        for (brush, wanted) in [
             (Brush::Front, true),
             (Brush::Solid, true),
             (Brush::Edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
         ] {
-            if wanted && solids().next().is_some() {
-                pass.set_pipeline(brush(kind));
+            if wanted && solids().next().is_some() && take(pass, brush) {
                 for (index, figure) in solids() {
                     set_figure(pass, index);
                     self.draw_limbs(pass, figure);
@@ -454,12 +481,14 @@ impl StageRenderer {
         for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
             set_figure(pass, index);
             pass.set_stencil_reference(number as u32 % 255 + 1);
-            for kind in [Brush::Front, Brush::Ghost] {
-                pass.set_pipeline(brush(kind));
-                self.draw_limbs(pass, figure);
+            for brush in [Brush::Front, Brush::Ghost] {
+                if take(pass, brush) {
+                    self.draw_limbs(pass, figure);
+                }
             }
         }
         quads(pass, Brush::FlatLine, strokes, &pane.strokes[2]);
+        complete.get()
     }
 
     fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &super::frame::FigureDraw) {
