@@ -20,7 +20,9 @@ pub(crate) fn jolts(clip: &Clip) -> Vec<f32> {
     let mut jolts = vec![0.0_f32; clip.frames()];
     let stride = clip.frames().div_ceil(SAMPLES).max(1);
     for joint in 0..clip.skeleton().len() {
-        let changes: Vec<f32> = (0..clip.frames()).map(|frame| turn_change(clip, frame, joint).unwrap_or(0.0)).collect();
+        let changes: Vec<f32> = (0..clip.frames())
+            .map(|frame| turn_change(clip, frame, joint).unwrap_or(0.0))
+            .collect();
         let sampled: Vec<f32> = changes.iter().copied().step_by(stride).collect();
         let usual = stats::percentile(&sampled, 0.99).unwrap_or(0.0).max(STILL_RADIANS);
         for (jolt, change) in jolts.iter_mut().zip(changes) {

@@ -188,7 +188,11 @@ fn turning_between(carried: f32, (a, leave): (&Source, usize), (b, enter): (&Sou
     for p in 0..steps {
         let weight = how.left((p as f64 + 0.5) / fps);
         // Where A has ended, it goes on as it came.
-        let in_a = if leave + p < frames_of_a { leave + p } else { (2 * frames_of_a).saturating_sub(leave + p + 1) };
+        let in_a = if leave + p < frames_of_a {
+            leave + p
+        } else {
+            (2 * frames_of_a).saturating_sub(leave + p + 1)
+        };
         let turn = |source: &Source, frame: usize| wrap_angle(source.step_into(frame).yaw);
         between += weight * (turn(a, in_a) - turn(b, enter + p));
         weights += weight;
