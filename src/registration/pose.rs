@@ -59,7 +59,8 @@ const CANDIDATES: usize = 8;
 const COARSE_FRAMES: usize = 1_000;
 /// A seam takes over what joints do in its two frames, trembling too. A jolt ([`jolts`]) up to this leaves room for what the transition itself adds.
 const CALM_JOLT: f32 = 0.7;
-/// Calm frames may cost so much more than the lowest cost; 1 is that of an average pair.
+/// Calm frames may cost so much more than the lowest cost, 1 being that of an average pair, and twice as much at most: frames that are the same
+/// need no others.
 const CALM_COST: f64 = 0.03;
 /// They are looked for this far around each candidate, seconds.
 const CALM_REACH_SECS: f64 = 0.05;
@@ -266,7 +267,7 @@ impl PoseSearch {
         // Among equals the earliest frames, whatever the order in which candidates were found.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
-        let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + CALM_COST);
+        let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(CALM_COST));
         let jolt = |&&(_, i, j): &&(f64, usize, usize)| self.jolt(i, j);
         let calm = alike.clone().find(|pair| jolt(pair) <= CALM_JOLT);
         let best = calm.or_else(|| alike.min_by(|a, b| jolt(a).total_cmp(&jolt(b))));
