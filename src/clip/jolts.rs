@@ -31,3 +31,48 @@ pub(crate) fn jolts(clip: &Clip) -> Vec<f32> {
     }
     jolts
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures;
+    use glam::{Quat, Vec3};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_jerk_of_one_joint_in_one_frame_stands_out() {
+        let skeleton = fixtures::lafan();
+        let (frames, joints) = (300, skeleton.len());
+        let mut rotations: Vec<Quat> = (0..frames)
+            .flat_map(|frame| std::iter::repeat_n(Quat::from_rotation_x(0.4 * (0.1 * frame as f32).sin()), joints))
+            .collect();
+        rotations[150 * joints + 3] *= Quat::from_rotation_x(0.05);
+        let clip = Clip::new("jerk", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames]).unwrap();
+        // There and back again: twice the jerk, but for the little that the joint turns anyway.
+        assert!((turn_change(&clip, 150, 3).unwrap() - 0.1).abs() < 0.005);
+        assert!(turn_change(&clip, 150, 2).unwrap() < 0.005);
+        for (frame, joint) in [(0, 3), (frames - 1, 3), (frames, 3), (usize::MAX, 3), (5, joints)] {
+            assert_eq!(turn_change(&clip, frame, joint), None);
+        }
+        let jolts = jolts(&clip);
+        assert!(
+            jolts[150] > 20.0 && jolts[149] > 10.0 && jolts[151] > 10.0,
+            "{:?}",
+            &jolts[148..153]
+        );
+        for (frame, jolt) in jolts.iter().enumerate().filter(|(frame, _)| frame.abs_diff(150) > 1) {
+            assert!(*jolt < 1.1, "{frame} {jolt}");
+        }
+        assert_eq!((jolts[0], jolts[frames - 1]), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_still_clip_has_no_jolts() {
+        let skeleton = fixtures::lafan();
+        for frames in [1, 2, 5] {
+            let rotations = vec![Quat::IDENTITY; frames * skeleton.len()];
+            let clip = Clip::new("still", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames]).unwrap();
+            assert_eq!(jolts(&clip), vec![0.0; frames]);
+        }
+    }
+}

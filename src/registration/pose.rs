@@ -433,6 +433,48 @@ mod tests {
     }
 
     #[test]
+    fn frames_in_which_a_joint_jolts_are_passed_by() {
+        let walk = Walk {
+            frames: 300,
+            fps: 120.0,
+            ..Walk::default()
+        };
+        let (a, b) = (
+            clip(walk),
+            clip(Walk {
+                cadence: 1.25,
+                swing: 0.6,
+                speed: 1.9,
+                ..walk
+            }),
+        );
+        let (weights, options) = (PoseWeights::default(), SearchOptions::new(9));
+        let smooth = search(&a, &b).best(weights, &options).unwrap();
+        let joints = a.skeleton().len();
+        let mut rotations: Vec<Quat> = (0..a.frames()).flat_map(|f| a.rotations(f).to_vec()).collect();
+        rotations[(smooth.leave - 1) * joints + 4] *= Quat::from_rotation_x(0.3);
+        let jerked = Clip::new(
+            "jerked",
+            Arc::clone(a.skeleton()),
+            a.fps(),
+            rotations,
+            a.root_translations().to_vec(),
+        )
+        .unwrap();
+        let search = search(&Arc::new(jerked), &b);
+        let found = search.best(weights, &options).unwrap();
+        let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter);
+        assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
+        assert!(found.cost <= smooth.cost + CALM_COST, "{found:?} {smooth:?}");
+        // A frame that the user names stays.
+        let named = SearchOptions {
+            leave: Region::frame(smooth.leave, a.frames()),
+            ..options
+        };
+        assert_eq!(search.best(weights, &named).unwrap().leave, smooth.leave);
+    }
+
+    #[test]
     fn numbers_are_in_their_units() {
         let still = Walk {
             frames: 30,
