@@ -14,7 +14,7 @@ fn all_pairs(mut lab: Lab) -> Vec<Numbers> {
     let pair = |index: usize| lab.pair(index / count, index % count).expect("the lab joins any two clips");
     let pairs: Vec<Numbers> = (0..count * count).map(pair).collect();
     for pair in &pairs {
-        println!(
+        eprintln!(
             "{:>10} → {:<10} seam {:.2} ({} {:.1} °/s) spin {:.1}° slide {:.2} → {:.3} cm knee {:.2}",
             pair.names[0],
             pair.names[1],
