@@ -84,7 +84,7 @@ fn arrows_go_one_way() {
 
 #[test]
 fn nothing_is_left_unfinished() {
-    let sources: Vec<_> = ["src", "tests", "benches", "fuzz/fuzz_targets", "xtask/src"]
+    let sources: Vec<_> = ["src", "tests", "benches", "examples", "fuzz/fuzz_targets", "xtask/src"]
         .into_iter()
         .flat_map(sources)
         .collect();

@@ -4,6 +4,7 @@ mod contacts;
 mod curves;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod jolts;
 mod mirror;
 mod poses;
 mod resample;
@@ -16,6 +17,7 @@ mod velocity;
 pub(crate) use contacts::stillest_step;
 pub use contacts::{ContactOptions, Contacts, ground_height};
 pub use curves::{CurveKind, joint_curve};
+pub(crate) use jolts::{jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget};

@@ -1,5 +1,5 @@
 use crate::blend::Source;
-use crate::clip::{Clip, Contacts, stillest_step};
+use crate::clip::{Clip, Contacts, stillest_step, turn_change};
 use crate::math::{quat, stats};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
@@ -72,11 +72,8 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
             let (mut turns, mut changes) = (Vec::with_capacity(SAMPLES), Vec::with_capacity(SAMPLES));
             for frame in (1..clip.frames()).step_by(stride) {
                 let of = |frame: usize| clip.rotations(frame)[joint];
-                let here = turn(of(frame - 1), of(frame));
-                turns.push(here.length());
-                if frame + 1 < clip.frames() {
-                    changes.push((turn(of(frame), of(frame + 1)) - here).length());
-                }
+                turns.push(turn(of(frame - 1), of(frame)).length());
+                changes.extend(turn_change(clip, frame, joint));
             }
             (p99(&turns), p99(&changes))
         })

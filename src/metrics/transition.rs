@@ -1,6 +1,6 @@
 use super::profile::{Profile, turn};
 use super::{Better, Metric};
-use crate::clip::{Clip, facing, stillest_step};
+use crate::clip::{Clip, facing, stillest_step, turn_change};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
@@ -271,14 +271,6 @@ fn joint_turn(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
     Some(turn(at(before)?, at(frame)?).length())
 }
 
-/// How much a joint's turn changes from the step into `frame` to the step out of it, radians.
-fn joint_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
-    let before = frame.checked_sub(1)?;
-    let at = |frame: usize| (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten();
-    let here = at(frame)?;
-    Some((turn(here, at(frame.checked_add(1)?)?) - turn(at(before)?, here)).length())
-}
-
 /// The largest of a joint's values in `frames`, less what is usual for that joint or what its sources do in the same frames: the value, and
 /// the joint where it is above 0.
 fn unusual(
@@ -319,7 +311,7 @@ fn seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> (Option<f64>, O
 
 fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option<f64> {
     // Every frame between two steps of which one belongs to the transition.
-    let (worst, _) = unusual(subject, steps.start() - 1..=*steps.end(), joint_change, |profile| {
+    let (worst, _) = unusual(subject, steps.start() - 1..=*steps.end(), turn_change, |profile| {
         &profile.usual_change
     });
     worst.map(|change| f64::from(change).to_degrees() * subject.result.fps())

@@ -119,14 +119,15 @@ fn inertialize(
         old_pose.velocities.push(velocity(a, Planar::IDENTITY, leave, &a_stands));
         new_pose.velocities.push(velocity(b, aligned_b, enter, &b_stands));
     }
-    let mut inertia = Inertializer::new(how);
-    inertia.trigger(&old_pose, &new_pose);
-
     let (fps, rest) = (to.fps(), to.frames() - enter);
     // Rounding must not make a frame of a whole number's last digit, nor of no time at all.
     let frames_in = |secs: f64| (secs * fps - 1e-5).ceil().max(0.0).min(rest as f64) as usize;
     // One more, so that the last frame computed has nothing left.
     let settling = frames_in(how.settled_secs() + fps.recip());
+    let carried = old_pose.steady_travel.y - new_pose.steady_travel.y;
+    old_pose.steady_travel.y = new_pose.steady_travel.y + turning_between(carried, (a, leave), (b, enter), how, settling);
+    let mut inertia = Inertializer::new(how);
+    inertia.trigger(&old_pose, &new_pose);
     let window = frames_in(how.secs_until(0.01)).min(settling);
     let mut made = Assembly::new(from, to, leave + rest);
     made.play(from, 0..leave);
@@ -175,6 +176,32 @@ fn inertialize(
         world_from_b,
         frames,
     })
+}
+
+/// How much of a difference of steady yaw rates, `carried` (A's less B's, rad/s), is handed over: no more than lets the result turn, while the
+/// difference dies away, as far as the two clips do meanwhile with the weights that it leaves them. What is steady over a stride may lie ahead of B
+/// or behind A: carried whole, a turn that B is yet to make would first be made the other way round.
+fn turning_between(carried: f32, (a, leave): (&Source, usize), (b, enter): (&Source, usize), how: Inertialization, steps: usize) -> f32 {
+    let fps = b.clip().fps();
+    let frames_of_a = a.frames().len();
+    let (mut between, mut weights) = (0.0, 0.0);
+    for p in 0..steps {
+        let weight = how.left((p as f64 + 0.5) / fps);
+        // Where A has ended, it goes on as it came.
+        let in_a = if leave + p < frames_of_a {
+            leave + p
+        } else {
+            (2 * frames_of_a).saturating_sub(leave + p + 1)
+        };
+        let turn = |source: &Source, frame: usize| wrap_angle(source.step_into(frame).yaw);
+        between += weight * (turn(a, in_a) - turn(b, enter + p));
+        weights += weight;
+    }
+    if weights <= 0.0 {
+        return carried;
+    }
+    let between = (between / weights * fps) as f32;
+    carried.clamp(between.min(0.0), between.max(0.0))
 }
 
 /// Character frames as vectors (x, yaw, z) without jumps of the yaw.

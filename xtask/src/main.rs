@@ -3,6 +3,7 @@
 mod check;
 mod dist;
 mod fuzz;
+mod quality;
 mod server;
 mod shell;
 mod tools;
@@ -33,6 +34,10 @@ cargo xtask fuzz [TARGET …] [--minutes N]
     Feeds the readers of outside bytes with random ones (20 minutes each unless told), with a nightly compiler and cargo-fuzz.
     Targets are the files of fuzz/fuzz_targets; all of them unless some are named. What breaks one is left in fuzz/artifacts.
 
+cargo xtask quality [--data FOLDER]
+    Makes a transition from every clip of a folder (BVH, or AMC beside their ASF) into every one, with the default parameters, and prints how good
+    they are as a table in Markdown. Without a folder: subject 16 of the CMU database, where it lies in ../shared/data/cmu/16.
+
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
@@ -46,6 +51,7 @@ fn main() -> ExitCode {
         Some((&"serve", rest)) => serve(rest),
         Some((&"test", rest)) => check::run(rest),
         Some((&"fuzz", rest)) => fuzz::run_targets(rest),
+        Some((&"quality", rest)) => quality::run_pairs(rest),
         Some((&"docs", _)) => docs(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");

@@ -4,6 +4,7 @@ use crate::clip::{Clip, Interpolation, JointTranslations, resample};
 use crate::math::Decay;
 use crate::registration::fixtures::Walk;
 use crate::skeleton::Roles;
+use glam::Quat;
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -370,4 +371,43 @@ fn what_cannot_be_joined_is_refused() {
         ..Walk::default()
     });
     assert_eq!(concatenate(&one, 1, &one, 0, &options).unwrap().clip.frames(), 2);
+}
+
+/// B walks straight on for half a second and then turns left: what is steady over its first stride is half a turn to the left already.
+#[test]
+fn a_turn_to_come_is_not_made_the_other_way_round_first() {
+    let straight = Walk {
+        frames: 200,
+        cadence: 0.0,
+        swing: 0.0,
+        ..Walk::default()
+    }
+    .clip();
+    let yaw = |frame: usize| 0.04 * frame.saturating_sub(35) as f32;
+    let turned = |clip: &Clip, yaw: &dyn Fn(usize) -> f32| {
+        let joints = clip.skeleton().len();
+        let mut rotations: Vec<Quat> = (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
+        for (frame, root) in rotations.iter_mut().step_by(joints).enumerate() {
+            *root = Quat::from_rotation_y(yaw(frame)) * *root;
+        }
+        let roots = clip.root_translations().to_vec();
+        source_of(Clip::new("turning", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap())
+    };
+    let (a, b) = (source_of(straight.clone()), turned(&straight, &yaw));
+    // And the other way: A has turned, and goes straight where it is left.
+    let (before, after) = (turned(&straight, &|frame| yaw(frame.min(90))), source_of(straight.clone()));
+    for how in KINDS {
+        let out = made(&a, 100, &b, 5, how, PLACES[0]);
+        let least = out.frames[100..130].iter().map(|frame| frame.yaw).fold(f64::INFINITY, f64::min);
+        assert!(least > -0.5_f64.to_radians(), "{how:?} {}", least.to_degrees());
+        let out = made(&before, 94, &after, 20, how, PLACES[0]);
+        let turned = wrap_angle(out.frames[180].yaw - out.frames[93].yaw);
+        assert!(turned.abs() < 0.5_f64.to_radians(), "{how:?} {}", turned.to_degrees());
+    }
+    // What both do is handed over: a steady turn goes over into none in its own time.
+    let (steady, out) = (turned(&straight, &|frame| 0.02 * frame as f32), source_of(straight));
+    let made = made(&steady, 100, &out, 20, KINDS[0], PLACES[0]);
+    let turned = wrap_angle(made.frames[180].yaw - made.frames[99].yaw);
+    let wanted = 0.02 * 60.0 * 2.0 / crate::math::spring::rate(0.1) * 0.5;
+    assert!(turned > wanted, "{turned} {wanted}");
 }

@@ -1,0 +1,41 @@
+//! `cargo xtask quality`: transitions between all clips of a folder, measured.
+
+use std::path::PathBuf;
+
+use crate::shell::{Result, cargo, fail, root, run};
+
+pub fn run_pairs(args: &[&str]) -> Result<()> {
+    let folder = match args {
+        [] => usual_folder()?,
+        // The table is made in the repository's root, the folder was named from here.
+        ["--data", folder] => std::path::absolute(folder)?,
+        _ => return fail("`quality` knows --data, followed by one folder, and nothing else"),
+    };
+    if !folder.is_dir() {
+        return fail(format!("there is no folder {}", folder.display()));
+    }
+    let mut table = cargo(&[
+        "run",
+        "--quiet",
+        "--release",
+        "--locked",
+        "--no-default-features",
+        "--example=transition_quality",
+        "--",
+    ]);
+    run(table.arg(folder))
+}
+
+/// Where the tests look for captured motion, too.
+fn usual_folder() -> Result<PathBuf> {
+    let places = [
+        std::env::var_os("SEGUE_SHARED").map(PathBuf::from),
+        Some(root().join("../shared/data")),
+        Some(root().join("../../shared/data")),
+    ];
+    let mut folders = places.into_iter().flatten().map(|place| place.join("cmu/16"));
+    match folders.find(|folder| folder.is_dir()) {
+        Some(folder) => Ok(folder),
+        None => fail("the takes of CMU's subject 16 are not in ../shared/data/cmu/16: name a folder of BVH, or of AMC and ASF, by --data"),
+    }
+}
