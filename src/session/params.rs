@@ -282,7 +282,7 @@ parameters! {
     PanZ "pan_z" "Camera shift z" Camera number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise along z.";
 
     Play "play" "Play" Transport Kind::Switch, Start::Switch(true), "", "Whether time runs.";
-    Speed "speed" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
+    Rate "rate" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
     Loop "loop" "Loop" Transport Kind::Switch, Start::Switch(true), "", "Starts again at the end.";
     Time "t" "Time" Transport number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused.";
     In "in" "In mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";

@@ -22,17 +22,17 @@ impl Span {
         }
     }
 
-    /// The playhead after `dt_secs` of playing at `speed`, and whether it still moves.
+    /// The playhead after `dt_secs` of playing at `rate`, and whether it still moves.
     ///
     /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops at the end.
     #[must_use]
-    pub fn advance(&self, now: f64, dt_secs: f64, speed: f64, repeat: bool) -> (f64, bool) {
+    pub fn advance(&self, now: f64, dt_secs: f64, rate: f64, repeat: bool) -> (f64, bool) {
         let length = self.end - self.start;
         if length <= 0.0 {
             return (self.start, false);
         }
         let now = if (self.start..=self.end).contains(&now) { now } else { self.start };
-        let next = now + dt_secs * speed;
+        let next = now + dt_secs * rate;
         if next <= self.end {
             (next, true)
         } else if repeat {

@@ -59,7 +59,7 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     for (keyboard, factor) in [(Keyboard::OpenBracket, 0.5), (Keyboard::CloseBracket, 2.0)] {
         if pressed(none, keyboard) {
-            out.set_once(Key::Speed, Value::Number((params.number(Key::Speed) * factor).clamp(0.05, 4.0)));
+            out.set_once(Key::Rate, Value::Number((params.number(Key::Rate) * factor).clamp(0.05, 4.0)));
         }
     }
     if pressed(none, Keyboard::L) {

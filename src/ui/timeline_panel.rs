@@ -33,7 +33,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     let transport = Transport {
         playing: params.is_on(Key::Play),
         repeat: params.is_on(Key::Loop),
-        speed: params.number(Key::Speed),
+        speed: params.number(Key::Rate),
         now: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
         frames: clip.frames(),
@@ -46,7 +46,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     match row.inner {
         Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
         Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
-        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Speed, Value::Number(speed)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
         Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
         None => {}
     }

@@ -236,7 +236,7 @@ impl Session {
             let (now, moving) = self.span().advance(
                 self.now_secs(),
                 dt_secs,
-                self.params.number(Key::Speed),
+                self.params.number(Key::Rate),
                 self.params.is_on(Key::Loop),
             );
             self.set_unchecked(Key::Time, Value::Number(now));
