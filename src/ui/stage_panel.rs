@@ -6,7 +6,6 @@ use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
-use segue::math::Planar;
 use segue::scene::{camera_of, resting_point};
 use segue::session::{Key, Outcome, Pane, Session, Value};
 
@@ -387,12 +386,18 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 
 /// Stops following and shows the whole way of every pane.
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
-    let outcomes = || session.panes().iter().filter_map(|pane| pane.outcome.as_deref());
-    let places = outcomes().flat_map(|outcome| outcome.motion.ground_frames.iter().map(Planar::origin));
+    let lying = |pane: &Pane| pane.shown_at(0.0).1;
+    let outcomes = || {
+        session
+            .panes()
+            .iter()
+            .filter_map(|pane| Some((pane.outcome.as_deref()?, lying(pane))))
+    };
+    let places = outcomes().flat_map(|(outcome, place)| outcome.motion.ground_frames.iter().map(move |at| place.after(at).origin()));
     let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     });
-    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else {
+    let Some((first, place)) = outcomes().next().filter(|_| low.is_finite()) else {
         return;
     };
     let height = first.motion.roles.body_height(first.motion.clip.skeleton());
@@ -402,7 +407,7 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     let mut camera = camera_of(session.params());
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = camera.target - resting_point(first);
+    let pan = camera.target - resting_point(first, &place);
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
         (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),

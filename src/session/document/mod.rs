@@ -1,5 +1,6 @@
 //! The document itself: what it holds, and what commands do to it.
 
+mod going_round;
 mod loading;
 mod panes;
 
@@ -15,7 +16,8 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
+use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Outcome, Slot};
+use super::recipe::{made_id, made_motion, made_params, middle_mps, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::synth;
@@ -83,6 +85,8 @@ pub struct Session {
     notices: Notices,
     panes: Vec<Pane>,
     blender: Blender,
+    gaits: GaitFinder,
+    cycles: CycleFinder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -107,6 +111,8 @@ impl Session {
             notices: Notices::default(),
             panes: Vec::new(),
             blender: Blender::default(),
+            gaits: GaitFinder::default(),
+            cycles: CycleFinder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -233,12 +239,12 @@ impl Session {
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut changed = self.notices.tick(dt_secs);
         if self.params.is_on(Key::Play) {
-            let (now, moving) = self.span().advance(
-                self.now_secs(),
-                dt_secs,
-                self.params.number(Key::Rate),
-                self.params.is_on(Key::Loop),
-            );
+            let (span, before, rate) = (self.span(), self.now_secs(), self.params.number(Key::Rate));
+            let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
+            let rounds = span.rounds(before, dt_secs, rate);
+            if moving && rounds > 0 {
+                self.come_round(rounds);
+            }
             self.set_unchecked(Key::Time, Value::Number(now));
             if !moving {
                 self.set_unchecked(Key::Play, Value::Switch(false));
@@ -260,6 +266,7 @@ impl Session {
     /// # Errors
     /// [`CommandError`] says what does not fit; the document is then as it was.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        let held = self.held();
         match command {
             Command::Set(values) => self.set(values)?,
             Command::Reset(key) => {
@@ -324,13 +331,21 @@ impl Session {
             Command::StopReading(id) => self.stop_reading(id),
         }
         self.refresh();
+        self.go_on_from(&held);
         Ok(())
     }
 
     /// The value that Segue chose for a parameter that is left to it.
     #[must_use]
     pub fn automatic_value(&self, key: Key) -> Option<f64> {
-        let transition = self.main_outcome()?.transition;
+        let outcome = self.main_outcome()?;
+        let (transition, made) = (outcome.transition, outcome.cycle.map(|cycle| cycle.made));
+        match (key, made) {
+            (Key::Speed, Some(CycleMade::Gait { clips_mps, .. })) => return Some(middle_mps(clips_mps)),
+            (Key::LoopFrom, Some(CycleMade::Cut { from_secs, .. })) => return Some(from_secs),
+            (Key::LoopTo, Some(CycleMade::Cut { to_secs, .. })) => return Some(to_secs),
+            _ => {}
+        }
         match key {
             Key::LeaveA => transition.map(|t| t.leave_a_secs),
             Key::EnterB => transition.map(|t| t.enter_b_secs),
@@ -591,6 +606,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
     }
 }
 
+#[cfg(test)]
+mod going_round_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]
