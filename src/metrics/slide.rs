@@ -47,7 +47,7 @@ mod tests {
         let flags = Side::BOTH.map(|side| made.truth.contacts.iter().map(|feet| feet[side.index()].any()).collect());
         let contacts = Contacts::from_flags(flags);
         let still = foot_slide_cm(&clip, &roles, &contacts).unwrap();
-        assert!(still < 1.0, "{still}");
+        assert!(still < 3.0, "{still}");
         // Pulled sideways by 10 cm/s, a foot slides by that times its longest stance.
         let (mut rotations, mut roots) = (Vec::new(), Vec::new());
         for frame in 0..clip.frames() {
