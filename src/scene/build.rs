@@ -67,9 +67,7 @@ impl Director {
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
-            let shown_pane = session.panes().get(index);
-            if let Some((shown_pane, outcome)) = shown_pane.and_then(|pane| Some((pane, pane.outcome.as_deref()?))) {
-                let (now, place) = shown_pane.shown_at(now);
+            if let Some(session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now)) {
                 let Some(world) = pose_at(&outcome.motion, now, &place) else {
                     continue;
                 };

@@ -220,7 +220,11 @@ fn written(metric: &segue::metrics::Metric) -> String {
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };
-    format!("{value:.decimals$}{degree}")
+    let digits = format!("{value:.decimals$}");
+    // What rounds to nothing has no sign.
+    let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
+    let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };
+    format!("{}{degree}", digits.replace('-', "−"))
 }
 
 struct Words {
@@ -414,28 +418,26 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 
 /// Stops following and shows the whole way of every pane.
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
-    let lying = |pane: &Pane| pane.shown_at(0.0).1;
-    let outcomes = || {
-        session
-            .panes()
-            .iter()
-            .filter_map(|pane| Some((pane.outcome.as_deref()?, lying(pane))))
-    };
-    let places = outcomes().flat_map(|(outcome, place)| outcome.motion.ground_frames.iter().map(move |at| place.after(at).origin()));
+    let outcomes = || session.panes().iter().filter_map(|pane| pane.shown_at(0.0));
+    let places = outcomes().flat_map(|shown| {
+        let frames = &shown.outcome.motion.ground_frames;
+        frames.iter().map(move |frame| shown.place.after(frame).origin())
+    });
     let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     });
-    let Some((first, place)) = outcomes().next().filter(|_| low.is_finite()) else {
+    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else {
         return;
     };
-    let height = first.motion.roles.body_height(first.motion.clip.skeleton());
+    let motion = &first.outcome.motion;
+    let height = motion.roles.body_height(motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
     let mut camera = camera_of(session.params());
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = camera.target - resting_point(first, &place);
+    let pan = camera.target - resting_point(first.outcome, &first.place);
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
         (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),

@@ -30,9 +30,8 @@ fn shown(session: &Session) -> (Vec<Quat>, f32, Planar) {
 }
 
 fn shown_at(session: &Session, secs: f64) -> (Vec<Quat>, f32, Planar) {
-    let pane = &session.panes()[0];
-    let motion = &pane.outcome.as_ref().unwrap().motion;
-    let (secs, place) = pane.shown_at(secs);
+    let Shown { outcome, secs, place } = session.panes()[0].shown_at(secs).unwrap();
+    let motion = &outcome.motion;
     let pose = motion.clip.sample(secs, Interpolation::Linear).unwrap();
     let here = motion.standing_at(secs);
     let mut rotations = pose.rotations;
@@ -93,7 +92,7 @@ fn speeds_stand_side_by_side() {
     let duration = session.duration_secs();
     for pane in session.panes() {
         let own = pane.outcome.as_ref().unwrap().duration_secs();
-        let (secs, place) = pane.shown_at(duration - 1e-3);
+        let Shown { secs, place, .. } = pane.shown_at(duration - 1e-3).unwrap();
         assert!(secs <= own && (own >= duration || place.shift.length() > 5.0), "{secs} {place:?}");
     }
     session.tick(duration + 0.3);
@@ -128,6 +127,50 @@ fn a_speed_that_is_dragged_changes_the_gait_without_a_jump() {
         // A step of the slider turns no joint by half as much as a frame of the gait itself does, and nobody leaves his place.
         assert!(largest.0 < 0.5 * in_a_frame && largest.1 < 5e-3, "{lock}: {largest:?} {in_a_frame}");
         assert!(session.params().number(Key::Speed) >= 3.5);
+    }
+}
+
+#[test]
+fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
+    for (from, to) in [(1.4, 3.5), (3.5, 1.4)] {
+        let mut session = open(&format!("lab=speed&speed={from}"));
+        let dt = 1.0 / 60.0;
+        let usual = |session: &mut Session| {
+            let mut most = 0.0f32;
+            for _ in 0..120 {
+                let (before, ..) = shown(session);
+                session.tick(dt);
+                most = most.max(turned(&before, &shown(session).0));
+            }
+            most
+        };
+        let own = usual(&mut session);
+        let (before, height, at) = shown(&session);
+        set(&mut session, Key::Speed, to);
+        // The numbers are those of the speed asked for, and on the stage nothing has moved.
+        assert!((metric(&session, 0, "speed_mps") / to - 1.0).abs() < 0.02);
+        let (after, height_after, at_after) = shown(&session);
+        assert!(turned(&before, &after) < 0.5 && distance(&at, &at_after) < 1e-3 && (height - height_after).abs() < 1e-3);
+        assert!(session.panes()[0].glide.is_some());
+        let (mut last, mut most, mut fastest) = (after, 0.0f32, 0.0f64);
+        let mut here = at_after;
+        for _ in 0..90 {
+            session.tick(dt);
+            let (pose, _, place) = shown(&session);
+            most = most.max(turned(&last, &pose));
+            fastest = fastest.max(distance(&here, &place) / dt);
+            (last, here) = (pose, place);
+        }
+        assert!(session.panes()[0].glide.is_none(), "it has arrived");
+        let most_of_both = own.max(usual(&mut session));
+        assert!(
+            most < 1.5 * most_of_both && fastest < 1.5 * 3.5,
+            "{from} to {to}: {most} {own} {fastest}"
+        );
+        // A picture that stands shows at once what was asked for.
+        set(&mut session, Key::Speed, from);
+        session.apply(Command::TogglePlay).unwrap();
+        assert!(session.tick(dt) && !session.tick(dt) && session.panes()[0].glide.is_none());
     }
 }
 

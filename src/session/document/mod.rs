@@ -7,7 +7,7 @@ mod panes;
 pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
-pub use panes::Pane;
+pub use panes::{Pane, Shown};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
@@ -252,7 +252,8 @@ impl Session {
             }
             changed = true;
         }
-        changed
+        let gait_secs = dt_secs * self.params.number(Key::Rate);
+        self.glide(gait_secs) || changed
     }
 
     /// Sets a value that is known to fit.
@@ -266,7 +267,7 @@ impl Session {
     /// # Errors
     /// [`CommandError`] says what does not fit; the document is then as it was.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
-        let held = self.held();
+        let mut held = Some(self.held());
         match command {
             Command::Set(values) => self.set(values)?,
             Command::Reset(key) => {
@@ -277,6 +278,7 @@ impl Session {
             Command::OpenLink(query) => {
                 self.remember(None);
                 self.open_link(&query);
+                held = None;
             }
             Command::Assign(slot, id) => {
                 let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
@@ -331,7 +333,10 @@ impl Session {
             Command::StopReading(id) => self.stop_reading(id),
         }
         self.refresh();
-        self.go_on_from(&held);
+        match held {
+            Some(held) => self.go_on_from(&held),
+            None => self.begin_anew(),
+        }
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! From the library and the parameters to results: what has changed is computed again, and nothing else.
 
 use super::Session;
+use super::going_round::{Glide, durations};
 use crate::math::Planar;
 use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
@@ -19,21 +20,41 @@ pub struct Pane {
     pub outcome: Option<Arc<Outcome>>,
     /// Why there is no newer one: what is missing and what to do.
     pub problem: Option<String>,
-    inputs: Option<Inputs>,
+    pub(super) inputs: Option<Inputs>,
     /// Where a result that goes round has got to: it lies there in the world that is shown.
     pub(super) place: Planar,
+    /// A gait that has not yet the speed of the result.
+    pub(super) glide: Option<Glide>,
+}
+
+/// What a pane has on the stage at some time.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The pane's result; a gait on its way to it, where the speed has just been changed.
+    pub outcome: &'a Arc<Outcome>,
+    /// The time in its motion, seconds.
+    pub secs: f64,
+    /// Where the motion lies in the world that is shown.
+    pub place: Planar,
 }
 
 impl Pane {
-    /// What is shown at a time of the timeline: the time in the result's own motion, and where in the world that lies. A result that goes round and
-    /// is shorter than the timeline begins again, and walks on from where it is.
+    /// What is shown at a time of the timeline; nothing while there is no result. A result that goes round and is shorter than the timeline begins
+    /// again, and walks on from where it is.
     #[must_use]
-    pub fn shown_at(&self, secs: f64) -> (f64, Planar) {
-        let (secs, place) = self
-            .outcome
-            .as_ref()
-            .map_or((secs, Planar::IDENTITY), |outcome| outcome.around(secs));
-        (secs, self.place.after(&place))
+    pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
+        let own = self.outcome.as_ref()?;
+        let gliding = self.glide.as_ref().and_then(|glide| {
+            let [own_secs, gliding_secs] = durations(own, &glide.outcome)?;
+            Some((&glide.outcome, secs / own_secs * gliding_secs))
+        });
+        let (outcome, secs) = gliding.unwrap_or((own, secs));
+        let (secs, place) = outcome.around(secs);
+        Some(Shown {
+            outcome,
+            secs,
+            place: self.place.after(&place),
+        })
     }
 }
 
@@ -52,7 +73,7 @@ pub struct Job {
 
 /// What a result depends on. Equal inputs, equal result: nothing is computed again.
 #[derive(Clone, Debug)]
-enum Inputs {
+pub(super) enum Inputs {
     View(Arc<Motion>),
     Make(String),
     Blend(BlendInputs),
@@ -182,6 +203,7 @@ impl Session {
                 problem: None,
                 inputs: None,
                 place: Planar::IDENTITY,
+                glide: None,
             });
             pane.variant.clone_from(&variant);
             let mut params = self.params.clone();

@@ -85,6 +85,18 @@ pub(in crate::session) fn middle_mps([a, b]: [f64; 2]) -> f64 {
 }
 
 impl SpeedInputs {
+    /// Whether it is the same gaits, laid on each other in the same way.
+    pub(in crate::session) fn differs_in_speed_alone(&self, other: &Self) -> bool {
+        let asked_mps = other.asked_mps;
+        Self { asked_mps, ..self.clone() } == *other
+    }
+
+    /// The gait at another speed than the one asked for.
+    pub(in crate::session) fn run_at(&self, speed_mps: f64) -> Result<Outcome, String> {
+        let asked_mps = speed_mps;
+        Self { asked_mps, ..self.clone() }.run()
+    }
+
     /// The gait.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);

@@ -513,7 +513,7 @@ fn of_many_tabs_those_without_room_stand_in_a_menu() {
     ];
     let labs: Vec<(usize, &str)> = NAMES.into_iter().enumerate().collect();
     let mut harness = bench(0, move |chosen, ui| {
-        let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 400.0, ui)).inner;
+        let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 280.0, ui)).inner;
         *chosen = picked.unwrap_or(*chosen);
     });
     assert!(harness.query_by_label("Blend").is_some() && harness.query_by_label("Path").is_none());
