@@ -255,12 +255,11 @@ fn the_frames_of_every_cycle_are_those_of_the_first() {
     };
     for frame in 0..clip.frames() - frames {
         assert!(turned(&own(frame), &own(frame + frames)).to_radians() < 1e-4, "{frame}");
-        let step = |frame: usize| {
-            outcome.motion.ground_frames[frame]
-                .inverse()
-                .after(&outcome.motion.ground_frames[frame + frames])
-        };
-        assert!(distance(&step(frame), &step(frame + frames)) < 1e-3, "{frame}");
+        let stands = &outcome.motion.ground_frames;
+        let step = |frame: usize| stands[frame].inverse().after(&stands[frame + frames]);
+        if frame + 2 * frames < clip.frames() {
+            assert!(distance(&step(frame), &step(frame + frames)) < 1e-3, "{frame}");
+        }
     }
     // At the end of the timeline the character walks on from where it is, also where the curve has led it.
     session.tick(session.duration_secs() - 0.01);
