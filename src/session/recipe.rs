@@ -147,7 +147,7 @@ impl Outcome {
     /// result that has an end stays as it is.
     pub(super) fn around(&self, secs: f64) -> (f64, Planar) {
         let duration = self.duration_secs();
-        if self.cycle.is_none() || duration <= 0.0 || !(secs > duration) {
+        if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
             return (secs, Planar::IDENTITY);
         }
         let rounds = (secs / duration).floor();
