@@ -284,9 +284,18 @@ impl SpeedBlend {
     /// # Errors
     /// [`GaitError::Clip`] when the result is no clip.
     pub fn cycle_at(&self, speed_mps: f64) -> Result<GaitClip, GaitError> {
+        self.cycles_at(speed_mps, 1)
+    }
+
+    /// Several cycles as [`Self::cycle_at`] makes them, one behind the other: `n · cycles + 1` frames.
+    ///
+    /// # Errors
+    /// [`GaitError::Option`] when they would take longer than 600 s.
+    pub fn cycles_at(&self, speed_mps: f64, cycles: usize) -> Result<GaitClip, GaitError> {
         let facts = self.facts(speed_mps);
+        checked("number of cycles", cycles as f64, MOST_SECS / facts.cycle_secs)?;
         let steps = (facts.cycle_secs * self.gaits[0].clip.fps()).round().max(2.0);
-        let phases = (0..=steps as usize).map(|step| (facts.weight, step as f64 / steps));
+        let phases = (0..=steps as usize * cycles).map(|step| (facts.weight, step as f64 / steps));
         self.made(facts, phases)
     }
 

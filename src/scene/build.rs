@@ -67,15 +67,21 @@ impl Director {
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
-            if let Some(outcome) = session.panes().get(index).and_then(|pane| pane.outcome.as_deref()) {
-                let Some(world) = pose_at(&outcome.motion, now, &Planar::IDENTITY) else {
+            if let Some(session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now)) {
+                let Some(world) = pose_at(&outcome.motion, now, &place) else {
                     continue;
                 };
-                self.draw(outcome, &world, params, now, &look, colors, pane);
-                self.aim(index, outcome, &world, params, now, dt_secs, pane);
+                let shown = Shown {
+                    outcome,
+                    now,
+                    place,
+                    world,
+                };
+                self.draw(&shown, params, &look, colors, pane);
+                self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
-                    && let Some(&at) = world.positions.get(joint)
+                    && let Some(&at) = shown.world.positions.get(joint)
                 {
                     add_mark(at, colors.result, look.edge, pane);
                 }
@@ -115,10 +121,14 @@ impl Director {
         body
     }
 
-    /// `world` is the result's pose now.
-    #[expect(clippy::too_many_arguments, reason = "what is drawn, when, how it looks and where it goes")]
-    fn draw(&mut self, outcome: &Outcome, world: &WorldPose, params: &Params, now: f64, look: &Look, colors: &Colors, pane: &mut Pane) {
-        let motion = &outcome.motion;
+    fn draw(&mut self, shown: &Shown<'_>, params: &Params, look: &Look, colors: &Colors, pane: &mut Pane) {
+        let Shown {
+            outcome,
+            now,
+            place,
+            world,
+        } = shown;
+        let (motion, now) = (&outcome.motion, *now);
         let body = self.body(motion);
         let shape = params.text(Key::Look);
         if shape != "bones" {
@@ -131,13 +141,13 @@ impl Director {
             add_axes(world, colors, pane);
         }
         if params.is_on(Key::Sources) {
-            self.draw_sources(outcome, now, colors, pane);
+            self.draw_sources(shown, colors, pane);
         }
         let onion = params.number(Key::Ghosts) as i32;
         for step in (-onion..=onion).filter(|&step| step != 0) {
             let at = now + f64::from(step) * params.number(Key::GhostStep);
             if (0.0..=outcome.duration_secs()).contains(&at)
-                && let Some(world) = pose_at(motion, at, &Planar::IDENTITY)
+                && let Some(world) = pose_at(motion, at, place)
             {
                 let fade = 1.0 - (step.abs() - 1) as f32 / onion as f32;
                 pane.add_ghost(
@@ -148,20 +158,21 @@ impl Director {
             }
         }
         if params.is_on(Key::Trail) {
-            add_ground_path(outcome, colors, pane);
+            add_ground_path(outcome, place, colors, pane);
         }
         if params.is_on(Key::JointTrail)
             && let Some(joint) = joint_of(motion, params.text(Key::Joint))
         {
-            add_joint_trail(motion, joint, now, colors.result, pane);
+            add_joint_trail(motion, joint, now, place, colors.result, pane);
         }
         if params.is_on(Key::Contacts) {
-            add_contacts(motion, now, world, colors, pane);
+            add_contacts(shown, colors, pane);
         }
     }
 
     /// Both sources about the transition, as far as they differ from the result: A appears as its weight falls, B vanishes as its weight rises.
-    fn draw_sources(&mut self, outcome: &Outcome, now: f64, colors: &Colors, pane: &mut Pane) {
+    fn draw_sources(&mut self, shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
+        let (outcome, now) = (shown.outcome, shown.now);
         let Some(transition) = outcome.transition else { return };
         let length = transition.end_secs - transition.start_secs;
         let inside = ((now - transition.start_secs) / length.max(1e-6)).clamp(0.0, 1.0);
@@ -178,7 +189,7 @@ impl Director {
             if share < 0.02 || !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
                 continue;
             }
-            if let Some(world) = pose_at(&source.motion, at, &source.world_from_clip) {
+            if let Some(world) = pose_at(&source.motion, at, &shown.place.after(&source.world_from_clip)) {
                 let body = self.body(&source.motion);
                 pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * share));
             }
@@ -186,16 +197,15 @@ impl Director {
     }
 
     /// Brings the pane's camera to where the parameters want it, after the followed joint.
-    #[expect(clippy::too_many_arguments, reason = "what is looked at, when, and through which camera")]
-    fn aim(&mut self, index: usize, outcome: &Outcome, world: &WorldPose, params: &Params, now: f64, dt_secs: f32, pane: &mut Pane) {
-        let followed = followed_point(outcome, world, params, now);
+    fn aim(&mut self, index: usize, shown: &Shown<'_>, params: &Params, dt_secs: f32, pane: &mut Pane) {
+        let followed = followed_point(shown, params);
         let pan = Vec3::new(
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
         );
         let goal = Camera {
-            target: followed.unwrap_or_else(|| resting_point(outcome)) + pan,
+            target: followed.unwrap_or_else(|| resting_point(shown.outcome, &shown.place)) + pan,
             ..camera_of(params)
         };
         let Some(rig) = self.rigs.get_mut(index) else { return };
@@ -217,6 +227,17 @@ impl Director {
         pane.camera = *rig.camera();
         pane.focus = goal.target.with_y(0.0);
     }
+}
+
+/// A result as it is shown now.
+struct Shown<'a> {
+    outcome: &'a Outcome,
+    /// The time in its motion, seconds.
+    now: f64,
+    /// Where the motion lies in the world.
+    place: Planar,
+    /// The pose.
+    world: WorldPose,
 }
 
 /// The pose of a motion at a time, in the world that the motion lies in.
@@ -248,7 +269,8 @@ pub fn camera_of(params: &Params) -> Camera {
 }
 
 /// The point that the camera stays with; `None` when it follows nothing.
-fn followed_point(outcome: &Outcome, result: &WorldPose, params: &Params, now: f64) -> Option<Vec3> {
+fn followed_point(shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
+    let outcome = shown.outcome;
     let wanted = match params.text(Key::Follow) {
         "off" => return None,
         "a" => Some(Slot::A),
@@ -258,9 +280,10 @@ fn followed_point(outcome: &Outcome, result: &WorldPose, params: &Params, now: f
     let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
     let source_pose;
     let (motion, world) = match source {
-        None => (&outcome.motion, result),
+        None => (&outcome.motion, &shown.world),
         Some(source) => {
-            source_pose = pose_at(&source.motion, now - source.starts_at_secs, &source.world_from_clip)?;
+            let world_from_clip = shown.place.after(&source.world_from_clip);
+            source_pose = pose_at(&source.motion, shown.now - source.starts_at_secs, &world_from_clip)?;
             (&source.motion, &source_pose)
         }
     };
@@ -275,11 +298,11 @@ fn followed_point(outcome: &Outcome, result: &WorldPose, params: &Params, now: f
     })
 }
 
-/// What an unbound camera looks at: where the motion begins.
+/// What an unbound camera looks at: where the motion begins, which lies at `place`.
 #[must_use]
-pub fn resting_point(outcome: &Outcome) -> Vec3 {
+pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
     let start = outcome.motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
-    start.with_y(middle_height(&outcome.motion))
+    place.apply(start).with_y(middle_height(&outcome.motion))
 }
 
 /// The height in the middle of the picture: a little below the body's own, because the panes' numbers lie over the lower edge.
@@ -296,19 +319,20 @@ fn color_at(outcome: &Outcome, secs: f64, colors: &Colors) -> Color {
     }
 }
 
-fn add_ground_path(outcome: &Outcome, colors: &Colors, pane: &mut Pane) {
+fn add_ground_path(outcome: &Outcome, at: &Planar, colors: &Colors, pane: &mut Pane) {
     let frames = &outcome.motion.ground_frames;
     let fps = outcome.motion.clip.fps();
     let stride = frames.len().div_ceil(PATH_POINTS).max(1);
-    let points = frames
-        .iter()
-        .enumerate()
-        .step_by(stride)
-        .map(|(frame, place)| (place.origin().with_y(0.004), color_at(outcome, frame as f64 / fps, colors)));
+    let points = frames.iter().enumerate().step_by(stride).map(|(frame, place)| {
+        (
+            at.apply(place.origin()).with_y(0.004),
+            color_at(outcome, frame as f64 / fps, colors),
+        )
+    });
     pane.add_path(points, 2.0, Layer::Ground);
 }
 
-fn add_joint_trail(motion: &Motion, joint: usize, now: f64, color: Color, pane: &mut Pane) {
+fn add_joint_trail(motion: &Motion, joint: usize, now: f64, place: &Planar, color: Color, pane: &mut Pane) {
     /// How much of the way is shown, before and after the present.
     const REACH_SECS: f64 = 1.0;
     const STEPS: i32 = 60;
@@ -316,7 +340,7 @@ fn add_joint_trail(motion: &Motion, joint: usize, now: f64, color: Color, pane: 
         let part = f64::from(step) / f64::from(STEPS);
         let at = now + part * REACH_SECS;
         let inside = (0.0..=motion.clip.duration_secs()).contains(&at);
-        let world = inside.then(|| pose_at(motion, at, &Planar::IDENTITY)).flatten()?;
+        let world = inside.then(|| pose_at(motion, at, place)).flatten()?;
         Some((*world.positions.get(joint)?, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
     });
     pane.add_path(points, 1.75, Layer::Space);
@@ -369,13 +393,14 @@ fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 }
 
 /// A ring under each planted foot, red where it slides.
-fn add_contacts(motion: &Motion, now: f64, world: &WorldPose, colors: &Colors, pane: &mut Pane) {
+fn add_contacts(shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
+    let (motion, now, world) = (&shown.outcome.motion, shown.now, &shown.world);
     let frame = session::frame_at(motion, now);
     let dt = motion.clip.dt_secs();
     if !Side::BOTH.iter().any(|&side| motion.contacts.planted(side, frame)) {
         return;
     }
-    let earlier = pose_at(motion, now - f64::from(dt), &Planar::IDENTITY);
+    let earlier = pose_at(motion, now - f64::from(dt), &shown.place);
     for side in Side::BOTH {
         if !motion.contacts.planted(side, frame) {
             continue;

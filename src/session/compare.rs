@@ -86,7 +86,7 @@ mod tests {
         for (text, part) in [
             ("blend_window", "key:value"),
             ("align:1,2", "not `align`"),
-            ("speed:1,2", "not `speed`"),
+            ("rate:1,2", "not `rate`"),
             ("method:cut,leap", "expected inertialize"),
             ("blend_window:30", "2 to 4 values, not 1"),
             ("blend_window:1,2,3,4,5", "not 5"),

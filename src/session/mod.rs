@@ -20,10 +20,10 @@ mod undo;
 
 pub use command::{Command, CommandError, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{ClipInfo, Job, Loaded, Pane, Session};
+pub use document::{ClipInfo, Job, Loaded, Pane, Session, Shown};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
 pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
-pub use recipe::{Outcome, Retargeted, Slot, Source, Transition};
+pub use recipe::{Cycle, CycleMade, Outcome, Retargeted, Slot, Source, Transition};
 pub use saved::{Saved, SavedEntry};

@@ -1,5 +1,5 @@
 use crate::clip::{Clip, ContactOptions, Contacts, CurveKind, character_frames};
-use crate::math::Planar;
+use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles};
 use std::sync::Arc;
 
@@ -28,6 +28,22 @@ impl Motion {
             roles,
             contacts,
             ground_frames,
+        }
+    }
+
+    /// Where the character stands and what it faces at a time; between two frames in proportion, beyond the ends as at them.
+    #[must_use]
+    pub fn standing_at(&self, secs: f64) -> Planar {
+        let last = self.ground_frames.len().saturating_sub(1);
+        // `max` takes NaN to 0.
+        let at = (secs * self.clip.fps()).max(0.0).min(last as f64);
+        let [here, next] = [at.floor() as usize, (at.floor() as usize + 1).min(last)].map(|frame| self.ground_frames.get(frame));
+        let (Some(here), Some(next)) = (here, next) else {
+            return Planar::IDENTITY;
+        };
+        Planar {
+            yaw: wrap_angle(here.yaw + wrap_angle(next.yaw - here.yaw) * at.fract()),
+            shift: here.shift.lerp(next.shift, at.fract()),
         }
     }
 }

@@ -16,6 +16,8 @@ pub enum Group {
     Make,
     Blend,
     Transition,
+    Speed,
+    Loop,
 }
 
 impl Group {
@@ -31,7 +33,15 @@ impl Group {
             Self::Make => "make",
             Self::Blend => "blend",
             Self::Transition => "transition",
+            Self::Speed => "speed",
+            Self::Loop => "loop",
         }
+    }
+
+    /// Whether these are the parameters of a lab, which change its result.
+    #[must_use]
+    pub const fn is_of_lab(self) -> bool {
+        !matches!(self, Self::Page | Self::Transport | Self::Camera | Self::Stage)
     }
 
     /// Whether a change of one of these parameters is a step that undo takes back. Looking around and playing are not.
@@ -194,6 +204,8 @@ const LABS: &[Choice] = &[
     choice("make", "Make"),
     choice("blend", "Blend"),
     choice("transition", "Transition"),
+    choice("speed", "Speed"),
+    choice("loop", "Loop"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -208,6 +220,14 @@ const METHODS: &[Choice] = &[
     choice("smooth", "dissolve, smooth"),
     choice("linear", "dissolve, linear"),
     choice("cut", "cut"),
+];
+const LOOP_METHODS: &[Choice] = &[
+    choice("exact", "exact"),
+    choice("both", "both ends"),
+    choice("start", "start only"),
+    choice("end", "end only"),
+    choice("linear", "linear"),
+    choice("cubic", "cubic"),
 ];
 const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
 const GAITS: &[Choice] = &[
@@ -250,6 +270,14 @@ parameters! {
     MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
     MatchVelocity "match_velocity" "Weight of velocities" Transition number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
 
+    Speed "speed" "Speed" Speed auto(0.2, 10.0, 0.05), Start::Auto, "m/s", "How fast it goes. Left to Segue: half way between both clips.";
+    PhaseAlign "phase_align" "Align phases" Speed Kind::Switch, Start::Switch(true), "", "Lays strikes of the feet on strikes. Without it each clip begins where it begins, and legs cross.";
+
+    LoopFrom "loop_from" "Cycle from" Loop auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the cycle begins in A.";
+    LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
+    LoopMethod "loop_method" "Method" Loop Kind::Choice(LOOP_METHODS), Start::Word("exact"), "", "How the difference between the ends is spread over the cycle.";
+    LoopRatio "loop_ratio" "Ratio" Loop number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
+
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
     TurnRate "turn_rate" "Turn rate" Make number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "How fast the path turns; positive is left.";
@@ -282,7 +310,7 @@ parameters! {
     PanZ "pan_z" "Camera shift z" Camera number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise along z.";
 
     Play "play" "Play" Transport Kind::Switch, Start::Switch(true), "", "Whether time runs.";
-    Speed "speed" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
+    Rate "rate" "Playback speed" Transport logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
     Loop "loop" "Loop" Transport Kind::Switch, Start::Switch(true), "", "Starts again at the end.";
     Time "t" "Time" Transport number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused.";
     In "in" "In mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";
@@ -500,8 +528,7 @@ impl Param {
     /// Whether compare can make panes of it: a number that changes the result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_))
-            && matches!(self.group, Group::View | Group::Make | Group::Blend | Group::Transition)
+        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_)) && self.group.is_of_lab()
     }
 }
 

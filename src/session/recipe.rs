@@ -1,15 +1,21 @@
 //! What is made from clips and parameters: inputs in, clip and numbers out.
 
 use super::motion::Motion;
+use crate::gait::GaitFacts;
 use crate::math::Planar;
 use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod looping;
 mod make;
+mod rounds;
+mod speed;
 
 pub(super) use blend::{BlendInputs, Blender};
+pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, made_motion, made_params, preset_motion, synth_action};
+pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,6 +74,39 @@ pub struct Retargeted {
     pub unmatched: Vec<String>,
 }
 
+/// What a result goes round in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cycle {
+    /// How long one takes, seconds: a whole number of frames. The result is a whole number of cycles long, and its last frame has the pose of its
+    /// first.
+    pub secs: f64,
+    /// What it was made of.
+    pub made: CycleMade,
+}
+
+/// How a [`Cycle`] came to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CycleMade {
+    /// Two gaits at a speed.
+    Gait {
+        /// What goes with the speed that was made.
+        facts: GaitFacts,
+        /// The speed that was asked for, metres per second.
+        asked_mps: f64,
+        /// How fast A and B go, metres per second.
+        clips_mps: [f64; 2],
+    },
+    /// A part of A whose ends were brought together.
+    Cut {
+        /// Where it begins, seconds in A.
+        from_secs: f64,
+        /// Where it is over, seconds in A.
+        to_secs: f64,
+        /// How far apart the bodies at both ends are: root mean square per joint, centimetres at a body height of 1.75 m.
+        distance_cm: f64,
+    },
+}
+
 /// A result: a motion, and what is known about how it came to be.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -77,6 +116,8 @@ pub struct Outcome {
     pub sources: Vec<Source>,
     /// Where the transition is; `None` where there is none.
     pub transition: Option<Transition>,
+    /// What it goes round in; `None` for what has an end.
+    pub cycle: Option<Cycle>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
     /// The artefacts, as numbers.
@@ -90,6 +131,7 @@ impl Outcome {
             motion,
             sources: Vec::new(),
             transition: None,
+            cycle: None,
             retargeted: None,
             metrics: Vec::new(),
         }
@@ -99,5 +141,25 @@ impl Outcome {
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.motion.clip.duration_secs()
+    }
+
+    /// Where the character of a result that goes round stands at a time beyond its end: the time in its motion, and where that then lies. A
+    /// result that has an end stays as it is.
+    pub(super) fn around(&self, secs: f64) -> (f64, Planar) {
+        let duration = self.duration_secs();
+        if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
+            return (secs, Planar::IDENTITY);
+        }
+        let rounds = (secs / duration).floor();
+        let step = self.step(0.0, duration);
+        let place = (0..rounds as usize).fold(Planar::IDENTITY, |place, _| place.after(&step));
+        (secs - rounds * duration, place)
+    }
+
+    /// What brings the character from where it stands at one time of the motion to where it stands at another.
+    pub(super) fn step(&self, from_secs: f64, to_secs: f64) -> Planar {
+        self.motion
+            .standing_at(to_secs)
+            .after(&self.motion.standing_at(from_secs).inverse())
     }
 }

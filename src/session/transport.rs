@@ -22,23 +22,36 @@ impl Span {
         }
     }
 
-    /// The playhead after `dt_secs` of playing at `speed`, and whether it still moves.
+    /// The playhead after `dt_secs` of playing at `rate`, and whether it still moves.
     ///
     /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops at the end.
     #[must_use]
-    pub fn advance(&self, now: f64, dt_secs: f64, speed: f64, repeat: bool) -> (f64, bool) {
+    pub fn advance(&self, now: f64, dt_secs: f64, rate: f64, repeat: bool) -> (f64, bool) {
         let length = self.end - self.start;
         if length <= 0.0 {
             return (self.start, false);
         }
         let now = if (self.start..=self.end).contains(&now) { now } else { self.start };
-        let next = now + dt_secs * speed;
+        let next = now + dt_secs * rate;
         if next <= self.end {
             (next, true)
         } else if repeat {
             (self.start + (next - self.start).rem_euclid(length), true)
         } else {
             (self.end, false)
+        }
+    }
+
+    /// How many times a playhead that goes round, as in [`Span::advance`], comes to the end.
+    #[must_use]
+    pub fn rounds(&self, now: f64, dt_secs: f64, rate: f64) -> usize {
+        let length = self.end - self.start;
+        let inside = (self.start..=self.end).contains(&now);
+        let next = (if inside { now } else { self.start }) + dt_secs * rate;
+        if length > 0.0 && next > self.end {
+            ((next - self.start) / length).floor() as usize
+        } else {
+            0
         }
     }
 }
@@ -55,6 +68,9 @@ mod tests {
         assert_eq!(span.advance(2.5, 1.0, 1.0, false), (3.0, false));
         assert_eq!(span.advance(2.0, 0.5, 0.5, false), (2.25, true));
         assert_eq!(Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true), (0.0, false));
+        let rounds = [(2.5, 0.25), (2.5, 1.0), (2.5, 4.75), (0.0, 0.5), (0.0, 2.5)].map(|(now, dt)| span.rounds(now, dt, 1.0));
+        assert_eq!(rounds, [0, 1, 3, 0, 1]);
+        assert_eq!(Span::between(None, None, 0.0).rounds(0.0, 1.0, 1.0), 0);
     }
 
     #[test]

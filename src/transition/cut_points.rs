@@ -14,6 +14,10 @@ pub struct CycleSearch {
     pub min_secs: f64,
     /// The longest cycle, seconds.
     pub max_secs: f64,
+    /// The frame that the cycle is to start with; `None` finds it.
+    pub start: Option<usize>,
+    /// The frame that is to stand for the first one again; `None` finds it.
+    pub end: Option<usize>,
 }
 
 impl CycleSearch {
@@ -24,6 +28,8 @@ impl CycleSearch {
             window: (0.1 * fps).ceil().max(1.0) as usize,
             min_secs: 0.5,
             max_secs: 3.0,
+            start: None,
+            end: None,
         }
     }
 }
@@ -52,7 +58,7 @@ const CANDIDATES: usize = 6;
 /// first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
 ///
 /// # Errors
-/// [`LoopError::TooShort`] when no cycle of the shortest duration fits; [`LoopError::Registration`] when positions are no numbers.
+/// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to an end that is given; [`LoopError::Registration`] when positions are no numbers.
 pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search: &CycleSearch) -> Result<CutPoints, LoopError> {
     let clip = source.clip();
     let (fps, frames) = (clip.fps(), clip.frames());
@@ -74,6 +80,10 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
         window: search.window.clamp(1, frames - shortest),
         lengths: shortest..longest.saturating_add(1),
     };
+    if search.start.is_some() || search.end.is_some() {
+        let best = finder.pinned(search, frames)?.ok_or(too_short)?;
+        return Ok(best.cut(contacts));
+    }
     let stride = ((fps / 30.0).ceil() as usize).max(frames.div_ceil(400)).max(1);
     let mut places = finder.pairs(&(0..frames), &(0..frames), stride, finder.window, true)?;
     places.truncate(CANDIDATES);
@@ -91,11 +101,7 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
     let whole = finder.pairs(&(0..1), &(frames - 1..frames), 1, 1, false)?;
     whole.into_iter().for_each(&mut offer);
     let best = best.ok_or(too_short)?;
-    Ok(CutPoints {
-        cycle: best.start..best.end,
-        rms_cm: best.rms_cm,
-        phase_gap: phase_gap(contacts, best.start, best.end),
-    })
+    Ok(best.cut(contacts))
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +110,16 @@ struct Place {
     end: usize,
     rms_cm: f64,
     score: f64,
+}
+
+impl Place {
+    fn cut(&self, contacts: &Contacts) -> CutPoints {
+        CutPoints {
+            cycle: self.start..self.end,
+            rms_cm: self.rms_cm,
+            phase_gap: phase_gap(contacts, self.start, self.end),
+        }
+    }
 }
 
 struct Finder<'a> {
@@ -118,6 +134,37 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
+    /// The best cycle with an end that is given. One row, or one column, of the grid is cheap: every frame is compared. With both ends
+    /// given there is nothing to find, and any length will do.
+    fn pinned(&self, search: &CycleSearch, frames: usize) -> Result<Option<Place>, LoopError> {
+        let (shortest, longest) = (self.lengths.start, self.lengths.end);
+        let (starts, ends) = match (search.start, search.end) {
+            (Some(start), Some(end)) => (start..start.saturating_add(1), end..end.saturating_add(1)),
+            (Some(start), None) => (
+                start..start.saturating_add(1),
+                start.saturating_add(shortest)..start.saturating_add(longest).min(frames),
+            ),
+            (None, Some(end)) => (
+                end.saturating_sub(longest - 1)..end.saturating_sub(shortest).saturating_add(1),
+                end..end.saturating_add(1),
+            ),
+            (None, None) => (0..frames, 0..frames),
+        };
+        let both = search.start.is_some() && search.end.is_some();
+        if starts.is_empty() || ends.is_empty() || ends.end > frames || starts.end > ends.end {
+            return Ok(None);
+        }
+        let lengths = if both { 2..frames.saturating_add(1) } else { self.lengths.clone() };
+        // A window that does not fit behind the last frame is shortened to what fits.
+        let window = self.window.min(frames - ends.end + 1).max(1);
+        let finder = Finder {
+            lengths,
+            weights: self.weights.clone(),
+            ..*self
+        };
+        Ok(finder.pairs(&starts, &ends, 1, window, false)?.into_iter().next())
+    }
+
     /// The cycles that start in `starts` and end in `ends`, best first; of a whole grid (`minima`) only its lowest minima.
     fn pairs(
         &self,
@@ -265,6 +312,7 @@ mod tests {
             window: 6,
             min_secs,
             max_secs,
+            ..CycleSearch::new(60.0)
         };
         for (min, max) in [(0.2, 0.4), (2.0, 2.5), (3.0, 0.0), (5.0, 6.0), (f64::NAN, 1.5)] {
             let cut = found(&clip, &between(min, max)).unwrap();
@@ -279,5 +327,45 @@ mod tests {
         assert!(found(&one, &between(0.0, 1.0)).is_err());
         assert!(found(&Arc::new(clip.crop(0..0).unwrap()), &between(0.0, 1.0)).is_err());
         assert_eq!(found(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle, 0..2);
+    }
+
+    #[test]
+    fn ends_that_are_given_are_kept() {
+        let clip = Arc::new(
+            Walk {
+                frames: 400,
+                cadence: 1.0,
+                ..Walk::default()
+            }
+            .clip(),
+        );
+        let with = |start, end| {
+            found(
+                &clip,
+                &CycleSearch {
+                    start,
+                    end,
+                    ..CycleSearch::new(60.0)
+                },
+            )
+        };
+        // One stride is 60 frames; strides beside it are as good.
+        let cut = with(Some(100), None).unwrap().cycle;
+        assert!(cut.start == 100 && cut.len() % 60 == 0 && !cut.is_empty(), "{cut:?}");
+        let cut = with(None, Some(399)).unwrap().cycle;
+        assert!(cut.end == 399 && cut.len() % 60 == 0 && !cut.is_empty(), "{cut:?}");
+        let cut = with(Some(30), Some(350)).unwrap();
+        assert!(cut.cycle == (30..350) && cut.rms_cm > 1.0, "{cut:?}");
+        for (start, end) in [
+            (Some(390), None),
+            (None, Some(10)),
+            (Some(50), Some(50)),
+            (Some(60), Some(50)),
+            (Some(0), Some(400)),
+            (Some(usize::MAX), None),
+            (None, Some(usize::MAX)),
+        ] {
+            assert!(matches!(with(start, end), Err(LoopError::TooShort { .. })), "{start:?} {end:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The parameters of the lab that is open, and below them those of the stage.
 
 use super::clip_panel::clip_panel_ui;
+use super::cycle_panels::{loop_ui, speed_ui};
 use super::kit::{self, Button, Icon};
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -19,6 +20,8 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "make" => make_ui(session, state, out, ui),
         "blend" => blend_ui(session, state, out, ui),
         "transition" => transition_ui(session, state, out, ui),
+        "speed" => speed_ui(session, state, out, ui),
+        "loop" => loop_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);
@@ -27,7 +30,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 }
 
 fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+    kit::section_header_ui(&lab_label(session), ui);
     slot_row_ui(Slot::A, session, out, ui);
     if let Some(entry) = session.slot(Slot::A) {
         ui.push_id(&entry.id, |ui| clip_panel_ui(entry, session, state, out, ui));
@@ -35,7 +38,7 @@ fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 }
 
 fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+    kit::section_header_ui(&lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
         let detail = match (param.key, session.params().text(Key::Gait)) {
             // What the chosen motion does not have is not offered.
@@ -63,7 +66,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 }
 
 fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+    kit::section_header_ui(&lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
     let duration = |slot| {
         session
@@ -119,7 +122,7 @@ fn value_in_words((key, value): &(Key, Value)) -> String {
 }
 
 /// Saves the result; which one, where several stand side by side.
-fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
     let names: Vec<String> = panes
@@ -136,7 +139,7 @@ fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mu
 }
 
 /// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.
-fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
+pub(super) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::A, session, out, ui);
     slot_row_ui(Slot::B, session, out, ui);
     let outcome = session.main_outcome();
@@ -153,7 +156,7 @@ fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
 
 /// What the methods of the lab have to set, and what they share.
 fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+    kit::section_header_ui(&lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);
@@ -244,7 +247,7 @@ fn found_sentence(session: &Session) -> String {
 }
 
 /// Which clip is in a slot, to be chosen anew.
-fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(super) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
     let entries = session.library().entries();
     let options: Vec<(usize, &str)> = entries
         .iter()
@@ -264,7 +267,7 @@ fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// The experiment of the course, and the way back from it.
-fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(super) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
     let label = if on { text::COMPARE_OFF } else { text::FULL_HALF_THIRD };
     let response = kit::button_ui(Button::new(label).hint(text::COMPARE_HELP), ui);
@@ -296,22 +299,16 @@ fn is_handled_elsewhere(key: Key) -> bool {
     matches!(key, Key::PanX | Key::PanY | Key::PanZ)
 }
 
-fn lab_label(session: &Session) -> &'static str {
-    match session.params().text(Key::Lab) {
-        "make" => "Make",
-        "blend" => "Blend",
-        "transition" => "Transition",
-        _ => "View",
-    }
+/// The name of the lab that is open.
+pub(super) fn lab_label(session: &Session) -> String {
+    Key::Lab.param().spoken(session.params().get(Key::Lab))
 }
 
 /// The lab's parameters that the link names: what an embedding page wants its readers to try.
 fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     let named = session.params().changed().map(|(param, _)| param);
-    let named = named
-        .filter(|param| matches!(param.group, Group::Make | Group::Blend | Group::Transition))
-        .map(|param| param.key);
+    let named = named.filter(|param| param.group.is_of_lab()).map(|param| param.key);
     named.chain(
         compared
             .into_iter()

@@ -8,7 +8,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue::session::export::{ExportFormat, ExportOptions};
-use segue::session::{Command, Entry, Key, Origin, Session, Slot};
+use segue::session::{Command, Entry, Origin, Session, Slot};
 
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -95,7 +95,7 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 /// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not hold the other chosen clip.
 fn free_slot(session: &Session) -> Slot {
     let built_in = |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
-    if session.params().text(Key::Lab) == "view" || built_in(Slot::A) || !built_in(Slot::B) {
+    if !session.uses(Slot::B) || built_in(Slot::A) || !built_in(Slot::B) {
         Slot::A
     } else {
         Slot::B
@@ -104,10 +104,9 @@ fn free_slot(session: &Session) -> Slot {
 
 fn part_of(session: &Session, entry: &Entry) -> Part {
     let holds = |slot| session.slot(slot).is_some_and(|held| held.id == entry.id);
-    let lab = session.params().text(Key::Lab);
-    if holds(Slot::A) && lab != "make" {
+    if holds(Slot::A) && session.uses(Slot::A) {
         Part::A
-    } else if holds(Slot::B) && matches!(lab, "blend" | "transition") {
+    } else if holds(Slot::B) && session.uses(Slot::B) {
         Part::B
     } else {
         Part::None
@@ -144,7 +143,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     }
     let part = part_of(session, entry);
     let open = state.details.as_ref() == Some(&entry.id);
-    let blending = matches!(session.params().text(Key::Lab), "blend" | "transition");
+    let blending = session.uses(Slot::B);
     let warning = entry.warnings.join("\n");
     let actions = [
         (Icon::Sliders, text::DETAILS),

@@ -1,6 +1,7 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
 mod clip_panel;
+mod cycle_panels;
 pub(crate) mod kit;
 mod lab_panel;
 mod library_panel;

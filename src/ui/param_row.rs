@@ -16,6 +16,8 @@ pub(crate) struct Detail {
     pub(crate) secondary: String,
     /// A sentence in place of the table's.
     pub(crate) help: Option<String>,
+    /// Marks on the track, besides those of a comparison.
+    pub(crate) marks: Vec<Mark>,
 }
 
 /// The row of a parameter: a slider, a switch or a choice, as the table has it.
@@ -87,6 +89,7 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
             Value::Number(value) => Some(Mark { value: *value, color }),
             _ => None,
         })
+        .chain(detail.marks.iter().copied())
         .collect();
     let help = detail.help.as_deref().unwrap_or(param.help);
     let mut row = SliderRow::new(param.label, min..=max, default)

@@ -5,7 +5,20 @@ use super::stage_panel::frame_everything;
 use super::state::UiState;
 use super::top_bar::toggle_compare;
 use eframe::egui::{Context, Event, Key as Keyboard, Modifiers};
-use segue::session::{Command, Key, Session, Value};
+use segue::session::{Command, Key, Kind, Session, Value};
+
+/// The labs, from left to right.
+const DIGITS: [Keyboard; 9] = [
+    Keyboard::Num1,
+    Keyboard::Num2,
+    Keyboard::Num3,
+    Keyboard::Num4,
+    Keyboard::Num5,
+    Keyboard::Num6,
+    Keyboard::Num7,
+    Keyboard::Num8,
+    Keyboard::Num9,
+];
 
 /// What the keyboard asks for, unless somebody is typing.
 pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, ctx: &Context) {
@@ -59,7 +72,7 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     for (keyboard, factor) in [(Keyboard::OpenBracket, 0.5), (Keyboard::CloseBracket, 2.0)] {
         if pressed(none, keyboard) {
-            out.set_once(Key::Speed, Value::Number((params.number(Key::Speed) * factor).clamp(0.05, 4.0)));
+            out.set_once(Key::Rate, Value::Number((params.number(Key::Rate) * factor).clamp(0.05, 4.0)));
         }
     }
     if pressed(none, Keyboard::L) {
@@ -68,14 +81,11 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if pressed(none, Keyboard::C) {
         toggle_compare(session, out);
     }
-    for (keyboard, lab) in [
-        (Keyboard::Num1, "view"),
-        (Keyboard::Num2, "make"),
-        (Keyboard::Num3, "blend"),
-        (Keyboard::Num4, "transition"),
-    ] {
-        if pressed(none, keyboard) {
-            out.set_once(Key::Lab, Value::Choice(lab));
+    if let Kind::Choice(labs) = Key::Lab.param().kind {
+        for (keyboard, lab) in DIGITS.into_iter().zip(labs) {
+            if pressed(none, keyboard) {
+                out.set_once(Key::Lab, Value::Choice(lab.key));
+            }
         }
     }
     if pressed(none, Keyboard::T) {

@@ -6,9 +6,9 @@ use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
-use segue::math::Planar;
+use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point};
-use segue::session::{Key, Outcome, Pane, Session, Value};
+use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -88,7 +88,9 @@ fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
 }
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
-    ranking(panes, "seam_dps")
+    let of = |id| ranking(panes, id);
+    let (transition, cycle) = (of("seam_dps"), of("loop_seam_dps"));
+    if transition.best.is_some() { transition } else { cycle }
 }
 
 /// Differences below this are nobody's verdict.
@@ -108,11 +110,14 @@ fn ranking(panes: &[Pane], id: &str) -> Verdicts {
         .enumerate()
         .filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?)))
         .collect();
-    let unit = panes
+    let metric = panes
         .iter()
-        .find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id))
-        .map_or("", |metric| metric.unit);
-    let least = least_difference(unit);
+        .find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id));
+    // What only describes has no best.
+    let Some(metric) = metric.filter(|metric| metric.better == Better::Lower) else {
+        return Verdicts::default();
+    };
+    let least = least_difference(metric.unit);
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
     let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
     match (best, worst) {
@@ -132,6 +137,8 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         (text::SMOOTHEST, Mood::Good)
     } else if verdicts.worst == Some(index) {
         (text::ROUGHEST, Mood::Bad)
+    } else if is_beyond(pane) {
+        (text::BEYOND, Mood::Warning)
     } else {
         ("", Mood::default())
     };
@@ -170,8 +177,8 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     };
     let shown = text::METRICS
         .iter()
-        .take(room)
-        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
+        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)))
+        .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
             let ranks = ranking(panes, metric.id);
@@ -197,16 +204,27 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
+/// Whether a gait was asked for a speed that neither clip nor anything between them has.
+fn is_beyond(pane: &Pane) -> bool {
+    let cycle = pane.outcome.as_ref().and_then(|outcome| outcome.cycle);
+    matches!(cycle.map(|cycle| cycle.made), Some(CycleMade::Gait { facts, .. }) if facts.extrapolated || facts.limited)
+}
+
 /// A metric's number as it is read at a glance.
 fn written(metric: &segue::metrics::Metric) -> String {
     let Some(value) = metric.value else { return "–".to_owned() };
     let decimals = match metric.unit {
-        "s" => 2,
+        "s" | "m" | "m/s" => 2,
         "cm" => 1,
+        "%" | "frames" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };
-    format!("{value:.decimals$}{degree}")
+    let digits = format!("{value:.decimals$}");
+    // What rounds to nothing has no sign.
+    let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
+    let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };
+    format!("{}{degree}", digits.replace('-', "−"))
 }
 
 struct Words {
@@ -246,6 +264,19 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: Key::Method.param().spoken(session.params().get(Key::Method)),
+        },
+        "speed" => Words {
+            strong: name(Key::A),
+            text: format!("~ {}", name(Key::B)),
+            secondary: match pane.outcome.as_ref().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made) {
+                Some(CycleMade::Gait { asked_mps, .. }) => format!("{asked_mps:.2} m/s"),
+                _ => String::new(),
+            },
+        },
+        "loop" => Words {
+            strong: name(Key::A),
+            text: String::new(),
+            secondary: Key::LoopMethod.param().spoken(session.params().get(Key::LoopMethod)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),
@@ -387,22 +418,26 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 
 /// Stops following and shows the whole way of every pane.
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
-    let outcomes = || session.panes().iter().filter_map(|pane| pane.outcome.as_deref());
-    let places = outcomes().flat_map(|outcome| outcome.motion.ground_frames.iter().map(Planar::origin));
+    let outcomes = || session.panes().iter().filter_map(|pane| pane.shown_at(0.0));
+    let places = outcomes().flat_map(|shown| {
+        let frames = &shown.outcome.motion.ground_frames;
+        frames.iter().map(move |frame| shown.place.after(frame).origin())
+    });
     let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     });
     let Some(first) = outcomes().next().filter(|_| low.is_finite()) else {
         return;
     };
-    let height = first.motion.roles.body_height(first.motion.clip.skeleton());
+    let motion = &first.outcome.motion;
+    let height = motion.roles.body_height(motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
     let mut camera = camera_of(session.params());
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = camera.target - resting_point(first);
+    let pan = camera.target - resting_point(first.outcome, &first.place);
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
         (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),

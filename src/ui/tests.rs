@@ -354,3 +354,66 @@ fn a_clip_without_a_motion_says_why() {
     harness.get_by_label_contains("alone, waits for its skeleton");
     picture("waits-desk-dark", &mut harness);
 }
+
+#[test]
+fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
+    for (name, size, theme, link) in [
+        ("speed-desk-dark", DESK, DARK, "lab=speed&play=off&t=1"),
+        ("speed-desk-light", DESK, LIGHT, "lab=speed&speed=9&foot_lock=on&play=off"),
+        (
+            "speed-compare-desk-dark",
+            DESK,
+            DARK,
+            "lab=speed&compare=speed:1.4,2.2,3.9&play=off",
+        ),
+        ("speed-phone-dark", PHONE, DARK, "lab=speed&play=off"),
+        ("speed-projector", vec2(1280.0, 720.0), HALL, "lab=speed&play=off"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label(text::SPEED_ABOUT);
+        assert_eq!(
+            harness.query_all_by_label_contains("Too far beyond both clips").count(),
+            usize::from(link.contains("speed=9"))
+        );
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=speed&play=off"));
+    press("A, half way, B", &mut harness);
+    assert_eq!(harness.state().session.params().text(Key::Compare), "speed:1.4,2.45,3.5");
+    press("One pane", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+}
+
+#[test]
+fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
+    for (name, size, theme, link) in [
+        ("loop-desk-dark", DESK, DARK, "lab=loop&play=off&t=1"),
+        (
+            "loop-desk-light",
+            DESK,
+            LIGHT,
+            "lab=loop&a=walk_left&loop_method=linear&loop_from=0.5&foot_lock=on&play=off",
+        ),
+        (
+            "loop-compare-desk-dark",
+            DESK,
+            DARK,
+            "lab=loop&compare=loop_method:exact,end,both&play=off",
+        ),
+        ("loop-phone-dark", PHONE, DARK, "lab=loop&play=off"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label_contains("Makes a seamless cycle");
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=loop&play=off"));
+    harness.get_by_label_contains("solved so that pose and velocity close");
+    press("Exact against classic", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 3);
+    press("Exact against classic", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+    // The keys follow the tabs.
+    harness.key_press(Keyboard::Num5);
+    harness.run();
+    assert_eq!(harness.state().session.params().text(Key::Lab), "speed");
+}

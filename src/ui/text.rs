@@ -1,5 +1,6 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
+use segue::gait::GaitFacts;
 use segue::session::export::ExportFormat;
 use segue::session::{Entry, Origin, Retargeted};
 
@@ -21,6 +22,7 @@ pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
 pub(crate) const HELP: &str = "Shortcuts";
 pub(crate) const MENU: &str = "Menu";
+pub(crate) const MORE_LABS: &str = "More labs";
 pub(crate) const UNDO: &str = "Undo";
 pub(crate) const REDO: &str = "Redo";
 pub(crate) const REMOVE: &str = "Remove";
@@ -145,7 +147,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("[ ]", "slower, faster"),
     ("L", "loop"),
     ("C", "compare full, half, third"),
-    ("1 2 3 4", "View, Make, Blend, Transition"),
+    ("1 … 9", "the labs, from left to right"),
     ("T", "from above"),
     ("F", "frame everything"),
     ("G", "camera follows or stands"),
@@ -160,6 +162,12 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
 
 /// The artefact numbers under a pane, by id, with the short names that fit there. The first four are what a narrow pane has room for.
 pub(crate) const METRICS: &[(&str, &str)] = &[
+    ("speed_mps", "m/s"),
+    ("stride_m", "stride m"),
+    ("cadence_spm", "steps/min"),
+    ("weight_percent", "B %"),
+    ("loop_seam_deg", "seam"),
+    ("loop_seam_dps", "seam °/s"),
     ("seam_dps", "seam °/s"),
     ("skate_cm", "skate cm"),
     ("skate_before_cm", "unlocked cm"),
@@ -167,7 +175,70 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("spin_deg", "spin"),
     ("seam_deg", "jump"),
     ("penetration_cm", "sunk cm"),
+    ("loop_before_deg", "bare seam"),
+    ("cycle_s", "cycle s"),
+    ("cycle_frames", "frames"),
+    ("cycle_m", "way m"),
+    ("cycle_turn_deg", "turn"),
 ];
+
+/// What the Speed lab does.
+pub(crate) const SPEED_ABOUT: &str =
+    "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
+/// Opens the speeds of A and B and the one between.
+pub(crate) const THREE_SPEEDS: &str = "A, half way, B";
+/// A chip over a pane whose speed lies beyond both clips.
+pub(crate) const BEYOND: &str = "beyond both clips";
+
+/// How fast both clips go.
+pub(crate) fn gaits([a, b]: [f64; 2]) -> String {
+    format!("A goes at {a:.2} m/s, B at {b:.2}.")
+}
+
+/// That the speed asked for lies beyond both clips; `None` where it does not.
+pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<String> {
+    let range = format!("{:.2} to {:.2} m/s", a.min(b), a.max(b));
+    if facts.limited {
+        Some(format!(
+            "Too far beyond both clips ({range}): this is {:.2} m/s, the nearest that can be made of them.",
+            facts.speed_mps
+        ))
+    } else if facts.extrapolated {
+        Some(format!(
+            "Beyond both clips ({range}): the pose is a guess, and may bend what does not bend."
+        ))
+    } else {
+        None
+    }
+}
+
+/// A mark on the timeline.
+pub(crate) const CYCLE_BEGINS: &str = "The cycle begins again";
+/// What the Loop lab does.
+pub(crate) const LOOP_ABOUT: &str = "Makes a seamless cycle of a part of A: the difference between its ends is spread over it.";
+/// What the half-life does to a loop.
+pub(crate) const LOOP_HALF_LIFE: &str = "How far into the cycle the correction reaches from its ends.";
+/// Several methods on the same cycle.
+pub(crate) const LOOP_SHOOT_OUT: &str = "Exact against classic";
+/// What the button opens.
+pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
+
+/// What a way to close a loop does.
+pub(crate) fn loop_method(method: &str) -> &'static str {
+    match method {
+        "both" => "Springs from both ends, as they are: what has not died away at the other end stays as a seam.",
+        "start" => "A spring at the beginning alone takes all of the difference.",
+        "end" => "A spring at the end alone takes all of the difference.",
+        "linear" => "Evenly over the whole cycle: the pose closes, its velocity does not.",
+        "cubic" => "A cubic over the whole cycle: pose and velocity close, and every pose bends a little.",
+        _ => "Springs from both ends, solved so that pose and velocity close exactly.",
+    }
+}
+
+/// How the ends of a cycle were found.
+pub(crate) fn ends_found(distance_cm: f64) -> String {
+    format!("{FOUND}: the ends that fit best, {distance_cm:.1} cm apart.")
+}
 
 /// Several methods on the same transition.
 pub(crate) const SHOOT_OUT: &str = "Shoot-out of methods";

@@ -1,13 +1,13 @@
 //! The bottom panel: what happens in time.
 
-use super::kit::{self, Curves, Part, Series, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use super::kit::{self, Curves, Moment, Part, Series, Timeline, TimelineEvent, Track, Transport, TransportEvent};
 use super::out::Out;
 use super::state::Layout;
 use super::text;
 use super::theme::palette_of;
-use eframe::egui::{RectAlign, Ui};
+use eframe::egui::{Color32, RectAlign, Ui};
 use segue::clip::joint_curve;
-use segue::session::{Command, Key, Kind, Motion, Outcome, Session, Slot, Value, curve_kind, frame_at, joint_of};
+use segue::session::{Command, CycleMade, Key, Kind, Motion, Outcome, Session, Slot, Value, curve_kind, frame_at, joint_of};
 use segue::skeleton::Role;
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     let transport = Transport {
         playing: params.is_on(Key::Play),
         repeat: params.is_on(Key::Loop),
-        speed: params.number(Key::Speed),
+        speed: params.number(Key::Rate),
         now: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
         frames: clip.frames(),
@@ -46,7 +46,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     match row.inner {
         Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
         Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
-        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Speed, Value::Number(speed)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
         Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
         None => {}
     }
@@ -79,8 +79,11 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
             .map_or_else(String::new, |entry| entry.name.clone())
     });
     let made = params.text(Key::Lab) == "make";
+    let round = round_name(outcome, &names);
     let tracks = if made {
         vec![whole_track(Part::Result, params.text(Key::Gait), outcome)]
+    } else if outcome.cycle.is_some() {
+        vec![whole_track(Part::Result, &round, outcome)]
     } else {
         tracks(outcome, &names)
     };
@@ -91,6 +94,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         include: (quantity != "turn").then_some(0.0),
         series: &series,
     };
+    let seams = seams(outcome, palette.accent);
     let timeline = Timeline {
         duration: session.duration_secs(),
         now: session.now_secs(),
@@ -100,7 +104,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         transition_editable: session.panes().len() == 1,
         in_point: params.optional(Key::In),
         out_point: params.optional(Key::Out),
-        moments: &[],
+        moments: &seams,
         curves: (layout != Layout::Phone).then_some(curves),
     };
     for event in kit::timeline_ui(&timeline, ui) {
@@ -127,6 +131,29 @@ fn timeline_event(event: TimelineEvent, outcome: &Outcome, out: &mut Out) {
         TimelineEvent::ScrubEnded | TimelineEvent::EditStarted => {}
         TimelineEvent::EditEnded => out.commands.push(Command::Settle),
     }
+}
+
+/// What goes round, in a word.
+fn round_name(outcome: &Outcome, [a, b]: &[String; 2]) -> String {
+    match outcome.cycle.map(|cycle| cycle.made) {
+        Some(CycleMade::Gait { facts, .. }) => format!("{a} ~ {b} · {:.2} m/s", facts.speed_mps),
+        Some(CycleMade::Cut { .. }) => a.clone(),
+        None => String::new(),
+    }
+}
+
+/// Where each further cycle begins.
+fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
+    let Some(cycle) = outcome.cycle.filter(|cycle| cycle.secs > 0.0) else {
+        return Vec::new();
+    };
+    let count = (outcome.duration_secs() / cycle.secs).round() as usize;
+    let seam = |round: usize| Moment {
+        time: round as f64 * cycle.secs,
+        color,
+        name: text::CYCLE_BEGINS,
+    };
+    (1..count).map(seam).collect()
 }
 
 /// One clip that is all there is.

@@ -1,5 +1,6 @@
 //! The bar at the top: which lab, and what concerns the whole page.
 
+use super::cycle_panels::{compare_loops, compare_speeds};
 use super::kit::{self, Button, Icon, MenuItem};
 use super::out::{Action, Out};
 use super::state::{Layout, UiState};
@@ -42,7 +43,13 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
         .iter()
         .find(|lab| lab.key == session.params().text(Key::Lab))
         .map_or("", |lab| lab.key);
-    kit::tabs_ui(Key::Lab.param().label, chosen, &options, ui.available_width(), ui)
+    kit::tabs_ui(
+        [Key::Lab.param().label, text::MORE_LABS],
+        chosen,
+        &options,
+        ui.available_width(),
+        ui,
+    )
 }
 
 /// From right to left: the link, the theme, and what the width leaves room for; the rest is in a menu.
@@ -123,13 +130,15 @@ fn other_theme(ui: &Ui) -> Value {
     Value::Choice(if theme_of(ui).dark { "light" } else { "dark" })
 }
 
-/// Opens "full, half, third" of the lab's first number, or goes back to one pane.
+/// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or goes back to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     if session.panes().len() > 1 {
         out.set_once(Key::Compare, Value::Text(String::new()));
         return;
     }
     let key = match session.params().text(Key::Lab) {
+        "speed" => return compare_speeds(session, out),
+        "loop" => return compare_loops(session, out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         _ => Key::BlendWindow,

@@ -118,6 +118,16 @@ fn the_speed_asked_for_is_the_speed_made() {
             "{speed}"
         );
         assert_eq!(many.clip.frames(), 361);
+        // Further cycles repeat the first, and go on from where it ends.
+        let (steps, thrice) = (one.clip.frames() - 1, blend.cycles_at(speed, 3).unwrap().clip);
+        assert_eq!(thrice.frames(), 3 * steps + 1);
+        for frame in [0, steps / 3, steps] {
+            let [here, later] = [&one.clip, &thrice].map(|clip| clip.rotations(frame + if clip == &thrice { steps } else { 0 }));
+            assert!(
+                here.iter().zip(later).skip(1).all(|(a, b)| quat::angle_between(*a, *b) < 1e-4),
+                "{speed} {frame}"
+            );
+        }
     }
 }
 

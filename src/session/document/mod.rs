@@ -1,12 +1,13 @@
 //! The document itself: what it holds, and what commands do to it.
 
+mod going_round;
 mod loading;
 mod panes;
 
 pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
-pub use panes::Pane;
+pub use panes::{Pane, Shown};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
@@ -15,7 +16,8 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
+use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Outcome, Slot};
+use super::recipe::{made_id, made_motion, made_params, middle_mps, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::synth;
@@ -83,6 +85,8 @@ pub struct Session {
     notices: Notices,
     panes: Vec<Pane>,
     blender: Blender,
+    gaits: GaitFinder,
+    cycles: CycleFinder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -107,6 +111,8 @@ impl Session {
             notices: Notices::default(),
             panes: Vec::new(),
             blender: Blender::default(),
+            gaits: GaitFinder::default(),
+            cycles: CycleFinder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -233,12 +239,12 @@ impl Session {
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut changed = self.notices.tick(dt_secs);
         if self.params.is_on(Key::Play) {
-            let (now, moving) = self.span().advance(
-                self.now_secs(),
-                dt_secs,
-                self.params.number(Key::Speed),
-                self.params.is_on(Key::Loop),
-            );
+            let (span, before, rate) = (self.span(), self.now_secs(), self.params.number(Key::Rate));
+            let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
+            let rounds = span.rounds(before, dt_secs, rate);
+            if moving && rounds > 0 {
+                self.come_round(rounds);
+            }
             self.set_unchecked(Key::Time, Value::Number(now));
             if !moving {
                 self.set_unchecked(Key::Play, Value::Switch(false));
@@ -246,7 +252,8 @@ impl Session {
             }
             changed = true;
         }
-        changed
+        let gait_secs = dt_secs * self.params.number(Key::Rate);
+        self.glide(gait_secs) || changed
     }
 
     /// Sets a value that is known to fit.
@@ -260,6 +267,7 @@ impl Session {
     /// # Errors
     /// [`CommandError`] says what does not fit; the document is then as it was.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        let mut held = Some(self.held());
         match command {
             Command::Set(values) => self.set(values)?,
             Command::Reset(key) => {
@@ -270,6 +278,7 @@ impl Session {
             Command::OpenLink(query) => {
                 self.remember(None);
                 self.open_link(&query);
+                held = None;
             }
             Command::Assign(slot, id) => {
                 let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
@@ -324,13 +333,24 @@ impl Session {
             Command::StopReading(id) => self.stop_reading(id),
         }
         self.refresh();
+        match held {
+            Some(held) => self.go_on_from(&held),
+            None => self.begin_anew(),
+        }
         Ok(())
     }
 
     /// The value that Segue chose for a parameter that is left to it.
     #[must_use]
     pub fn automatic_value(&self, key: Key) -> Option<f64> {
-        let transition = self.main_outcome()?.transition;
+        let outcome = self.main_outcome()?;
+        let (transition, made) = (outcome.transition, outcome.cycle.map(|cycle| cycle.made));
+        match (key, made) {
+            (Key::Speed, Some(CycleMade::Gait { clips_mps, .. })) => return Some(middle_mps(clips_mps)),
+            (Key::LoopFrom, Some(CycleMade::Cut { from_secs, .. })) => return Some(from_secs),
+            (Key::LoopTo, Some(CycleMade::Cut { to_secs, .. })) => return Some(to_secs),
+            _ => {}
+        }
         match key {
             Key::LeaveA => transition.map(|t| t.leave_a_secs),
             Key::EnterB => transition.map(|t| t.enter_b_secs),
@@ -591,6 +611,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
     }
 }
 
+#[cfg(test)]
+mod going_round_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]

@@ -1,12 +1,14 @@
 //! From the library and the parameters to results: what has changed is computed again, and nothing else.
 
 use super::Session;
+use super::going_round::{Glide, durations};
+use crate::math::Planar;
 use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Group, Key, Params, Value};
-use crate::session::recipe::{BlendInputs, Outcome, made_id, made_motion, made_params, preset_motion};
+use crate::session::recipe::{BlendInputs, LoopInputs, Outcome, Slot, SpeedInputs, made_id, made_motion, made_params, preset_motion};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -18,7 +20,42 @@ pub struct Pane {
     pub outcome: Option<Arc<Outcome>>,
     /// Why there is no newer one: what is missing and what to do.
     pub problem: Option<String>,
-    inputs: Option<Inputs>,
+    pub(super) inputs: Option<Inputs>,
+    /// Where a result that goes round has got to: it lies there in the world that is shown.
+    pub(super) place: Planar,
+    /// A gait that has not yet the speed of the result.
+    pub(super) glide: Option<Glide>,
+}
+
+/// What a pane has on the stage at some time.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The pane's result; a gait on its way to it, where the speed has just been changed.
+    pub outcome: &'a Arc<Outcome>,
+    /// The time in its motion, seconds.
+    pub secs: f64,
+    /// Where the motion lies in the world that is shown.
+    pub place: Planar,
+}
+
+impl Pane {
+    /// What is shown at a time of the timeline; nothing while there is no result. A result that goes round and is shorter than the timeline begins
+    /// again, and walks on from where it is.
+    #[must_use]
+    pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
+        let own = self.outcome.as_ref()?;
+        let gliding = self.glide.as_ref().and_then(|glide| {
+            let [own_secs, gliding_secs] = durations(own, &glide.outcome)?;
+            Some((&glide.outcome, secs / own_secs * gliding_secs))
+        });
+        let (outcome, secs) = gliding.unwrap_or((own, secs));
+        let (secs, place) = outcome.around(secs);
+        Some(Shown {
+            outcome,
+            secs,
+            place: self.place.after(&place),
+        })
+    }
 }
 
 /// Something that takes longer than a frame.
@@ -36,10 +73,12 @@ pub struct Job {
 
 /// What a result depends on. Equal inputs, equal result: nothing is computed again.
 #[derive(Clone, Debug)]
-enum Inputs {
+pub(super) enum Inputs {
     View(Arc<Motion>),
     Make(String),
     Blend(BlendInputs),
+    Speed(SpeedInputs),
+    Loop(LoopInputs),
 }
 
 impl PartialEq for Inputs {
@@ -48,6 +87,8 @@ impl PartialEq for Inputs {
             (Self::View(a), Self::View(b)) => Arc::ptr_eq(a, b),
             (Self::Make(a), Self::Make(b)) => a == b,
             (Self::Blend(a), Self::Blend(b)) => a == b,
+            (Self::Speed(a), Self::Speed(b)) => a == b,
+            (Self::Loop(a), Self::Loop(b)) => a == b,
             _ => false,
         }
     }
@@ -82,6 +123,16 @@ impl Session {
             size: None,
         });
         self.reading_jobs().chain(matching).collect()
+    }
+
+    /// Whether the clip in a slot is part of what the lab shows.
+    #[must_use]
+    pub fn uses(&self, slot: Slot) -> bool {
+        match (self.params.text(Key::Lab), slot) {
+            ("make", _) => false,
+            (_, Slot::A) => true,
+            (lab, Slot::B) => !matches!(lab, "view" | "loop"),
+        }
     }
 
     /// The motion of a clip: made or asked for when it is not there yet.
@@ -133,9 +184,7 @@ impl Session {
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
-        let compare = self
-            .compare()
-            .filter(|compare| belongs_to(compare.key.param().group, self.params.text(Key::Lab)));
+        let compare = self.compare().filter(|compare| belongs_to(compare.key, self.params.text(Key::Lab)));
         let variants: Vec<Option<(Key, Value)>> = match &compare {
             Some(compare) => compare
                 .values
@@ -153,6 +202,8 @@ impl Session {
                 outcome: None,
                 problem: None,
                 inputs: None,
+                place: Planar::IDENTITY,
+                glide: None,
             });
             pane.variant.clone_from(&variant);
             let mut params = self.params.clone();
@@ -169,6 +220,13 @@ impl Session {
         let inputs = match params.text(Key::Lab) {
             "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
             "make" => Ok(Inputs::Make(made_id(params))),
+            "speed" => self.motion_of(params.text(Key::A)).and_then(|a| {
+                let b = self.motion_of(params.text(Key::B))?;
+                self.gaits.inputs(&a, &b, params).map(Inputs::Speed)
+            }),
+            "loop" => (self.motion_of(params.text(Key::A)))
+                .and_then(|motion| self.cycles.inputs(&motion, params))
+                .map(Inputs::Loop),
             _ => self.motion_of(params.text(Key::A)).and_then(|a| {
                 let b = self.motion_of(params.text(Key::B))?;
                 self.blender.inputs(&a, &b, params, match_window).map(Inputs::Blend)
@@ -181,6 +239,8 @@ impl Session {
                     Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
                     Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
                     Inputs::Blend(blend) => blend.run(),
+                    Inputs::Speed(speed) => speed.run(),
+                    Inputs::Loop(cycle) => cycle.run(),
                 };
                 match outcome {
                     Ok(outcome) => {
@@ -202,13 +262,16 @@ impl Session {
     }
 }
 
-/// Whether a lab depends on the parameters of a group. A transition can be a dissolve, and takes its window from there.
-fn belongs_to(group: Group, lab: &str) -> bool {
+/// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
+fn belongs_to(key: Key, lab: &str) -> bool {
+    let group = key.param().group;
     match lab {
         "view" => group == Group::View,
         "make" => group == Group::Make,
         "blend" => group == Group::Blend,
         "transition" => matches!(group, Group::Blend | Group::Transition),
+        "speed" => group == Group::Speed,
+        "loop" => group == Group::Loop || key == Key::HalfLife,
         _ => false,
     }
 }

@@ -38,19 +38,19 @@ struct Place {
 
 /// Two clips made ready for each other.
 #[derive(Debug)]
-struct Pair {
-    a: Arc<Motion>,
-    b: Arc<Motion>,
+pub(super) struct Pair {
+    pub(super) a: Arc<Motion>,
+    pub(super) b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
-    incoming: Arc<Motion>,
+    pub(super) incoming: Arc<Motion>,
     /// What dissolve and metrics know of A and of `incoming`.
-    profiles: [Profile; 2],
+    pub(super) profiles: [Profile; 2],
     /// How B came onto A's skeleton, where that is not its own.
-    retargeted: Option<Arc<Retargeted>>,
+    pub(super) retargeted: Option<Arc<Retargeted>>,
 }
 
 impl Pair {
-    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
+    pub(super) fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
         let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
         let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
         let incoming = if same_skeleton && same_rate {
@@ -405,6 +405,7 @@ impl BlendInputs {
             motion: Arc::new(motion),
             sources,
             transition: Some(transition),
+            cycle: None,
             retargeted: pair.retargeted.clone(),
             metrics,
         })

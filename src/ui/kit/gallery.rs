@@ -142,7 +142,7 @@ fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         ui.add_space(space::S);
         let buttons = if phone { 130.0 } else { 430.0 * scale };
         let width = ui.available_width() - buttons;
-        if let Some(lab) = tabs_ui("Lab", mock.lab, &LABS, width, ui) {
+        if let Some(lab) = tabs_ui(["Lab", "More labs"], mock.lab, &LABS, width, ui) {
             mock.lab = lab;
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -50,7 +50,7 @@ pub(crate) use segmented::segmented_ui;
 pub(crate) use slider_row::{Mark, SliderRow, Source, slider_row_ui};
 pub(crate) use switch_row::switch_row_ui;
 pub(crate) use tabs::tabs_ui;
-pub(crate) use timeline::{Timeline, TimelineEvent, Track, timeline_ui};
+pub(crate) use timeline::{Moment, Timeline, TimelineEvent, Track, timeline_ui};
 pub(crate) use transport::{Transport, TransportEvent, transport_ui};
 pub(crate) use tree::{Tree, TreeRow, tree_ui};
 pub(crate) use words::ENGLISH;

@@ -483,7 +483,7 @@ fn tabs_fold_into_a_menu_where_there_is_no_room() {
     const LABS: [(usize, &str); 4] = [(0, "View"), (1, "Blend"), (2, "Transition"), (3, "Graph")];
     for (width, folded) in [(600.0, false), (120.0, true)] {
         let mut harness = bench(1, move |chosen, ui| {
-            let picked = ui.horizontal(|ui| tabs_ui("Lab", *chosen, &LABS, width, ui)).inner;
+            let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &LABS, width, ui)).inner;
             *chosen = picked.unwrap_or(*chosen);
         });
         assert_eq!(harness.query_by_label("Lab").is_some(), folded);
@@ -495,4 +495,36 @@ fn tabs_fold_into_a_menu_where_there_is_no_room() {
         harness.run();
         assert_eq!(*harness.state(), 3);
     }
+}
+
+#[test]
+fn of_many_tabs_those_without_room_stand_in_a_menu() {
+    const NAMES: [&str; 10] = [
+        "View",
+        "Make",
+        "Blend",
+        "Transition",
+        "Speed",
+        "Loop",
+        "Layers",
+        "Register",
+        "Graph",
+        "Path",
+    ];
+    let labs: Vec<(usize, &str)> = NAMES.into_iter().enumerate().collect();
+    let mut harness = bench(0, move |chosen, ui| {
+        let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 280.0, ui)).inner;
+        *chosen = picked.unwrap_or(*chosen);
+    });
+    assert!(harness.query_by_label("Blend").is_some() && harness.query_by_label("Path").is_none());
+    harness.get_by_label("More labs").click();
+    harness.run();
+    harness.get_by_label("Path").click();
+    harness.run();
+    assert_eq!(*harness.state(), 9);
+    // It has taken the place of the last that was there.
+    harness.get_by_label("Path");
+    harness.get_by_label("View").click();
+    harness.run();
+    assert_eq!(*harness.state(), 0);
 }

@@ -1,0 +1,154 @@
+//! The Speed lab: two gaits at a speed.
+
+use super::blend::Pair;
+use super::rounds::{Rounds, fact, rounds};
+use super::{Cycle, CycleMade, Outcome};
+use crate::clip::ground_speed;
+use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
+use crate::session::motion::Motion;
+use crate::session::params::{Key, Kind, Params};
+use std::sync::Arc;
+
+/// The cycles of two clips, found once.
+#[derive(Debug)]
+struct Gaits {
+    pair: Pair,
+    cycles: [GaitCycle; 2],
+}
+
+/// What a gait at a speed depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(in crate::session) struct SpeedInputs {
+    gaits: Arc<Gaits>,
+    alignment: PhaseAlignment,
+    asked_mps: f64,
+    foot_lock: bool,
+}
+
+impl PartialEq for SpeedInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.gaits, &other.gaits)
+            && (self.alignment, self.foot_lock) == (other.alignment, other.foot_lock)
+            && self.asked_mps == other.asked_mps
+    }
+}
+
+/// Finds the cycles of two clips, and keeps them while the clips stay.
+#[derive(Debug, Default)]
+pub(in crate::session) struct GaitFinder {
+    known: Option<Arc<Gaits>>,
+}
+
+impl GaitFinder {
+    /// What the parameters ask for, of these two clips.
+    pub(in crate::session) fn inputs(&mut self, a: &Arc<Motion>, b: &Arc<Motion>, params: &Params) -> Result<SpeedInputs, String> {
+        let gaits = self.gaits(a, b)?;
+        let clips_mps = [0, 1].map(|clip: usize| gaits.cycles[clip].speed_mps());
+        Ok(SpeedInputs {
+            alignment: if params.is_on(Key::PhaseAlign) {
+                PhaseAlignment::Feet
+            } else {
+                PhaseAlignment::None
+            },
+            asked_mps: params.optional(Key::Speed).unwrap_or_else(|| middle_mps(clips_mps)),
+            foot_lock: params.is_on(Key::FootLock),
+            gaits,
+        })
+    }
+
+    fn gaits(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Gaits>, String> {
+        if let Some(gaits) = &self.known
+            && Arc::ptr_eq(&gaits.pair.a, a)
+            && Arc::ptr_eq(&gaits.pair.b, b)
+        {
+            return Ok(Arc::clone(gaits));
+        }
+        let pair = Pair::new(a, b)?;
+        let [first, second] = &pair.profiles;
+        let find = |profile: &crate::metrics::Profile| {
+            let found = GaitCycle::find(profile.source(), profile.contacts());
+            found.map_err(|error| error.to_string())
+        };
+        let cycles = [find(first)?, find(second)?];
+        let gaits = Arc::new(Gaits { pair, cycles });
+        self.known = Some(Arc::clone(&gaits));
+        Ok(gaits)
+    }
+}
+
+/// The speed half way between two, on a step of the slider.
+pub(in crate::session) fn middle_mps([a, b]: [f64; 2]) -> f64 {
+    let Kind::Number { min, max, step, .. } = Key::Speed.param().kind else {
+        return 0.5 * (a + b);
+    };
+    ((0.5 * (a + b) / step).round() * step).clamp(min, max)
+}
+
+impl SpeedInputs {
+    /// Whether it is the same gaits, laid on each other in the same way.
+    pub(in crate::session) fn differs_in_speed_alone(&self, other: &Self) -> bool {
+        let asked_mps = other.asked_mps;
+        Self { asked_mps, ..self.clone() } == *other
+    }
+
+    /// The gait at another speed than the one asked for.
+    pub(in crate::session) fn run_at(&self, speed_mps: f64) -> Result<Outcome, String> {
+        let asked_mps = speed_mps;
+        Self { asked_mps, ..self.clone() }.run()
+    }
+
+    /// The gait.
+    pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
+        let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
+        let options = SpeedOptions {
+            alignment: self.alignment,
+            ..SpeedOptions::default()
+        };
+        let roles = &pair.a.roles;
+        let blend = SpeedBlend::new(a, b, roles, &options).map_err(|error| error.to_string())?;
+        let fps = pair.a.clip.fps();
+        let one = blend.cycle_at(self.asked_mps).map_err(|error| error.to_string())?;
+        let cycle_frames = one.clip.frames() - 1;
+        let made = rounds(roles, cycle_frames, fps, self.foot_lock, |cycles| {
+            let made = blend.cycles_at(self.asked_mps, cycles).map_err(|error| error.to_string())?;
+            Ok((made.clip, made.contacts))
+        })?;
+        let Rounds { motion, mut slides } = made;
+        let facts = one.facts;
+        let measured = f64::from(ground_speed(&motion.ground_frames, fps));
+        let mut metrics = vec![
+            fact(
+                "speed_mps",
+                "Speed",
+                measured,
+                "m/s",
+                "The way over the ground by its time, measured on the result.",
+            ),
+            fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
+            fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
+            fact(
+                "weight_percent",
+                "Weight of B",
+                100.0 * facts.weight,
+                "%",
+                "How much of B is in the pose: 0 at the speed of A, 100 at that of B, beyond it outside of both.",
+            ),
+        ];
+        metrics.append(&mut slides);
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources: Vec::new(),
+            transition: None,
+            cycle: Some(Cycle {
+                secs: cycle_frames as f64 / fps,
+                made: CycleMade::Gait {
+                    facts,
+                    asked_mps: self.asked_mps,
+                    clips_mps: blend.speeds_mps(),
+                },
+            }),
+            retargeted: pair.retargeted.clone(),
+            metrics,
+        })
+    }
+}

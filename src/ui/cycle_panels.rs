@@ -1,0 +1,146 @@
+//! The panels of the Speed and the Loop lab: results that go round.
+
+use super::kit::{self, Button, Mark, Part};
+use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
+use super::out::Out;
+use super::param_row::{Detail, param_row_ui};
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Color32, RichText, Ui};
+use segue::session::{Cycle, CycleMade, Key, Session, Slot, Value};
+
+/// The upper end of the slider before the clips are known, metres per second.
+const SLIDER_MPS: f64 = 6.0;
+/// And how far it goes beyond the faster clip.
+const SLIDER_BEYOND: f64 = 1.6;
+
+/// Two gaits at a speed.
+pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
+    pair_ui(session, out, ui);
+    let palette = palette_of(ui);
+    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
+    let mut detail = Detail {
+        max: Some(SLIDER_MPS),
+        ..Detail::default()
+    };
+    let mut warning = None;
+    if let Some(CycleMade::Gait { facts, clips_mps, .. }) = made {
+        let mark = |part: Part, value| Mark {
+            value,
+            color: part.fill(palette).0,
+        };
+        detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
+        detail.help = Some(text::gaits(clips_mps));
+        let most = clips_mps[0].max(clips_mps[1]);
+        detail.max = Some((SLIDER_BEYOND * most).max(session.params().number(Key::Speed)));
+        warning = text::beyond_gaits(&facts, clips_mps);
+    }
+    param_row_ui(Key::Speed, &detail, session, out, ui);
+    if let (Some(warning), None) = (warning, session.compare()) {
+        note_ui(&warning, palette.warning, ui);
+    }
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
+    if kit::button_ui(Button::new(if on { text::COMPARE_OFF } else { text::THREE_SPEEDS }), ui).clicked() {
+        compare_speeds(session, out);
+    }
+    ui.add_space(space::S);
+    param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
+    note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// The speed of A, that of B, and the one between them side by side, or back to one pane.
+pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
+    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
+    let query = match made {
+        Some(CycleMade::Gait { clips_mps: [a, b], .. }) if !on => {
+            let words = [a, 0.5 * (a + b), b].map(|speed| Key::Speed.param().check(Value::Number(speed)).ok());
+            let words: Vec<String> = words.iter().flatten().map(|speed| Key::Speed.param().format(speed)).collect();
+            format!("{}:{}", Key::Speed.param().name, words.join(","))
+        }
+        _ => String::new(),
+    };
+    out.set_once(Key::Compare, Value::Text(query));
+}
+
+/// A clip that becomes a cycle.
+pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    ui.add_space(space::S);
+    let params = session.params();
+    let cycle = session.main_outcome().and_then(|outcome| outcome.cycle);
+    let duration = session
+        .slot(Slot::A)
+        .and_then(|entry| entry.motion.as_ref())
+        .map(|motion| motion.clip.duration_secs());
+    let automatic = |key| params.optional(key).is_none();
+    let place = |key, said_below: bool| Detail {
+        max: duration,
+        help: Some(match (automatic(key), said_below) {
+            (false, _) => text::BY_HAND.to_owned(),
+            (true, true) => String::new(),
+            (true, false) => found_sentence(cycle),
+        }),
+        ..Detail::default()
+    };
+    param_row_ui(Key::LoopFrom, &place(Key::LoopFrom, automatic(Key::LoopTo)), session, out, ui);
+    param_row_ui(Key::LoopTo, &place(Key::LoopTo, false), session, out, ui);
+    param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
+    // With several methods side by side, what any of them has to set is there.
+    let methods: Vec<String> = match session.compare().filter(|compare| compare.key == Key::LoopMethod) {
+        Some(compare) => compare.values.iter().map(|value| Key::LoopMethod.param().format(value)).collect(),
+        None => vec![params.text(Key::LoopMethod).to_owned()],
+    };
+    if let [method] = methods.as_slice() {
+        note_ui(text::loop_method(method), palette_of(ui).muted, ui);
+    }
+    let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
+    if any(&["exact", "both", "start", "end"]) {
+        let detail = Detail {
+            help: Some(text::LOOP_HALF_LIFE.to_owned()),
+            ..Detail::default()
+        };
+        param_row_ui(Key::HalfLife, &detail, session, out, ui);
+        compare_ui(Key::HalfLife, session, out, ui);
+    }
+    if any(&["exact", "both", "linear", "cubic"]) {
+        param_row_ui(Key::LoopRatio, &Detail::default(), session, out, ui);
+    }
+    let shoot_out = methods.len() > 1;
+    if kit::button_ui(Button::new(text::LOOP_SHOOT_OUT).selected(shoot_out), ui).clicked() {
+        compare_loops(session, out);
+    }
+    ui.add_space(space::S);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// Several methods side by side, or back to one pane.
+pub(super) fn compare_loops(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::LoopMethod);
+    let query = if on { "" } else { text::LOOP_SHOOT_OUT_QUERY };
+    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+}
+
+/// How the ends were found, and how well they fit.
+fn found_sentence(cycle: Option<Cycle>) -> String {
+    match cycle.map(|cycle| cycle.made) {
+        Some(CycleMade::Cut { distance_cm, .. }) => text::ends_found(distance_cm),
+        _ => format!("{}.", text::FOUND),
+    }
+}
+
+/// A sentence in small type.
+fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.add_space(space::XS);
+}
