@@ -1,5 +1,5 @@
 use super::moving::View;
-use super::{Inertialization, Inertializer};
+use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
     Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, common_carrier, dissolve, laid_on,
     moving_joints,
@@ -72,19 +72,21 @@ pub fn concatenate(a: &Source, leave: usize, b: &Source, enter: usize, options: 
     let (window, law) = match options.method {
         Method::Cut => (0, WeightLaw::default()),
         Method::Dissolve { window, law } => (window, law),
-        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options),
+        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options, |_, _| {}),
     };
     let (align, root) = (options.align, options.root);
     dissolve(a, leave, b, enter, &DissolveOptions { window, law, align, root })
 }
 
-fn inertialize(
+/// `seen` gets the two poses between which the differences are taken, and the frame rate, before they are.
+pub(super) fn inertialize(
     a: &Source,
     leave: usize,
     b: &Source,
     enter: usize,
     how: Inertialization,
     options: &TransitionOptions,
+    seen: impl Fn(&mut MovingPose, f64),
 ) -> Result<Concatenation, BlendError> {
     how.validate()?;
     check(a, leave, b, enter, 0)?;
@@ -119,10 +121,13 @@ fn inertialize(
         old_pose.velocities.push(velocity(a, Planar::IDENTITY, leave, &a_stands));
         new_pose.velocities.push(velocity(b, aligned_b, enter, &b_stands));
     }
+    let (fps, rest) = (to.fps(), to.frames() - enter);
+    seen(&mut old_pose, fps);
+    seen(&mut new_pose, fps);
     let mut inertia = Inertializer::new(how);
     inertia.trigger(&old_pose, &new_pose);
 
-    let (fps, rest) = (to.fps(), to.frames() - enter);
+
     // Rounding must not make a frame of a whole number's last digit, nor of no time at all.
     let frames_in = |secs: f64| (secs * fps - 1e-5).ceil().max(0.0).min(rest as f64) as usize;
     // One more, so that the last frame computed has nothing left.

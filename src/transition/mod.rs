@@ -37,6 +37,7 @@ mod foot_lock;
 mod inertialize;
 mod loop_curve;
 mod loops;
+mod mistake;
 mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
@@ -45,4 +46,5 @@ pub use foot_lock::{FootLockError, FootLockOptions, foot_lock};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop};
+pub use mistake::{Mistake, concatenate_mistaken};
 pub use moving::MovingPose;
