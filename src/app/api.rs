@@ -383,6 +383,7 @@ impl Segue {
         let params = self.session.params();
         match params.text(Key::Lab) {
             "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
+            "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
             "make" => params.text(Key::Gait).to_owned(),
             _ => params.text(Key::A).to_owned(),
         }

@@ -1,8 +1,10 @@
 //! Artefacts as numbers with a unit: what a viewer would point at, measured.
 
+mod deviation;
 mod profile;
 mod transition;
 
+pub use deviation::deviations;
 pub use profile::Profile;
 pub use transition::{Subject, TransitionMetrics};
 

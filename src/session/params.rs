@@ -16,6 +16,7 @@ pub enum Group {
     Make,
     Blend,
     Transition,
+    Layers,
 }
 
 impl Group {
@@ -31,6 +32,7 @@ impl Group {
             Self::Make => "make",
             Self::Blend => "blend",
             Self::Transition => "transition",
+            Self::Layers => "layers",
         }
     }
 
@@ -194,6 +196,7 @@ const LABS: &[Choice] = &[
     choice("make", "Make"),
     choice("blend", "Blend"),
     choice("transition", "Transition"),
+    choice("layers", "Layers"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -210,6 +213,29 @@ const METHODS: &[Choice] = &[
     choice("cut", "cut"),
 ];
 const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
+const MISTAKES: &[Choice] = &[
+    choice("none", "none"),
+    choice("hemisphere", "no hemisphere check"),
+    choice("euler", "Euler angles mixed"),
+    choice("degrees", "degrees for radians"),
+    choice("atan", "atan for atan2"),
+    choice("alignment", "no alignment"),
+    choice("velocity", "velocity divided twice"),
+    choice("world_root", "root mixed in the world"),
+];
+const LAYER_MODES: &[Choice] = &[choice("partial", "partial"), choice("additive", "additive")];
+const MASKS: &[Choice] = &[
+    choice("upper", "upper body"),
+    choice("arms", "both arms"),
+    choice("left_arm", "left arm"),
+    choice("right_arm", "right arm"),
+    choice("head", "head"),
+    choice("spine", "spine"),
+    choice("legs", "hips and legs"),
+    choice("whole", "whole body"),
+];
+const LAYER_FITS: &[Choice] = &[choice("step", "in step"), choice("loop", "loop"), choice("hold", "hold")];
+const REFERENCES: &[Choice] = &[choice("mean", "mean"), choice("first", "first frame"), choice("rest", "rest pose")];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -249,6 +275,18 @@ parameters! {
     MatchPosition "match_position" "Weight of positions" Transition number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
     MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
     MatchVelocity "match_velocity" "Weight of velocities" Transition number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
+
+    Mistake "mistake" "Break it" Transition Kind::Choice(MISTAKES), Start::Word("none"), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
+
+    LayerMode "layer_mode" "Layer" Layers Kind::Choice(LAYER_MODES), Start::Word("partial"), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
+    Mask "mask" "Mask" Layers Kind::Choice(MASKS), Start::Word("upper"), "", "The part of the body that B moves.";
+    LayerWeight "layer_weight" "Weight" Layers number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of B there is inside the mask.";
+    Feather "feather" "Feather" Layers number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
+    LayerReference "layer_reference" "Reference" Layers Kind::Choice(REFERENCES), Start::Word("mean"), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
+    LayerFit "layer_fit" "B's time" Layers Kind::Choice(LAYER_FITS), Start::Word("step"), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
+    LayerStart "layer_start" "B begins at" Layers number(-30.0, 30.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
+    KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
+    MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
@@ -501,7 +539,10 @@ impl Param {
     #[must_use]
     pub fn is_comparable(&self) -> bool {
         matches!(self.kind, Kind::Number { .. } | Kind::Choice(_))
-            && matches!(self.group, Group::View | Group::Make | Group::Blend | Group::Transition)
+            && matches!(
+                self.group,
+                Group::View | Group::Make | Group::Blend | Group::Transition | Group::Layers
+            )
     }
 }
 

@@ -6,10 +6,16 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod layers;
 mod make;
+mod pair;
 
+pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub use layers::{LayerFacts, LayerFit};
+pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use make::{made_id, made_motion, made_params, preset_motion, synth_action};
+pub(super) use pair::{Pair, Pairs};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,6 +85,8 @@ pub struct Outcome {
     pub transition: Option<Transition>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
+    /// What of it is a layer; `None` where there is none.
+    pub layer: Option<LayerFacts>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -91,6 +99,7 @@ impl Outcome {
             sources: Vec::new(),
             transition: None,
             retargeted: None,
+            layer: None,
             metrics: Vec::new(),
         }
     }

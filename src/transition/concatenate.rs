@@ -127,7 +127,6 @@ pub(super) fn inertialize(
     let mut inertia = Inertializer::new(how);
     inertia.trigger(&old_pose, &new_pose);
 
-
     // Rounding must not make a frame of a whole number's last digit, nor of no time at all.
     let frames_in = |secs: f64| (secs * fps - 1e-5).ceil().max(0.0).min(rest as f64) as usize;
     // One more, so that the last frame computed has nothing left.

@@ -224,9 +224,7 @@ impl<'a> Mixing<'a> {
         match how {
             Inertialization::Offset(decay) => {
                 let (to, to_velocity) = (new.rotations[joint], new.angular_velocities[joint]);
-                let rate = self
-                    .mix
-                    .rate(joint, [from, to], [velocity, to_velocity], fps.recip() as f32);
+                let rate = self.mix.rate(joint, [from, to], [velocity, to_velocity], fps.recip() as f32);
                 Decay::of_vec3(decay, self.mix.difference(joint, from, to), rate, secs).0
             }
             Inertialization::DeadBlend {
@@ -266,7 +264,9 @@ fn with_rotations(right: Concatenation, rotations: Vec<Quat>) -> Result<Concaten
 
 fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, BlendError> {
     let made = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
-    Ok(made.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
+    Ok(made
+        .with_translations(clip.translations().to_vec())?
+        .with_provenance(clip.provenance()))
 }
 
 /// Lays B on A by a turn from `atan`, and leaves it there.
@@ -295,18 +295,9 @@ fn by_atan(right: &Planar, middle: DVec2) -> Planar {
     let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
     let yaw = right.yaw - facing;
     let mistaken = (yaw.sin() / yaw.cos()).atan() + facing;
-    let turned = |yaw: f64| Planar {
-        yaw,
-        shift: DVec2::ZERO,
-    };
-    let to = right.after(&Planar {
-        yaw: 0.0,
-        shift: middle,
-    });
-    let back = turned(mistaken).after(&Planar {
-        yaw: 0.0,
-        shift: -middle,
-    });
+    let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };
+    let to = right.after(&Planar { yaw: 0.0, shift: middle });
+    let back = turned(mistaken).after(&Planar { yaw: 0.0, shift: -middle });
     Planar {
         yaw: back.yaw,
         shift: back.shift + to.shift,
@@ -356,7 +347,11 @@ fn standing_still(right: Concatenation) -> Result<Concatenation, BlendError> {
             }
             _ => *right_here,
         };
-        moved.push(if frame < window.start { Planar::IDENTITY } else { here.after(&right_here.inverse()) });
+        moved.push(if frame < window.start {
+            Planar::IDENTITY
+        } else {
+            here.after(&right_here.inverse())
+        });
         frames.push(here);
     }
     let joints = right.clip.skeleton().len();
@@ -369,7 +364,12 @@ fn standing_still(right: Concatenation) -> Result<Concatenation, BlendError> {
     let placed = |frame: usize, b: &Planar| moved.get(frame).map_or(*b, |moved| moved.after(b));
     Ok(Concatenation {
         clip: rebuilt(&right.clip, rotations, roots)?,
-        b_during: right.b_during.iter().enumerate().map(|(p, b)| placed(window.start + p, b)).collect(),
+        b_during: right
+            .b_during
+            .iter()
+            .enumerate()
+            .map(|(p, b)| placed(window.start + p, b))
+            .collect(),
         world_from_b: placed(window.end.max(1) - 1, &right.world_from_b),
         frames,
         ..right

@@ -1,7 +1,9 @@
 //! The parameters of the lab that is open, and below them those of the stage.
 
+use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, Icon};
+use super::layers_rows::layers_ui;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::save_rows::save_rows_ui;
@@ -10,7 +12,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue::math::spring;
-use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value};
+use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -19,6 +21,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "make" => make_ui(session, state, out, ui),
         "blend" => blend_ui(session, state, out, ui),
         "transition" => transition_ui(session, state, out, ui),
+        "layers" => layers_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);
@@ -119,7 +122,7 @@ fn value_in_words((key, value): &(Key, Value)) -> String {
 }
 
 /// Saves the result; which one, where several stand side by side.
-fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
     let names: Vec<String> = panes
@@ -136,7 +139,7 @@ fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mu
 }
 
 /// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.
-fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
+pub(super) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::A, session, out, ui);
     slot_row_ui(Slot::B, session, out, ui);
     let outcome = session.main_outcome();
@@ -217,6 +220,8 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
+    break_it_ui(session, out, ui);
+    ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
 
@@ -264,7 +269,7 @@ fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// The experiment of the course, and the way back from it.
-fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(super) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
     let label = if on { text::COMPARE_OFF } else { text::FULL_HALF_THIRD };
     let response = kit::button_ui(Button::new(label).hint(text::COMPARE_HELP), ui);
@@ -283,7 +288,7 @@ fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mu
             .iter()
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
-            if matches!(param.kind, segue::session::Kind::Choice(choices) if choices.len() <= 4) {
+            if matches!(param.kind, Kind::Choice(choices) if choices.len() <= 4) {
                 ui.label(egui::RichText::new(param.label).font(theme_of(ui).font(Type::Label)));
             }
             param_row_ui(param.key, &Detail::default(), session, out, ui);
@@ -296,12 +301,12 @@ fn is_handled_elsewhere(key: Key) -> bool {
     matches!(key, Key::PanX | Key::PanY | Key::PanZ)
 }
 
-fn lab_label(session: &Session) -> &'static str {
-    match session.params().text(Key::Lab) {
-        "make" => "Make",
-        "blend" => "Blend",
-        "transition" => "Transition",
-        _ => "View",
+/// The name of the lab that is open.
+pub(super) fn lab_label(session: &Session) -> &'static str {
+    let lab = session.params().text(Key::Lab);
+    match Key::Lab.param().kind {
+        Kind::Choice(labs) => labs.iter().find(|choice| choice.key == lab).map_or("", |choice| choice.label),
+        _ => "",
     }
 }
 
@@ -310,7 +315,7 @@ fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     let named = session.params().changed().map(|(param, _)| param);
     let named = named
-        .filter(|param| matches!(param.group, Group::Make | Group::Blend | Group::Transition))
+        .filter(|param| matches!(param.group, Group::Make | Group::Blend | Group::Transition | Group::Layers))
         .map(|param| param.key);
     named.chain(
         compared

@@ -107,7 +107,7 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
     let lab = session.params().text(Key::Lab);
     if holds(Slot::A) && lab != "make" {
         Part::A
-    } else if holds(Slot::B) && matches!(lab, "blend" | "transition") {
+    } else if holds(Slot::B) && matches!(lab, "blend" | "transition" | "layers") {
         Part::B
     } else {
         Part::None
@@ -144,7 +144,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     }
     let part = part_of(session, entry);
     let open = state.details.as_ref() == Some(&entry.id);
-    let blending = matches!(session.params().text(Key::Lab), "blend" | "transition");
+    let blending = matches!(session.params().text(Key::Lab), "blend" | "transition" | "layers");
     let warning = entry.warnings.join("\n");
     let actions = [
         (Icon::Sliders, text::DETAILS),

@@ -1,8 +1,10 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
+mod break_it;
 mod clip_panel;
 pub(crate) mod kit;
 mod lab_panel;
+mod layers_rows;
 mod library_panel;
 mod out;
 mod overlays;

@@ -73,6 +73,7 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         (Keyboard::Num2, "make"),
         (Keyboard::Num3, "blend"),
         (Keyboard::Num4, "transition"),
+        (Keyboard::Num5, "layers"),
     ] {
         if pressed(none, keyboard) {
             out.set_once(Key::Lab, Value::Choice(lab));

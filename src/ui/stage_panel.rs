@@ -170,8 +170,8 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     };
     let shown = text::METRICS
         .iter()
-        .take(room)
-        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)));
+        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)))
+        .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
             let ranks = ranking(panes, metric.id);
@@ -246,6 +246,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: Key::Method.param().spoken(session.params().get(Key::Method)),
+        },
+        "layers" => Words {
+            strong: name(Key::A),
+            text: format!("+ {}", name(Key::B)),
+            secondary: Key::Mask.param().spoken(session.params().get(Key::Mask)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),

@@ -1,7 +1,7 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
 use segue::session::export::ExportFormat;
-use segue::session::{Entry, Origin, Retargeted};
+use segue::session::{Entry, LayerFacts, LayerFit, Origin, Retargeted};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -145,7 +145,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("[ ]", "slower, faster"),
     ("L", "loop"),
     ("C", "compare full, half, third"),
-    ("1 2 3 4", "View, Make, Blend, Transition"),
+    ("1 2 3 4 5", "View, Make, Blend, Transition, Layers"),
     ("T", "from above"),
     ("F", "frame everything"),
     ("G", "camera follows or stands"),
@@ -167,7 +167,44 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("spin_deg", "spin"),
     ("seam_deg", "jump"),
     ("penetration_cm", "sunk cm"),
+    ("off_arms_deg", "arms off A"),
+    ("off_spine_deg", "spine"),
+    ("off_head_deg", "head"),
+    ("off_legs_deg", "legs"),
 ];
+
+/// What the student will see of a mistake of the Transition lab; empty for none.
+pub(crate) fn mistake(key: &str) -> &'static str {
+    match key {
+        "hemisphere" => "Limbs swing the long way round: q and -q are one rotation, and nobody checked which of the two is nearer.",
+        "euler" => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
+        "degrees" => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
+        "atan" => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
+        "alignment" => "The character flies to where B's file has it: nobody laid B on A.",
+        "velocity" => "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small.",
+        "world_root" => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
+        _ => "",
+    }
+}
+/// For a method that the mistake cannot be made in.
+pub(crate) const MISTAKE_IDLE: &str = "A cut mixes nothing, so there is nothing to see: choose another method.";
+/// What a comparison opens that shows the mistake.
+pub(crate) const RIGHT_AND_WRONG: &str = "Right beside wrong";
+
+/// How B's time goes in a layer.
+pub(crate) fn fit(layer: &LayerFacts) -> String {
+    let how = match layer.fit {
+        LayerFit::InStep => "One cycle of B keeps step with A",
+        LayerFit::Looped => "B loops, its ends brought together",
+        LayerFit::Once => "B is long enough to play once",
+        LayerFit::Held => "B stays in its last frame when it is over",
+    };
+    if layer.has_no_steps {
+        format!("No steps to keep in time with. {how}.")
+    } else {
+        format!("{how}.")
+    }
+}
 
 /// Several methods on the same transition.
 pub(crate) const SHOOT_OUT: &str = "Shoot-out of methods";

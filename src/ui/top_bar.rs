@@ -132,6 +132,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     let key = match session.params().text(Key::Lab) {
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
+        "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
     out.commands.push(Command::CompareThirds(key));

@@ -15,7 +15,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, Outcome, Slot, made_id, made_motion, made_params, synth_action};
+use super::recipe::{Blender, Layerer, Outcome, Pairs, Slot, made_id, made_motion, made_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::synth;
@@ -82,7 +82,9 @@ pub struct Session {
     history: History,
     notices: Notices,
     panes: Vec<Pane>,
+    pairs: Pairs,
     blender: Blender,
+    layerer: Layerer,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -106,7 +108,9 @@ impl Session {
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
+            pairs: Pairs::default(),
             blender: Blender::default(),
+            layerer: Layerer::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,

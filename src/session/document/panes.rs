@@ -6,7 +6,7 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Group, Key, Params, Value};
-use crate::session::recipe::{BlendInputs, Outcome, made_id, made_motion, made_params, preset_motion};
+use crate::session::recipe::{BlendInputs, LayerInputs, Outcome, Pair, made_id, made_motion, made_params, preset_motion};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -40,6 +40,7 @@ enum Inputs {
     View(Arc<Motion>),
     Make(String),
     Blend(BlendInputs),
+    Layers(LayerInputs),
 }
 
 impl PartialEq for Inputs {
@@ -48,6 +49,7 @@ impl PartialEq for Inputs {
             (Self::View(a), Self::View(b)) => Arc::ptr_eq(a, b),
             (Self::Make(a), Self::Make(b)) => a == b,
             (Self::Blend(a), Self::Blend(b)) => a == b,
+            (Self::Layers(a), Self::Layers(b)) => a == b,
             _ => false,
         }
     }
@@ -165,13 +167,20 @@ impl Session {
         }
     }
 
+    /// A and B, made ready for each other.
+    fn pair_of(&mut self, params: &Params) -> Result<Arc<Pair>, String> {
+        let a = self.motion_of(params.text(Key::A))?;
+        let b = self.motion_of(params.text(Key::B))?;
+        self.pairs.of(&a, &b)
+    }
+
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
         let inputs = match params.text(Key::Lab) {
             "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
             "make" => Ok(Inputs::Make(made_id(params))),
-            _ => self.motion_of(params.text(Key::A)).and_then(|a| {
-                let b = self.motion_of(params.text(Key::B))?;
-                self.blender.inputs(&a, &b, params, match_window).map(Inputs::Blend)
+            lab => self.pair_of(params).and_then(|pair| match lab {
+                "layers" => self.layerer.inputs(&pair, params).map(Inputs::Layers),
+                _ => self.blender.inputs(&pair, params, match_window).map(Inputs::Blend),
             }),
         };
         match inputs {
@@ -181,6 +190,7 @@ impl Session {
                     Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
                     Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
                     Inputs::Blend(blend) => blend.run(),
+                    Inputs::Layers(layers) => layers.run(),
                 };
                 match outcome {
                     Ok(outcome) => {
@@ -209,6 +219,7 @@ fn belongs_to(group: Group, lab: &str) -> bool {
         "make" => group == Group::Make,
         "blend" => group == Group::Blend,
         "transition" => matches!(group, Group::Blend | Group::Transition),
+        "layers" => group == Group::Layers,
         _ => false,
     }
 }

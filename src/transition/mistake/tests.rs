@@ -109,7 +109,10 @@ fn wrong_places_turn_fly_and_slide() {
     };
     for method in [long, METHODS[2], METHODS[3], METHODS[4]] {
         let [right, wrong] = [None, Some(Mistake::WorldRoot)].map(|mistake| pair.measured(&pair.made(method, PLACES[0], mistake)));
-        assert!(wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 5.0, "{method:?} {right:?} {wrong:?}");
+        assert!(
+            wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 5.0,
+            "{method:?} {right:?} {wrong:?}"
+        );
     }
 }
 
