@@ -214,7 +214,7 @@ const METHODS: &[Choice] = &[
 ];
 const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
 const MISTAKES: &[Choice] = &[
-    choice("none", "none"),
+    choice("none", "no mistake"),
     choice("hemisphere", "no hemisphere check"),
     choice("euler", "Euler angles mixed"),
     choice("degrees", "degrees for radians"),
@@ -284,7 +284,7 @@ parameters! {
     Feather "feather" "Feather" Layers number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
     LayerReference "layer_reference" "Reference" Layers Kind::Choice(REFERENCES), Start::Word("mean"), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
     LayerFit "layer_fit" "B's time" Layers Kind::Choice(LAYER_FITS), Start::Word("step"), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
-    LayerStart "layer_start" "B begins at" Layers number(-30.0, 30.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
+    LayerStart "layer_start" "B begins at" Layers number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
     KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 

@@ -19,7 +19,11 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     for word in &words {
         let shows = shows(word, session);
-        let sentence = if shows { text::mistake(word) } else { text::MISTAKE_IDLE };
+        let sentence = match (word.as_str(), params.text(Key::Method)) {
+            _ if !shows => text::MISTAKE_IDLE,
+            ("velocity", "smooth" | "linear") => text::VELOCITY_IN_DISSOLVE,
+            _ => text::mistake(word),
+        };
         if !sentence.is_empty() {
             let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
             ui.label(RichText::new(sentence).font(theme_of(ui).font(Type::Small)).color(color));

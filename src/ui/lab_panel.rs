@@ -190,6 +190,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
         let query = if shoot_out { "" } else { text::SHOOT_OUT_QUERY };
         out.set_once(Key::Compare, Value::Text(query.to_owned()));
     }
+    break_it_ui(session, out, ui);
     ui.add_space(space::S);
     let last_frame = |slot| {
         let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
@@ -219,8 +220,6 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
-    ui.add_space(space::S);
-    break_it_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

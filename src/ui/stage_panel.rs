@@ -7,6 +7,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::math::Planar;
+use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point};
 use segue::session::{Key, Outcome, Pane, Session, Value};
 
@@ -174,7 +175,11 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
-            let ranks = ranking(panes, metric.id);
+            let ranks = if metric.better == Better::Neutral {
+                Verdicts::default()
+            } else {
+                ranking(panes, metric.id)
+            };
             let rank = if ranks.best == Some(index) {
                 Rank::Best
             } else if ranks.worst == Some(index) {
@@ -222,6 +227,8 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         let param = key.param();
         let secondary = match value {
             Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
+            // A bare number says nothing of itself.
+            Value::Number(_) if param.unit.is_empty() => param.label.to_owned(),
             _ => String::new(),
         };
         return Words {

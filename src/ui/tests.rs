@@ -411,6 +411,8 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     // A cut has nothing to be mixed wrongly, and that is said.
     let cut = self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
     cut.get_by_label(text::MISTAKE_IDLE);
+    let dissolve = self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
+    dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
     let turned = self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
     turned.get_by_label(text::mistake("atan"));
 }

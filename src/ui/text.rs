@@ -165,18 +165,20 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("skate_before_cm", "unlocked cm"),
     ("lag_s", "lag s"),
     ("spin_deg", "spin"),
-    ("seam_deg", "jump"),
-    ("penetration_cm", "sunk cm"),
     ("off_arms_deg", "arms off A"),
     ("off_spine_deg", "spine"),
     ("off_head_deg", "head"),
     ("off_legs_deg", "legs"),
+    ("seam_deg", "jump"),
+    ("penetration_cm", "sunk cm"),
 ];
 
 /// What the student will see of a mistake of the Transition lab; empty for none.
 pub(crate) fn mistake(key: &str) -> &'static str {
     match key {
-        "hemisphere" => "Limbs swing the long way round: q and -q are one rotation, and nobody checked which of the two is nearer.",
+        "hemisphere" => {
+            "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
+        }
         "euler" => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
         "degrees" => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
         "atan" => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
@@ -186,6 +188,9 @@ pub(crate) fn mistake(key: &str) -> &'static str {
         _ => "",
     }
 }
+/// Of `velocity` where the method is a dissolve, which has no other velocity.
+pub(crate) const VELOCITY_IN_DISSOLVE: &str =
+    "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
 /// For a method that the mistake cannot be made in.
 pub(crate) const MISTAKE_IDLE: &str = "A cut mixes nothing, so there is nothing to see: choose another method.";
 /// What a comparison opens that shows the mistake.
