@@ -82,13 +82,13 @@ pub fn concatenate_mistaken(
         Mistake::DegreesForRadians => mixed(Mix::Degrees),
         Mistake::AtanForAtan2 => laid_by_atan(a, leave, b, enter, options),
         Mistake::NoAlignment => right(&TransitionOptions { align: false, ..*options }),
-        Mistake::VelocityDividedTwice => match options.method {
-            Method::Inertialize(how) => inertialize(a, leave, b, enter, how, options, divided_again),
-            _ => {
-                let (align, root) = (true, RootBlend::Velocity);
-                standing_still(right(&TransitionOptions { align, root, ..*options })?)
+        Mistake::VelocityDividedTwice => {
+            if let Method::Inertialize(how) = options.method {
+                return inertialize(a, leave, b, enter, how, options, divided_again);
             }
-        },
+            let (align, root) = (true, RootBlend::Velocity);
+            standing_still(right(&TransitionOptions { align, root, ..*options })?)
+        }
         Mistake::WorldRoot => {
             let (align, root) = (true, RootBlend::World);
             right(&TransitionOptions { align, root, ..*options })
@@ -132,7 +132,9 @@ impl Mix {
                 (after - self.difference(joint, a, b)) / dt_secs
             }
             Self::Degrees => rate(quat::log(a * b.conjugate())) * 1f32.to_degrees(),
-            _ => rate(self.difference(joint, a, b)),
+            Self::AsSigned => rate(self.difference(joint, a, b)),
+            #[cfg(test)]
+            Self::Right => rate(self.difference(joint, a, b)),
         }
     }
 

@@ -226,7 +226,7 @@ fn against_its_mean_a_layer_that_stands_still_adds_nothing() {
     let joint = roles.get(Role::RightUpperArm).unwrap();
     let swung = |angle: f32| {
         let mut pose = still.pose(0);
-        pose.rotations[joint] = pose.rotations[joint] * Quat::from_rotation_x(angle);
+        pose.rotations[joint] *= Quat::from_rotation_x(angle);
         pose
     };
     let mut poses = [swung(0.6), swung(-0.6), swung(0.0)];
