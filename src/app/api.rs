@@ -384,7 +384,7 @@ impl Segue {
         match params.text(Key::Lab) {
             "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
             "make" => params.text(Key::Gait).to_owned(),
-            "speed" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
+            "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
             "loop" => format!("{} loop", params.text(Key::A)),
             _ => params.text(Key::A).to_owned(),
         }

@@ -72,6 +72,17 @@ impl Source {
         }
     }
 
+    /// The same motion elsewhere on the ground ([`Clip::transformed`]).
+    #[must_use]
+    pub fn moved(&self, world_from_clip: &Planar) -> Self {
+        Self {
+            clip: Arc::new(self.clip.transformed(world_from_clip)),
+            frames: self.frames.iter().map(|frame| world_from_clip.after(frame)).collect(),
+            motion_root: self.motion_root,
+            weights: self.weights.clone(),
+        }
+    }
+
     /// The clip.
     #[must_use]
     pub fn clip(&self) -> &Arc<Clip> {

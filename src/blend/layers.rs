@@ -51,6 +51,9 @@ pub enum Reference {
     Rest,
     /// A frame of the layer's own clip.
     Frame(usize),
+    /// The mean of the layer's own frames: of rotations the normalised sum of quaternions in one hemisphere (for poses of one clip within a degree of
+    /// the mean of Markley, Cheng, Crassidis, Oshman 2007).
+    Mean,
 }
 
 /// What a layer does to the base.
@@ -117,6 +120,16 @@ impl Default for LayerOptions {
 /// # Errors
 /// [`LayerError`] when the clips move different skeletons, the layer has no such frame, or a number is none.
 pub fn layer(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions) -> Result<Clip, LayerError> {
+    let times: Vec<f64> = (0..base.frames()).map(|frame| base.time_of(frame)).collect();
+    layer_timed(base, roles, over, options, &times)
+}
+
+/// [`layer`], where the layer need not run as evenly as the base: `times` has its own time for every frame of the base, seconds, to which the options' start
+/// is added; frames without one have the base's alone.
+///
+/// # Errors
+/// As [`layer`].
+pub fn layer_timed(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions, times: &[f64]) -> Result<Clip, LayerError> {
     check(base, over, options)?;
     let mask = mask(base.skeleton(), roles, &options.parts, options.feather);
     if options.weight == 0.0 || mask.iter().all(|&weight| weight == 0.0) || base.frames() == 0 {
@@ -141,6 +154,7 @@ pub fn layer(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions) ->
         over,
         mask,
         options,
+        times,
         turned,
     };
     Ok(layering.clip()?)
@@ -182,6 +196,7 @@ struct Layering<'a> {
     carrier: Option<usize>,
     mask: Vec<f32>,
     options: &'a LayerOptions,
+    times: &'a [f64],
     turned: bool,
 }
 
@@ -191,12 +206,15 @@ impl Layering<'_> {
         let reference = self.reference();
         let mut here = self.base_stands[0];
         let (mut rotations, mut world) = (Vec::new(), WorldPose::default());
+        let mut before = 0.0;
         for frame in 0..self.base.frames() {
-            let secs = self.options.start_secs + self.base.time_of(frame);
+            let time = self.times.get(frame).copied().unwrap_or_else(|| self.base.time_of(frame));
+            let secs = self.options.start_secs + time;
             let Some(over) = self.pose(secs) else { continue };
             if frame > 0 {
-                here = here.after(&self.step(frame, secs));
+                here = here.after(&self.step(frame, before, secs));
             }
+            before = secs;
             let root = match self.options.mode {
                 LayerMode::Override => {
                     self.replace(frame, &over, &here, &mut rotations, &mut world);
@@ -251,14 +269,14 @@ impl Layering<'_> {
         }
     }
 
-    /// The step into a frame: the base's, and in an override the layer's by the root's weight.
-    fn step(&self, frame: usize, secs: f64) -> Planar {
+    /// The step into a frame: the base's, and in an override the layer's, from one of its times to the other, by the root's weight.
+    fn step(&self, frame: usize, before: f64, secs: f64) -> Planar {
         let base = self.base_stands[frame - 1].inverse().after(&self.base_stands[frame]);
         let weight = f64::from(self.weight(0));
         if weight == 0.0 || self.options.mode != LayerMode::Override {
             return base;
         }
-        let (from, to) = (self.local(secs - self.base.fps().recip()), self.local(secs));
+        let (from, to) = (self.local(before), self.local(secs));
         let between = |from: f64, to: f64| self.stands_at(from).inverse().after(&self.stands_at(to));
         let over = if to >= from {
             between(from, to)
@@ -276,12 +294,38 @@ impl Layering<'_> {
     fn reference(&self) -> Pose {
         match self.options.mode {
             LayerMode::Additive(Reference::Frame(frame)) => in_character_frame(self.over.pose(frame), &self.over_stands[frame]),
+            LayerMode::Additive(Reference::Mean) => self.mean_pose(),
             _ => Pose {
                 root_translation: self.over.skeleton().joints()[0].offset,
                 rotations: vec![Quat::IDENTITY; self.mask.len()],
                 translations: vec![],
             },
         }
+    }
+
+    /// The mean of the layer's poses, each seen from where the character stands.
+    fn mean_pose(&self) -> Pose {
+        let poses = (0..self.over.frames()).map(|frame| in_character_frame(self.over.pose(frame), &self.over_stands[frame]));
+        let share = (self.over.frames().max(1) as f32).recip();
+        let sum = poses.reduce(|mut sum, pose| {
+            sum.root_translation += pose.root_translation;
+            for (sum, &rotation) in sum.rotations.iter_mut().zip(&pose.rotations) {
+                *sum = *sum + quat::in_hemisphere_of(rotation, *sum);
+            }
+            for (sum, (_, translation)) in sum.translations.iter_mut().zip(pose.translations) {
+                sum.1 += translation;
+            }
+            sum
+        });
+        let mut mean = sum.unwrap_or_default();
+        mean.root_translation *= share;
+        for rotation in &mut mean.rotations {
+            *rotation = quat::renormalize(*rotation);
+        }
+        for (_, translation) in &mut mean.translations {
+            *translation *= share;
+        }
+        mean
     }
 
     /// Rotations with the layer in the base's place.

@@ -37,7 +37,7 @@ pub(crate) use assembly::{Assembly, moving_joints, standing_over, translation_of
 pub use concatenation::Concatenation;
 pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
 pub(crate) use dissolve::{check, common_carrier, laid_on};
-pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer};
+pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};
 pub use weight::WeightLaw;

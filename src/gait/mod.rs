@@ -34,11 +34,13 @@ mod cycle;
 mod phase;
 mod player;
 mod speed;
+mod strikes;
 
 pub use cycle::GaitCycle;
 pub use phase::{Events, PhaseAlignment};
 pub use player::SpeedPlayer;
 pub use speed::{GaitClip, GaitFacts, SpeedBlend, SpeedOptions};
+pub use strikes::strike_phases;
 
 use crate::clip::ClipError;
 use crate::transition::LoopError;

@@ -1,9 +1,11 @@
 //! Artefacts as numbers with a unit: what a viewer would point at, measured.
 
+mod deviation;
 mod profile;
 mod slide;
 mod transition;
 
+pub use deviation::deviations;
 pub use profile::Profile;
 pub use slide::foot_slide_cm;
 pub use transition::{Subject, TransitionMetrics};

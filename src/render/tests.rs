@@ -262,6 +262,47 @@ fn the_chosen_joint_is_marked_over_the_body() {
 }
 
 #[test]
+fn a_layered_body_shows_whose_limbs_are_whose() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1440, 620];
+    for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
+        let colors = Colors {
+            a: rgb(A[theme]),
+            b: rgb(B[theme]),
+            result: rgb(RESULT[theme]),
+            bad: rgb(0xff_7a_6b),
+            ghost_alpha: 0.4,
+        };
+        let mut blue = Vec::new();
+        for (name, link) in [
+            ("layers", "lab=layers&t=1.2&compare=mask:upper,arms,head,legs"),
+            ("feather", "lab=layers&t=1.2&compare=feather:0,2,5"),
+            (
+                "posture",
+                "lab=layers&t=1.35&compare=layer_mode:partial,additive&camera_distance=3.5",
+            ),
+            ("jump", "lab=layers&t=1.35&b=jump&compare=layer_weight:0,0.5,1"),
+            (
+                "broken",
+                "lab=transition&t=2.35&compare=mistake:none,euler,hemisphere,degrees&sources=off",
+            ),
+            ("plain", "lab=layers&t=1.2&mask_colors=off&trail=off"),
+        ] {
+            let mut session = Session::new();
+            session.apply(Command::OpenLink(link.to_owned())).unwrap();
+            while session.work() {}
+            let panes = session.panes().len() as u32;
+            let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
+            let stage = Director::default().stage(&session, &shown, 1.0, look, &colors, 0.0);
+            let image = gpu.draw(&format!("{name}-{theme}"), &stage, size);
+            let is_blue = |p: &&[u8]| i32::from(p[2]) - i32::from(p[0]) > 40;
+            blue.push(image.rgba.chunks_exact(4).filter(is_blue).count());
+        }
+        assert!(blue[0] > 5_000 && blue[5] < 500, "{blue:?}");
+    }
+}
+
+#[test]
 fn the_mannequin_from_all_sides() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();

@@ -32,6 +32,8 @@ pub struct Director {
 
 /// A ghost fades in before the transition and out behind it, over this long.
 const GHOST_FADE_SECS: f64 = 0.3;
+/// How much of a limb's colour is clay where the rest tells A and B apart.
+const CLAY_SHARE: f32 = 0.3;
 /// A planted foot that moves faster than this slides.
 const SLIDE_MPS: f32 = 0.08;
 /// The ring about the chosen joint, as a share of the distance that it is seen from: it is of one size wherever the camera stands.
@@ -132,7 +134,12 @@ impl Director {
         let body = self.body(motion);
         let shape = params.text(Key::Look);
         if shape != "bones" {
-            pane.add_body(&body, world, look.clay);
+            match outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors)) {
+                Some(layer) => pane.add_colored_body(&body, world, |joint| {
+                    share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)
+                }),
+                None => pane.add_body(&body, world, look.clay),
+            }
         }
         if shape != "body" {
             add_bones(motion.clip.skeleton(), world, colors.result, pane);
@@ -308,6 +315,15 @@ pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
 /// The height in the middle of the picture: a little below the body's own, because the panes' numbers lie over the lower edge.
 fn middle_height(motion: &Motion) -> f32 {
     motion.roles.body_height(motion.clip.skeleton()) * 0.4
+}
+
+/// A's colour where nothing of B is, B's where all is, softened by the clay of the body.
+fn share_color(share: f32, look: &Look, colors: &Colors) -> Color {
+    let mixed = |channel: usize| {
+        let pure = colors.a[channel] + (colors.b[channel] - colors.a[channel]) * share;
+        pure + (look.clay[channel] - pure) * CLAY_SHARE
+    };
+    [mixed(0), mixed(1), mixed(2), 1.0]
 }
 
 /// Warm where A plays, cool where B does, the accent between them and where there is no transition.

@@ -174,17 +174,22 @@ impl Pane {
 
     /// Adds a body in a pose, solid, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, color, false, 1.0);
+        self.add_figure(body, pose, |_| color, false, 1.0);
+    }
+
+    /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
+    pub fn add_colored_body(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color) {
+        self.add_figure(body, pose, color_of, false, 1.0);
     }
 
     /// Adds a translucent body; its shadow is as strong as the colour's alpha.
     pub fn add_ghost(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, color, true, color[3]);
+        self.add_figure(body, pose, |_| color, true, color[3]);
     }
 
-    fn add_figure(&mut self, body: &Body, pose: &WorldPose, color: Color, ghost: bool, shadow: f32) {
+    fn add_figure(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color, ghost: bool, shadow: f32) {
         let start = self.limbs.len();
-        body.limbs(pose, color, &mut self.limbs);
+        body.colored_limbs(pose, color_of, &mut self.limbs);
         self.figures.push(Figure {
             limbs: start..self.limbs.len(),
             ghost,

@@ -18,6 +18,7 @@ pub enum Group {
     Transition,
     Speed,
     Loop,
+    Layers,
 }
 
 impl Group {
@@ -35,6 +36,7 @@ impl Group {
             Self::Transition => "transition",
             Self::Speed => "speed",
             Self::Loop => "loop",
+            Self::Layers => "layers",
         }
     }
 
@@ -206,6 +208,7 @@ const LABS: &[Choice] = &[
     choice("transition", "Transition"),
     choice("speed", "Speed"),
     choice("loop", "Loop"),
+    choice("layers", "Layers"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -230,6 +233,29 @@ const LOOP_METHODS: &[Choice] = &[
     choice("cubic", "cubic"),
 ];
 const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
+const MISTAKES: &[Choice] = &[
+    choice("none", "no mistake"),
+    choice("hemisphere", "no hemisphere check"),
+    choice("euler", "Euler angles mixed"),
+    choice("degrees", "degrees for radians"),
+    choice("atan", "atan for atan2"),
+    choice("alignment", "no alignment"),
+    choice("velocity", "velocity divided twice"),
+    choice("world_root", "root mixed in the world"),
+];
+const LAYER_MODES: &[Choice] = &[choice("partial", "partial"), choice("additive", "additive")];
+const MASKS: &[Choice] = &[
+    choice("upper", "upper body"),
+    choice("arms", "both arms"),
+    choice("left_arm", "left arm"),
+    choice("right_arm", "right arm"),
+    choice("head", "head"),
+    choice("spine", "spine"),
+    choice("legs", "hips and legs"),
+    choice("whole", "whole body"),
+];
+const LAYER_FITS: &[Choice] = &[choice("step", "in step"), choice("loop", "loop"), choice("hold", "hold")];
+const REFERENCES: &[Choice] = &[choice("mean", "mean"), choice("first", "first frame"), choice("rest", "rest pose")];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -277,6 +303,17 @@ parameters! {
     LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
     LoopMethod "loop_method" "Method" Loop Kind::Choice(LOOP_METHODS), Start::Word("exact"), "", "How the difference between the ends is spread over the cycle.";
     LoopRatio "loop_ratio" "Ratio" Loop number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
+    Mistake "mistake" "Break it" Transition Kind::Choice(MISTAKES), Start::Word("none"), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
+
+    LayerMode "layer_mode" "Layer" Layers Kind::Choice(LAYER_MODES), Start::Word("partial"), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
+    Mask "mask" "Mask" Layers Kind::Choice(MASKS), Start::Word("upper"), "", "The part of the body that B moves.";
+    LayerWeight "layer_weight" "Weight" Layers number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of B there is inside the mask.";
+    Feather "feather" "Feather" Layers number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
+    LayerReference "layer_reference" "Reference" Layers Kind::Choice(REFERENCES), Start::Word("mean"), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
+    LayerFit "layer_fit" "B's time" Layers Kind::Choice(LAYER_FITS), Start::Word("step"), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
+    LayerStart "layer_start" "B begins at" Layers number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
+    KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
+    MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

@@ -7,14 +7,20 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod layers;
 mod looping;
 mod make;
+mod pair;
 mod rounds;
 mod speed;
 
+pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub use layers::{LayerFacts, LayerFit};
+pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, made_motion, made_params, preset_motion, synth_action};
+pub(super) use pair::{Pair, Pairs};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 
 /// The two places that a clip can take.
@@ -120,6 +126,8 @@ pub struct Outcome {
     pub cycle: Option<Cycle>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
+    /// What of it is a layer; `None` where there is none.
+    pub layer: Option<LayerFacts>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -133,6 +141,7 @@ impl Outcome {
             transition: None,
             cycle: None,
             retargeted: None,
+            layer: None,
             metrics: Vec::new(),
         }
     }

@@ -1,5 +1,5 @@
 use super::moving::View;
-use super::{Inertialization, Inertializer};
+use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
     Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, common_carrier, dissolve, laid_on,
     moving_joints,
@@ -72,19 +72,21 @@ pub fn concatenate(a: &Source, leave: usize, b: &Source, enter: usize, options: 
     let (window, law) = match options.method {
         Method::Cut => (0, WeightLaw::default()),
         Method::Dissolve { window, law } => (window, law),
-        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options),
+        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options, |_, _| {}),
     };
     let (align, root) = (options.align, options.root);
     dissolve(a, leave, b, enter, &DissolveOptions { window, law, align, root })
 }
 
-fn inertialize(
+/// `seen` gets the two poses between which the differences are taken, and the frame rate, before they are.
+pub(super) fn inertialize(
     a: &Source,
     leave: usize,
     b: &Source,
     enter: usize,
     how: Inertialization,
     options: &TransitionOptions,
+    seen: impl Fn(&mut MovingPose, f64),
 ) -> Result<Concatenation, BlendError> {
     how.validate()?;
     check(a, leave, b, enter, 0)?;
@@ -126,6 +128,8 @@ fn inertialize(
     let settling = frames_in(how.settled_secs() + fps.recip());
     let carried = old_pose.steady_travel.y - new_pose.steady_travel.y;
     old_pose.steady_travel.y = new_pose.steady_travel.y + turning_between(carried, (a, leave), (b, enter), how, settling);
+    seen(&mut old_pose, fps);
+    seen(&mut new_pose, fps);
     let mut inertia = Inertializer::new(how);
     inertia.trigger(&old_pose, &new_pose);
     let window = frames_in(how.secs_until(0.01)).min(settling);

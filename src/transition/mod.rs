@@ -5,6 +5,8 @@
 //! all of them, with one meaning of "leave" and "enter", so that they can be compared; [`Inertializer`] does it frame by frame for whoever
 //! jumps while playing. [`close_loop`] spreads the difference between the ends of a clip over it, and [`find_cycle`] finds ends that differ little.
 //!
+//! What goes wrong when a step of it is forgotten can be seen: [`concatenate_mistaken`] makes the classic mistakes, one at a time.
+//!
 //! Feet that stood still may slide while an offset dies away, or two clips are mixed: [`foot_lock`] plants them again.
 //!
 //! ```
@@ -37,6 +39,7 @@ mod foot_lock;
 mod inertialize;
 mod loop_curve;
 mod loops;
+mod mistake;
 mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
@@ -45,4 +48,5 @@ pub use foot_lock::{FootLockError, FootLockOptions, foot_lock};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop};
+pub use mistake::{Mistake, concatenate_mistaken};
 pub use moving::MovingPose;

@@ -1,8 +1,10 @@
 //! The parameters of the lab that is open, and below them those of the stage.
 
+use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::cycle_panels::{loop_ui, speed_ui};
 use super::kit::{self, Button, Icon};
+use super::layers_rows::layers_ui;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::save_rows::save_rows_ui;
@@ -11,7 +13,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue::math::spring;
-use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value};
+use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -22,6 +24,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "transition" => transition_ui(session, state, out, ui),
         "speed" => speed_ui(session, state, out, ui),
         "loop" => loop_ui(session, state, out, ui),
+        "layers" => layers_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);
@@ -190,6 +193,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
         let query = if shoot_out { "" } else { text::SHOOT_OUT_QUERY };
         out.set_once(Key::Compare, Value::Text(query.to_owned()));
     }
+    break_it_ui(session, out, ui);
     ui.add_space(space::S);
     let last_frame = |slot| {
         let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
@@ -286,7 +290,7 @@ fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mu
             .iter()
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
-            if matches!(param.kind, segue::session::Kind::Choice(choices) if choices.len() <= 4) {
+            if matches!(param.kind, Kind::Choice(choices) if choices.len() <= 4) {
                 ui.label(egui::RichText::new(param.label).font(theme_of(ui).font(Type::Label)));
             }
             param_row_ui(param.key, &Detail::default(), session, out, ui);

@@ -1,9 +1,11 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
+mod break_it;
 mod clip_panel;
 mod cycle_panels;
 pub(crate) mod kit;
 mod lab_panel;
+mod layers_rows;
 mod library_panel;
 mod out;
 mod overlays;

@@ -181,7 +181,11 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
-            let ranks = ranking(panes, metric.id);
+            let ranks = if metric.better == Better::Neutral {
+                Verdicts::default()
+            } else {
+                ranking(panes, metric.id)
+            };
             let rank = if ranks.best == Some(index) {
                 Rank::Best
             } else if ranks.worst == Some(index) {
@@ -240,6 +244,8 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         let param = key.param();
         let secondary = match value {
             Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
+            // A bare number says nothing of itself.
+            Value::Number(_) if param.unit.is_empty() => param.label.to_owned(),
             _ => String::new(),
         };
         return Words {
@@ -277,6 +283,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             strong: name(Key::A),
             text: String::new(),
             secondary: Key::LoopMethod.param().spoken(session.params().get(Key::LoopMethod)),
+        },
+        "layers" => Words {
+            strong: name(Key::A),
+            text: format!("+ {}", name(Key::B)),
+            secondary: Key::Mask.param().spoken(session.params().get(Key::Mask)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),

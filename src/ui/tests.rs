@@ -417,3 +417,75 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
     harness.run();
     assert_eq!(harness.state().session.params().text(Key::Lab), "speed");
 }
+
+#[test]
+fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
+    for (name, size, theme, link) in [
+        ("layers-desk-dark", DESK, DARK, "lab=layers&play=off&t=1"),
+        (
+            "layers-additive-light",
+            DESK,
+            LIGHT,
+            "lab=layers&layer_mode=additive&b=jump&play=off",
+        ),
+        (
+            "layers-compare-dark",
+            DESK,
+            DARK,
+            "lab=layers&compare=layer_weight:1,0.5,0.33&play=off",
+        ),
+        ("layers-phone-dark", PHONE, DARK, "lab=layers&play=off"),
+    ] {
+        let page = page(link);
+        let sentence = text::fit(outcome(&page).layer.as_ref().expect("a layer"));
+        let additive = link.contains("additive");
+        assert_eq!(sentence.starts_with("No steps"), additive, "{sentence}");
+        let mut harness = harness(size, theme, page);
+        harness.get_by_label(&sentence);
+        // What does not concern the kind of layer is not offered.
+        assert_eq!(harness.query_by_label("Keep B's posture").is_none(), additive);
+        assert_eq!(harness.query_by_label("first frame").is_some(), additive);
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=layers&play=off"));
+    press("additive", &mut harness);
+    press("Mask", &mut harness);
+    press("left arm", &mut harness);
+    let params = harness.state().session.params();
+    assert_eq!((params.text(Key::LayerMode), params.text(Key::Mask)), ("additive", "left_arm"));
+    harness.get_by_label("first frame");
+}
+
+#[test]
+fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
+    let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
+    assert!(harness.query_by_label(text::RIGHT_AND_WRONG).is_none());
+    press("Break it", &mut harness);
+    press("Euler angles mixed", &mut harness);
+    harness.get_by_label(text::mistake("euler"));
+    picture("break-desk-dark", &mut harness);
+    press(text::RIGHT_AND_WRONG, &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 2);
+    assert_eq!(harness.state().session.params().text(Key::Compare), "mistake:none,euler");
+    harness.get_by_label(text::mistake("euler"));
+    picture("break-compare-dark", &mut harness);
+    press(text::RIGHT_AND_WRONG, &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+    // A cut has nothing to be mixed wrongly, and that is said.
+    let cut = self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
+    cut.get_by_label(text::MISTAKE_IDLE);
+    let dissolve = self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
+    dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
+    let turned = self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
+    turned.get_by_label(text::mistake("atan"));
+}
+
+#[test]
+fn every_mistake_has_its_sentence() {
+    let segue::session::Kind::Choice(mistakes) = Key::Mistake.param().kind else {
+        panic!("mistakes are a choice")
+    };
+    for mistake in mistakes {
+        assert_eq!(text::mistake(mistake.key).is_empty(), mistake.key == "none", "{}", mistake.key);
+    }
+}

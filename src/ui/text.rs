@@ -2,7 +2,7 @@
 
 use segue::gait::GaitFacts;
 use segue::session::export::ExportFormat;
-use segue::session::{Entry, Origin, Retargeted};
+use segue::session::{Entry, LayerFacts, LayerFit, Origin, Retargeted};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -173,6 +173,10 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("skate_before_cm", "unlocked cm"),
     ("lag_s", "lag s"),
     ("spin_deg", "spin"),
+    ("off_arms_deg", "arms off A"),
+    ("off_spine_deg", "spine"),
+    ("off_head_deg", "head"),
+    ("off_legs_deg", "legs"),
     ("seam_deg", "jump"),
     ("penetration_cm", "sunk cm"),
     ("loop_before_deg", "bare seam"),
@@ -238,6 +242,44 @@ pub(crate) fn loop_method(method: &str) -> &'static str {
 /// How the ends of a cycle were found.
 pub(crate) fn ends_found(distance_cm: f64) -> String {
     format!("{FOUND}: the ends that fit best, {distance_cm:.1} cm apart.")
+}
+
+/// What the student will see of a mistake of the Transition lab; empty for none.
+pub(crate) fn mistake(key: &str) -> &'static str {
+    match key {
+        "hemisphere" => {
+            "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
+        }
+        "euler" => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
+        "degrees" => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
+        "atan" => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
+        "alignment" => "The character flies to where B's file has it: nobody laid B on A.",
+        "velocity" => "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small.",
+        "world_root" => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
+        _ => "",
+    }
+}
+/// Of `velocity` where the method is a dissolve, which has no other velocity.
+pub(crate) const VELOCITY_IN_DISSOLVE: &str =
+    "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
+/// For a method that the mistake cannot be made in.
+pub(crate) const MISTAKE_IDLE: &str = "A cut mixes nothing, so there is nothing to see: choose another method.";
+/// What a comparison opens that shows the mistake.
+pub(crate) const RIGHT_AND_WRONG: &str = "Right beside wrong";
+
+/// How B's time goes in a layer.
+pub(crate) fn fit(layer: &LayerFacts) -> String {
+    let how = match layer.fit {
+        LayerFit::InStep => "One cycle of B keeps step with A",
+        LayerFit::Looped => "B loops, its ends brought together",
+        LayerFit::Once => "B is long enough to play once",
+        LayerFit::Held => "B stays in its last frame when it is over",
+    };
+    if layer.has_no_steps {
+        format!("No steps to keep in time with. {how}.")
+    } else {
+        format!("{how}.")
+    }
 }
 
 /// Several methods on the same transition.

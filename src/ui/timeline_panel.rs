@@ -172,7 +172,12 @@ fn whole_track<'a>(part: Part, name: &'a str, outcome: &Outcome) -> Track<'a> {
 fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
     let duration = outcome.duration_secs();
     let Some(transition) = outcome.transition else {
-        return vec![whole_track(Part::A, &names[0], outcome)];
+        let a = whole_track(Part::A, &names[0], outcome);
+        if outcome.layer.is_none() {
+            return vec![a];
+        }
+        let b = whole_track(Part::B, &names[1], outcome);
+        return vec![Track { label: "A", ..a }, Track { label: "B", ..b }];
     };
     let fade = transition.end_secs - transition.start_secs;
     let track = |part, name, start, end, fade_in, fade_out| Track {

@@ -141,6 +141,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "loop" => return compare_loops(session, out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
+        "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
     out.commands.push(Command::CompareThirds(key));

@@ -185,6 +185,59 @@ fn layers_begin_and_end_when_they_are_told() {
 }
 
 #[test]
+fn a_layer_can_have_a_time_of_its_own() {
+    let skeleton = fixtures::bandai();
+    let roles = fixtures::roles(&skeleton);
+    let (base, over) = (wander(&skeleton, 12, 1), wander(&skeleton, 11, 2));
+    let told = LayerOptions {
+        start_secs: over.time_of(1),
+        ..options(&[BodyPart::Whole])
+    };
+    // Twice as fast, and around its end.
+    let times: Vec<f64> = (0..8).map(|frame| over.time_of(2 * frame)).collect();
+    let out = layer_timed(&base, &roles, &over, &told, &times).unwrap();
+    let joint = roles.get(Role::RightHand).unwrap();
+    for frame in 0..8 {
+        let wanted = over.rotations((1 + 2 * frame) % 10)[joint];
+        assert!(quat::angle_between(out.rotations(frame)[joint], wanted) < 1e-5, "{frame}");
+    }
+    // Steps over the ground are those between the times.
+    let stands = [&out, &over].map(|clip| character_frames(clip, &roles));
+    let step = |of: &[Planar], from: usize, to: usize| of[from].inverse().after(&of[to]);
+    let (made, own) = (step(&stands[0], 1, 2), step(&stands[1], 3, 5));
+    assert!(made.shift.distance(own.shift) < 1e-3, "{made:?} {own:?}");
+    // Frames without a time of their own have the base's.
+    let late = layer(&base, &roles, &over, &told).unwrap();
+    assert_eq!(out.rotations(9)[joint], late.rotations(9)[joint]);
+}
+
+#[test]
+fn against_its_mean_a_layer_that_stands_still_adds_nothing() {
+    let skeleton = fixtures::lafan();
+    let roles = fixtures::roles(&skeleton);
+    let (base, still) = (wander(&skeleton, 9, 1), wander(&skeleton, 1, 2));
+    let against_mean = LayerOptions {
+        mode: LayerMode::Additive(Reference::Mean),
+        ..options(&[BodyPart::UpperBody])
+    };
+    let out = layer(&base, &roles, &still, &against_mean).unwrap();
+    assert!(crate::clip::fixtures::largest_distance(&out, &base) < 1e-5);
+    // A joint that swings evenly to both sides has its middle as the mean.
+    let joint = roles.get(Role::RightUpperArm).unwrap();
+    let swung = |angle: f32| {
+        let mut pose = still.pose(0);
+        pose.rotations[joint] *= Quat::from_rotation_x(angle);
+        pose
+    };
+    let mut poses = [swung(0.6), swung(-0.6), swung(0.0)];
+    poses[1].rotations[joint] = -poses[1].rotations[joint];
+    let over = Clip::from_poses("swings", still.skeleton().clone(), base.fps(), poses).unwrap();
+    let out = layer(&base, &roles, &over, &against_mean).unwrap();
+    let added = base.rotations(0)[joint].conjugate() * out.rotations(0)[joint];
+    assert!((quat::log(added) - Vec3::X * 0.6).length() < 1e-3, "{added}");
+}
+
+#[test]
 fn joints_that_move_are_blended_too() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);

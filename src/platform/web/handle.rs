@@ -315,6 +315,8 @@ impl SegueHandle {
                 wgpu_setup: WgpuSetup::CreateNew(setup),
                 ..WgpuConfiguration::default()
             },
+            // There are no gradients among the panels, and the stage is copied as it is.
+            dithering: false,
             ..WebOptions::default()
         };
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));

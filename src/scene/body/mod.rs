@@ -96,6 +96,11 @@ impl Body {
 
     /// Appends the limbs of the body in a pose. Joints that the pose does not have are left out.
     pub fn limbs(&self, pose: &WorldPose, color: Color, out: &mut Vec<Limb>) {
+        self.colored_limbs(pose, |_| color, out);
+    }
+
+    /// Likewise, each limb in the colour of the joint that moves it.
+    pub fn colored_limbs(&self, pose: &WorldPose, color_of: impl Fn(usize) -> Color, out: &mut Vec<Limb>) {
         out.reserve(self.shapes.len());
         let at = |anchor: Anchor| Some(*pose.positions.get(anchor.joint)? + *pose.rotations.get(anchor.joint)? * anchor.point);
         for shape in &self.shapes {
@@ -115,7 +120,7 @@ impl Body {
                 radius_b,
                 flat,
                 flatness: shape.flatness,
-                color,
+                color: color_of(shape.a.joint),
             });
         }
     }

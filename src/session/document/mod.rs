@@ -16,7 +16,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Outcome, Slot};
+use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Layerer, Outcome, Pairs, Slot};
 use super::recipe::{made_id, made_motion, made_params, middle_mps, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -84,9 +84,11 @@ pub struct Session {
     history: History,
     notices: Notices,
     panes: Vec<Pane>,
+    pairs: Pairs,
     blender: Blender,
     gaits: GaitFinder,
     cycles: CycleFinder,
+    layerer: Layerer,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -110,9 +112,11 @@ impl Session {
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
+            pairs: Pairs::default(),
             blender: Blender::default(),
             gaits: GaitFinder::default(),
             cycles: CycleFinder::default(),
+            layerer: Layerer::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,

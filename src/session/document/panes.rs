@@ -8,7 +8,8 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Group, Key, Params, Value};
-use crate::session::recipe::{BlendInputs, LoopInputs, Outcome, Slot, SpeedInputs, made_id, made_motion, made_params, preset_motion};
+use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, Slot, SpeedInputs};
+use crate::session::recipe::{made_id, made_motion, made_params, preset_motion};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -79,6 +80,7 @@ pub(super) enum Inputs {
     Blend(BlendInputs),
     Speed(SpeedInputs),
     Loop(LoopInputs),
+    Layers(LayerInputs),
 }
 
 impl PartialEq for Inputs {
@@ -89,6 +91,7 @@ impl PartialEq for Inputs {
             (Self::Blend(a), Self::Blend(b)) => a == b,
             (Self::Speed(a), Self::Speed(b)) => a == b,
             (Self::Loop(a), Self::Loop(b)) => a == b,
+            (Self::Layers(a), Self::Layers(b)) => a == b,
             _ => false,
         }
     }
@@ -216,20 +219,24 @@ impl Session {
         }
     }
 
+    /// A and B, made ready for each other.
+    fn pair_of(&mut self, params: &Params) -> Result<Arc<Pair>, String> {
+        let a = self.motion_of(params.text(Key::A))?;
+        let b = self.motion_of(params.text(Key::B))?;
+        self.pairs.of(&a, &b)
+    }
+
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
         let inputs = match params.text(Key::Lab) {
             "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
             "make" => Ok(Inputs::Make(made_id(params))),
-            "speed" => self.motion_of(params.text(Key::A)).and_then(|a| {
-                let b = self.motion_of(params.text(Key::B))?;
-                self.gaits.inputs(&a, &b, params).map(Inputs::Speed)
-            }),
             "loop" => (self.motion_of(params.text(Key::A)))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
                 .map(Inputs::Loop),
-            _ => self.motion_of(params.text(Key::A)).and_then(|a| {
-                let b = self.motion_of(params.text(Key::B))?;
-                self.blender.inputs(&a, &b, params, match_window).map(Inputs::Blend)
+            lab => self.pair_of(params).and_then(|pair| match lab {
+                "speed" => self.gaits.inputs(&pair, params).map(Inputs::Speed),
+                "layers" => self.layerer.inputs(&pair, params).map(Inputs::Layers),
+                _ => self.blender.inputs(&pair, params, match_window).map(Inputs::Blend),
             }),
         };
         match inputs {
@@ -241,6 +248,7 @@ impl Session {
                     Inputs::Blend(blend) => blend.run(),
                     Inputs::Speed(speed) => speed.run(),
                     Inputs::Loop(cycle) => cycle.run(),
+                    Inputs::Layers(layers) => layers.run(),
                 };
                 match outcome {
                     Ok(outcome) => {
@@ -272,6 +280,7 @@ fn belongs_to(key: Key, lab: &str) -> bool {
         "transition" => matches!(group, Group::Blend | Group::Transition),
         "speed" => group == Group::Speed,
         "loop" => group == Group::Loop || key == Key::HalfLife,
+        "layers" => group == Group::Layers,
         _ => false,
     }
 }

@@ -1,13 +1,13 @@
-use super::{Outcome, Retargeted, Slot, Source, Transition};
-use crate::blend::{self, RootBlend, WeightLaw};
-use crate::clip::{Clip, Contacts, Interpolation, resample, retarget};
+use super::pair::{Pair, with_feet};
+use super::{Outcome, Slot, Source, Transition};
+use crate::blend::{RootBlend, WeightLaw};
+use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
-use crate::metrics::{Better, Metric, Profile, Subject, TransitionMetrics};
+use crate::metrics::{Better, Metric, Subject, TransitionMetrics};
 use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
-use crate::skeleton::Retargeting;
-use crate::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
+use crate::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -16,6 +16,7 @@ pub(in crate::session) struct BlendInputs {
     pair: Arc<Pair>,
     place: Place,
     options: TransitionOptions,
+    mistake: Option<Mistake>,
     foot_lock: bool,
 }
 
@@ -24,6 +25,7 @@ impl PartialEq for BlendInputs {
         Arc::ptr_eq(&self.pair, &other.pair)
             && self.place == other.place
             && self.options == other.options
+            && self.mistake == other.mistake
             && self.foot_lock == other.foot_lock
     }
 }
@@ -36,63 +38,6 @@ struct Place {
     distance_cm: f32,
 }
 
-/// Two clips made ready for each other.
-#[derive(Debug)]
-pub(super) struct Pair {
-    pub(super) a: Arc<Motion>,
-    pub(super) b: Arc<Motion>,
-    /// B on the skeleton and at the frame rate of A.
-    pub(super) incoming: Arc<Motion>,
-    /// What dissolve and metrics know of A and of `incoming`.
-    pub(super) profiles: [Profile; 2],
-    /// How B came onto A's skeleton, where that is not its own.
-    pub(super) retargeted: Option<Arc<Retargeted>>,
-}
-
-impl Pair {
-    pub(super) fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
-        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
-        let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
-        let incoming = if same_skeleton && same_rate {
-            Arc::clone(b)
-        } else {
-            let mut clip = (*b.clip).clone();
-            if !same_skeleton {
-                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
-            }
-            if !same_rate {
-                clip = resample(&clip, a.clip.fps(), Interpolation::Linear).map_err(|error| error.to_string())?;
-            }
-            let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
-            Arc::new(Motion::analyze(clip, Some(roles)))
-        };
-        let profiles = [a, &incoming].map(|motion| {
-            let source = blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone());
-            Profile::new(Arc::new(source), &motion.roles, motion.contacts.clone())
-        });
-        Ok(Self {
-            a: Arc::clone(a),
-            b: Arc::clone(b),
-            incoming,
-            profiles,
-            retargeted: (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b))),
-        })
-    }
-}
-
-impl Retargeted {
-    /// What happens to `b` on the skeleton of `a`.
-    fn between(a: &Motion, b: &Motion) -> Self {
-        let skeleton = a.clip.skeleton();
-        let way = Retargeting::new(b.clip.skeleton(), &b.roles, skeleton, &a.roles);
-        let joints = skeleton.joints().iter().enumerate();
-        let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
-        Self {
-            unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect(),
-        }
-    }
-}
-
 /// What a match depends on, besides the two clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wanted {
@@ -101,6 +46,26 @@ struct Wanted {
     enter: Option<usize>,
     /// Single poses are compared by these, else windows.
     weights: Option<PoseWeights>,
+}
+
+/// The mistake that the Transition lab is to make.
+fn mistake_of(params: &Params) -> Option<Mistake> {
+    match params.text(Key::Mistake) {
+        "hemisphere" => Some(Mistake::NoHemisphereCheck),
+        "euler" => Some(Mistake::EulerLerp),
+        "degrees" => Some(Mistake::DegreesForRadians),
+        "atan" => Some(Mistake::AtanForAtan2),
+        "alignment" => Some(Mistake::NoAlignment),
+        "velocity" => Some(Mistake::VelocityDividedTwice),
+        "world_root" => Some(Mistake::WorldRoot),
+        _ => None,
+    }
+}
+
+/// Whether the method of the Transition lab gives the mistake that it is to make an opportunity. `true` where it is to make none.
+#[must_use]
+pub fn mistake_shows(params: &Params) -> bool {
+    mistake_of(params).is_none_or(|mistake| mistake.concerns(&method_of(params, params.number(Key::BlendWindow) as usize)))
 }
 
 /// The method of the Transition lab; `window` is that of its dissolves.
@@ -128,17 +93,15 @@ fn method_of(params: &Params, window: usize) -> Method {
     }
 }
 
-impl Pair {
-    fn pose_search(&self) -> Result<PoseSearch, String> {
-        let skeleton = self.a.clip.skeleton();
-        let search = PoseSearch::new(
-            (&self.a.clip, &self.a.ground_frames),
-            (&self.incoming.clip, &self.incoming.ground_frames),
-            &limb_weights(skeleton),
-            self.a.roles.body_height(skeleton).into(),
-        );
-        search.map_err(|error| error.to_string())
-    }
+fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
+    let skeleton = pair.a.clip.skeleton();
+    let search = PoseSearch::new(
+        (&pair.a.clip, &pair.a.ground_frames),
+        (&pair.incoming.clip, &pair.incoming.ground_frames),
+        &limb_weights(skeleton),
+        pair.a.roles.body_height(skeleton).into(),
+    );
+    search.map_err(|error| error.to_string())
 }
 
 /// Makes blends, and keeps what does not change from one to the next: the pair of clips and the distances between their frames.
@@ -160,14 +123,8 @@ const ROWS_AT_ONCE: usize = 160;
 
 impl Blender {
     /// Brings everything to the point where the blend itself is a pure function: finds the place, makes the clips fit each other.
-    pub(in crate::session) fn inputs(
-        &mut self,
-        a: &Arc<Motion>,
-        b: &Arc<Motion>,
-        params: &Params,
-        match_window: usize,
-    ) -> Result<BlendInputs, String> {
-        let pair = self.pair(a, b)?;
+    pub(in crate::session) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params, match_window: usize) -> Result<BlendInputs, String> {
+        self.meet(pair)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let window = (params.number(Key::BlendWindow) as usize).min(frames_a).min(frames_b);
         let in_transition = params.text(Key::Lab) == "transition";
@@ -206,15 +163,16 @@ impl Blender {
             enter,
             weights,
         };
-        let place = self.place(&pair, wanted)?;
+        let place = self.place(pair, wanted)?;
         let root = if params.is_on(Key::RootBlend) {
             RootBlend::Velocity
         } else {
             RootBlend::World
         };
         Ok(BlendInputs {
-            pair,
+            pair: Arc::clone(pair),
             place,
+            mistake: in_transition.then(|| mistake_of(params)).flatten(),
             foot_lock: params.is_on(Key::FootLock),
             options: TransitionOptions {
                 method,
@@ -224,14 +182,11 @@ impl Blender {
         })
     }
 
-    fn pair(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, String> {
-        if let Some(pair) = &self.pair
-            && Arc::ptr_eq(&pair.a, a)
-            && Arc::ptr_eq(&pair.b, b)
-        {
-            return Ok(Arc::clone(pair));
+    /// Begins to compare the frames of two clips that were not the last ones.
+    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), String> {
+        if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
+            return Ok(());
         }
-        let pair = Arc::new(Pair::new(a, b)?);
         let weights = limb_weights(pair.a.clip.skeleton());
         let body_height = pair.a.roles.body_height(pair.a.clip.skeleton());
         let search = TransitionSearch::new(
@@ -241,11 +196,11 @@ impl Blender {
             body_height.into(),
         );
         self.search = Some(search.map_err(|error| error.to_string())?);
-        self.pair = Some(Arc::clone(&pair));
+        self.pair = Some(Arc::clone(pair));
         self.poses = None;
         self.found = None;
         self.compare_rows(ROWS_AT_ONCE);
-        Ok(pair)
+        Ok(())
     }
 
     fn compare_rows(&mut self, rows: usize) {
@@ -265,7 +220,7 @@ impl Blender {
     /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
     fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, String> {
         if wanted.weights.is_some() && self.poses.is_none() {
-            self.poses = Some(pair.pose_search()?);
+            self.poses = Some(pose_search(pair)?);
             self.compare_rows(ROWS_AT_ONCE);
         }
         let Wanted { window, leave, enter, .. } = wanted;
@@ -336,10 +291,16 @@ impl BlendInputs {
             pair,
             place,
             options,
+            mistake,
             foot_lock: is_locked,
         } = self;
         let [a, b] = &pair.profiles;
-        let made = concatenate(a.source(), place.leave, b.source(), place.enter, options).map_err(|error| error.to_string())?;
+        let (from, to) = (a.source(), b.source());
+        let made = match *mistake {
+            Some(mistake) => concatenate_mistaken(from, place.leave, to, place.enter, options, mistake),
+            None => concatenate(from, place.leave, to, place.enter, options),
+        };
+        let made = made.map_err(|error| error.to_string())?;
         let fps = made.clip.fps();
         let secs = |frame: usize| frame as f64 / fps;
         let window = made.transition.clone();
@@ -355,12 +316,7 @@ impl BlendInputs {
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
         let roles = pair.a.roles.clone();
         let free = Arc::new(made.clip.with_name(name));
-        let clip = if *is_locked {
-            let locked = foot_lock(&free, &roles, &contacts, &FootLockOptions::default());
-            Arc::new(locked.map_err(|error| error.to_string())?)
-        } else {
-            Arc::clone(&free)
-        };
+        let clip = with_feet(&free, &roles, &contacts, *is_locked)?;
         let motion = Motion {
             clip,
             roles,
@@ -407,6 +363,7 @@ impl BlendInputs {
             transition: Some(transition),
             cycle: None,
             retargeted: pair.retargeted.clone(),
+            layer: None,
             metrics,
         })
     }

@@ -178,6 +178,7 @@ impl LoopInputs {
                 },
             }),
             retargeted: None,
+            layer: None,
             metrics,
         })
     }

@@ -1,18 +1,17 @@
 //! The Speed lab: two gaits at a speed.
 
-use super::blend::Pair;
+use super::pair::Pair;
 use super::rounds::{Rounds, fact, rounds};
 use super::{Cycle, CycleMade, Outcome};
 use crate::clip::ground_speed;
 use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
-use crate::session::motion::Motion;
 use crate::session::params::{Key, Kind, Params};
 use std::sync::Arc;
 
 /// The cycles of two clips, found once.
 #[derive(Debug)]
 struct Gaits {
-    pair: Pair,
+    pair: Arc<Pair>,
     cycles: [GaitCycle; 2],
 }
 
@@ -41,8 +40,8 @@ pub(in crate::session) struct GaitFinder {
 
 impl GaitFinder {
     /// What the parameters ask for, of these two clips.
-    pub(in crate::session) fn inputs(&mut self, a: &Arc<Motion>, b: &Arc<Motion>, params: &Params) -> Result<SpeedInputs, String> {
-        let gaits = self.gaits(a, b)?;
+    pub(in crate::session) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<SpeedInputs, String> {
+        let gaits = self.gaits(pair)?;
         let clips_mps = [0, 1].map(|clip: usize| gaits.cycles[clip].speed_mps());
         Ok(SpeedInputs {
             alignment: if params.is_on(Key::PhaseAlign) {
@@ -56,21 +55,22 @@ impl GaitFinder {
         })
     }
 
-    fn gaits(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Gaits>, String> {
+    fn gaits(&mut self, pair: &Arc<Pair>) -> Result<Arc<Gaits>, String> {
         if let Some(gaits) = &self.known
-            && Arc::ptr_eq(&gaits.pair.a, a)
-            && Arc::ptr_eq(&gaits.pair.b, b)
+            && Arc::ptr_eq(&gaits.pair, pair)
         {
             return Ok(Arc::clone(gaits));
         }
-        let pair = Pair::new(a, b)?;
         let [first, second] = &pair.profiles;
         let find = |profile: &crate::metrics::Profile| {
             let found = GaitCycle::find(profile.source(), profile.contacts());
             found.map_err(|error| error.to_string())
         };
         let cycles = [find(first)?, find(second)?];
-        let gaits = Arc::new(Gaits { pair, cycles });
+        let gaits = Arc::new(Gaits {
+            pair: Arc::clone(pair),
+            cycles,
+        });
         self.known = Some(Arc::clone(&gaits));
         Ok(gaits)
     }
@@ -148,6 +148,7 @@ impl SpeedInputs {
                 },
             }),
             retargeted: pair.retargeted.clone(),
+            layer: None,
             metrics,
         })
     }

@@ -1,0 +1,54 @@
+//! The classic mistakes of the Transition lab: one at a time, and what each of them looks like.
+
+use super::kit::{self, Button};
+use super::out::Out;
+use super::param_row::{Detail, param_row_ui};
+use super::text;
+use super::theme::{Type, palette_of, theme_of};
+use eframe::egui::{RichText, Ui};
+use segue::session::{Compare, Key, Session, Value, mistake_shows};
+
+/// The choice, a sentence for every mistake that is on the stage, and the right way beside it.
+pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    param_row_ui(Key::Mistake, &Detail::default(), session, out, ui);
+    let params = session.params();
+    let compared = session.compare().filter(|compare| compare.key == Key::Mistake);
+    let words: Vec<String> = match &compared {
+        Some(compare) => compare.values.iter().map(|value| Key::Mistake.param().format(value)).collect(),
+        None => vec![params.text(Key::Mistake).to_owned()],
+    };
+    for word in &words {
+        let shows = shows(word, session);
+        let sentence = match (word.as_str(), params.text(Key::Method)) {
+            _ if !shows => text::MISTAKE_IDLE,
+            ("velocity", "smooth" | "linear") => text::VELOCITY_IN_DISSOLVE,
+            _ => text::mistake(word),
+        };
+        if !sentence.is_empty() {
+            let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
+            ui.label(RichText::new(sentence).font(theme_of(ui).font(Type::Small)).color(color));
+        }
+    }
+    let chosen = params.text(Key::Mistake);
+    if (chosen != "none" || compared.is_some())
+        && kit::button_ui(Button::new(text::RIGHT_AND_WRONG).selected(compared.is_some()), ui).clicked()
+    {
+        let none = Value::Choice("none");
+        let query = match compared {
+            Some(_) => String::new(),
+            None => Compare {
+                key: Key::Mistake,
+                values: vec![none, params.get(Key::Mistake).clone()],
+            }
+            .to_string(),
+        };
+        out.set_once(Key::Compare, Value::Text(query));
+    }
+}
+
+/// Whether the method gives this mistake an opportunity.
+fn shows(word: &str, session: &Session) -> bool {
+    let mut params = session.params().clone();
+    let value = Key::Mistake.param().parse(word);
+    value.is_ok_and(|value| params.set(Key::Mistake, value).is_ok()) && mistake_shows(&params)
+}

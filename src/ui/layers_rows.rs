@@ -1,0 +1,50 @@
+//! The Layers lab: which part of the body is B's, how much of it, and when.
+
+use super::kit;
+use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
+use super::out::Out;
+use super::param_row::{Detail, param_row_ui};
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{RichText, Ui};
+use segue::session::{Key, Session};
+
+/// All rows of the lab.
+pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    pair_ui(session, out, ui);
+    let params = session.params();
+    let plain = Detail::default();
+    let additive = params.text(Key::LayerMode) == "additive" || session.compare().is_some_and(|compare| compare.key == Key::LayerMode);
+    param_row_ui(Key::LayerMode, &plain, session, out, ui);
+    ui.add_space(space::XS);
+    param_row_ui(Key::Mask, &plain, session, out, ui);
+    param_row_ui(Key::LayerWeight, &plain, session, out, ui);
+    compare_ui(Key::LayerWeight, session, out, ui);
+    param_row_ui(Key::Feather, &plain, session, out, ui);
+    if additive {
+        label_ui(Key::LayerReference, ui);
+        param_row_ui(Key::LayerReference, &plain, session, out, ui);
+        ui.add_space(space::XS);
+    }
+    label_ui(Key::LayerFit, ui);
+    param_row_ui(Key::LayerFit, &plain, session, out, ui);
+    if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer.as_ref()) {
+        let words = RichText::new(text::fit(layer)).font(theme_of(ui).font(Type::Small));
+        ui.label(words.color(palette_of(ui).muted));
+    }
+    param_row_ui(Key::LayerStart, &plain, session, out, ui);
+    ui.add_space(space::XS);
+    if params.text(Key::LayerMode) != "additive" {
+        param_row_ui(Key::KeepOrientation, &plain, session, out, ui);
+    }
+    param_row_ui(Key::MaskColors, &plain, session, out, ui);
+    param_row_ui(Key::FootLock, &plain, session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+fn label_ui(key: Key, ui: &mut Ui) {
+    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+}
