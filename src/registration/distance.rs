@@ -2,7 +2,7 @@ use super::REFERENCE_HEIGHT_M;
 
 /// Distances between windows of two clips: one row per source frame, one column per target frame, every `stride` frames.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DistanceGrid {
+pub struct DistanceMatrix {
     pub(super) stride: usize,
     pub(super) window: usize,
     pub(super) source_start: usize,
@@ -12,7 +12,7 @@ pub struct DistanceGrid {
     pub(super) rms_m: Vec<f32>,
 }
 
-impl DistanceGrid {
+impl DistanceMatrix {
     /// Rows: source windows.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -49,7 +49,7 @@ impl DistanceGrid {
         &self.rms_m
     }
 
-    /// One distance, metres; `None` outside the grid.
+    /// One distance, metres; `None` outside the matrix.
     #[must_use]
     pub fn get(&self, row: usize, column: usize) -> Option<f32> {
         if row < self.rows && column < self.columns {
@@ -65,7 +65,7 @@ impl DistanceGrid {
         100.0 * REFERENCE_HEIGHT_M / body_height
     }
 
-    /// The cell of the smallest distance, the first of equals; `None` for an empty grid.
+    /// The cell of the smallest distance, the first of equals; `None` for an empty matrix.
     #[must_use]
     pub fn minimum(&self) -> Option<(usize, usize)> {
         let (at, _) = self.rms_m.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn minima_are_sorted_and_a_plateau_counts_once() {
-        let grid = DistanceGrid {
+        let matrix = DistanceMatrix {
             stride: 1,
             window: 1,
             source_start: 0,
@@ -117,8 +117,8 @@ mod tests {
             columns: 4,
             rms_m: vec![5.0, 9.0, 2.0, 2.0, 9.0, 9.0, 2.0, 9.0, 1.0, 9.0, 9.0, 9.0],
         };
-        assert_eq!(grid.local_minima(), [(2, 0), (0, 2), (0, 0)]);
-        assert_eq!(grid.minimum(), Some((2, 0)));
-        assert_eq!(grid.get(0, 4), None);
+        assert_eq!(matrix.local_minima(), [(2, 0), (0, 2), (0, 0)]);
+        assert_eq!(matrix.minimum(), Some((2, 0)));
+        assert_eq!(matrix.get(0, 4), None);
     }
 }

@@ -13,19 +13,22 @@
 //! centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
 
 mod align;
+mod cloud;
 mod distance;
 #[cfg(test)]
 pub(crate) mod fixtures;
-mod grid;
 mod points;
 mod pose;
+mod sweep;
+mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use distance::DistanceGrid;
-pub use grid::{PairSums, Progress};
+pub use distance::DistanceMatrix;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
+pub use sweep::Sweep;
+pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 
 /// Why two motions cannot be laid on each other.
