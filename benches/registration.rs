@@ -54,7 +54,9 @@ fn distances(c: &mut Criterion) {
     let all = 0..FRAMES;
     let mut group = c.benchmark_group("distances");
     group.sample_size(10);
-    group.bench_function("pair terms (once per pair of clips)", |bench| bench.iter(|| terms(&a, black_box(&b), &weights)));
+    group.bench_function("pair terms (once per pair of clips)", |bench| {
+        bench.iter(|| terms(&a, black_box(&b), &weights))
+    });
     let terms = terms(&a, &b, &weights);
     group.bench_function("a new window", |bench| {
         bench.iter(|| terms.distances(black_box(WINDOW), &all, &all).expect("complete"));

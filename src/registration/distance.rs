@@ -59,6 +59,39 @@ impl DistanceMatrix {
         }
     }
 
+    /// The distances of one row, metres; empty outside the matrix.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[f32] {
+        let start = row.saturating_mul(self.columns);
+        self.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
+    }
+
+    /// The mean of every block of `factor` × `factor` cells, less at the far borders: the same picture with fewer cells.
+    #[must_use]
+    pub fn pooled(&self, factor: usize) -> Self {
+        let factor = factor.max(1);
+        let (rows, columns) = (self.rows.div_ceil(factor), self.columns.div_ceil(factor));
+        let mut rms_m = Vec::with_capacity(rows * columns);
+        let mut sums = vec![0.0_f32; columns];
+        for first in (0..self.rows).step_by(factor) {
+            let block = first..(first + factor).min(self.rows);
+            sums.fill(0.0);
+            for row in block.clone() {
+                for (sum, cells) in sums.iter_mut().zip(self.row(row).chunks(factor)) {
+                    *sum += cells.iter().sum::<f32>() / cells.len() as f32;
+                }
+            }
+            rms_m.extend(sums.iter().map(|sum| sum / block.len() as f32));
+        }
+        Self {
+            stride: self.stride * factor,
+            rows,
+            columns,
+            rms_m,
+            ..*self
+        }
+    }
+
     /// What turns [`rms_m`](Self::rms_m) into centimetres on the reference body.
     #[must_use]
     pub fn cm_scale(body_height: f64) -> f64 {
@@ -120,5 +153,8 @@ mod tests {
         assert_eq!(matrix.local_minima(), [(2, 0), (0, 2), (0, 0)]);
         assert_eq!(matrix.minimum(), Some((2, 0)));
         assert_eq!(matrix.get(0, 4), None);
+        let pooled = matrix.pooled(3);
+        assert_eq!((pooled.rows(), pooled.columns(), pooled.frames(0, 1)), (1, 2, (0, 3)));
+        assert!((pooled.rms_m()[0] - 55.0 / 9.0).abs() < 1e-6 && (pooled.rms_m()[1] - 20.0 / 3.0).abs() < 1e-6);
     }
 }

@@ -17,6 +17,8 @@ mod cloud;
 mod distance;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod path;
+mod path_error;
 mod points;
 mod pose;
 mod sweep;
@@ -25,6 +27,8 @@ mod transition;
 
 pub use align::{Alignment, align};
 pub use distance::DistanceMatrix;
+pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_path, path_in_corridor};
+pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
 pub use sweep::Sweep;

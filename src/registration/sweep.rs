@@ -1,5 +1,5 @@
-use super::terms::{PairTerms, Progress, TermRow, centre_product};
 use super::DistanceMatrix;
+use super::terms::{PairTerms, Progress, TermRow, centre_product};
 use glam::DVec2;
 use std::ops::Range;
 
@@ -111,7 +111,10 @@ impl<'a> Sweep<'a> {
             for k in 0..samples {
                 let centre = self.terms.source.centre(first + k);
                 let entering = self.entering(self.terms.row(first + k), k, columns);
-                let sums = self.dot[shift..].iter_mut().zip(&mut self.cross[shift..]).zip(&mut self.height[shift..]);
+                let sums = self.dot[shift..]
+                    .iter_mut()
+                    .zip(&mut self.cross[shift..])
+                    .zip(&mut self.height[shift..]);
                 for (c, ((dot, cross), height)) in sums.take(columns).enumerate() {
                     let (d, x) = centre_product(centre, DVec2::new(entering.x[c], entering.z[c]));
                     *dot += f64::from(entering.terms.dot[c]) + d;

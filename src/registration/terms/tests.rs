@@ -74,7 +74,12 @@ fn digits_survive_a_long_walk_far_away() {
         ..Walk::default()
     };
     let a = walk.clip();
-    let b = Walk { cadence: 0.91, start: (-3.0, 0.0), ..walk }.clip();
+    let b = Walk {
+        cadence: 0.91,
+        start: (-3.0, 0.0),
+        ..walk
+    }
+    .clip();
     let fast = terms(&a, &b, 1).distances(4, &(0..400), &(0..400)).unwrap();
     let slow = distances_directly((&a, 0..400), (&b, 0..400), &limb_weights(a.skeleton()), 4, 1).unwrap();
     // The positions themselves are rounded to a tenth of a millimetre there.
