@@ -14,6 +14,7 @@
 
 mod align;
 mod cloud;
+mod curves;
 mod distance;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -26,6 +27,7 @@ mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
+pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_path, path_in_corridor};
 pub use path_error::PathError;

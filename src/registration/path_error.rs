@@ -1,3 +1,4 @@
+use super::RegistrationError;
 use super::path::MAX_SLOPE_LIMIT;
 
 /// Why there is no path through a distance matrix. Places are frames: (first clip, second clip).
@@ -65,6 +66,9 @@ pub enum PathError {
         /// The smallest limit that may do.
         needed: usize,
     },
+    /// The clips cannot be compared along the path.
+    #[error(transparent)]
+    Registration(#[from] RegistrationError),
     /// The distances are no numbers.
     #[error("a distance is not a finite number: repair or crop the clips first")]
     NotFinite,

@@ -274,6 +274,16 @@ impl PairTerms {
     }
 }
 
+impl PairTerms {
+    /// The weighted centre on the ground of the target's window of `window` frames next to frame `target`, metres, as far as it lies inside.
+    pub(super) fn target_centre(&self, target: usize, window: usize) -> DVec2 {
+        let first = (target.saturating_sub(self.target.start) / self.stride).min(self.target.samples - 1);
+        let samples = first..(first + self.samples_in(window)).min(self.target.samples);
+        let count = samples.len() as f64;
+        self.target.origin + samples.map(|sample| self.target.centre(sample)).sum::<DVec2>() / count
+    }
+}
+
 /// What [`PairTerms::distances`] gives, straight from the definition: every pair of windows, of those that start in `sources` and `targets`, laid on each
 /// other point by point, O(N²JK) in `f64`. The slow way that the fast one is tested and timed against.
 ///
