@@ -4,7 +4,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue::clip::Clip;
-use segue::registration::{PairTerms, distances_directly, limb_weights};
+use segue::registration::{PairTerms, PathOptions, Registration, RegistrationOptions, distances_directly, limb_weights, optimal_path};
 use segue::skeleton::{Joint, Skeleton};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -60,6 +60,21 @@ fn distances(c: &mut Criterion) {
     let terms = terms(&a, &b, &weights);
     group.bench_function("a new window", |bench| {
         bench.iter(|| terms.distances(black_box(WINDOW), &all, &all).expect("complete"));
+    });
+    let matrix = terms.distances(WINDOW, &all, &all).expect("complete");
+    let options = RegistrationOptions::new(FPS);
+    group.bench_function("a path", |bench| {
+        bench.iter(|| optimal_path(black_box(&matrix), &PathOptions::default()).expect("a path"))
+    });
+    group.bench_function("path and curves (a new slope limit)", |bench| {
+        bench.iter(|| Registration::new(&terms, black_box(&matrix), &options).expect("a path"));
+    });
+    group.bench_function("all: terms, window, path, curves", |bench| {
+        bench.iter(|| {
+            let terms = self::terms(&a, black_box(&b), &weights);
+            let matrix = terms.distances(WINDOW, &all, &all).expect("complete");
+            Registration::new(&terms, &matrix, &options).expect("a path")
+        });
     });
     group.bench_function("directly, a fiftieth of the rows", |bench| {
         bench.iter(|| distances_directly((&a, 0..FRAMES / 50), (black_box(&b), all.clone()), &weights, WINDOW, 1).expect("finite"));

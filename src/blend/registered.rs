@@ -138,7 +138,8 @@ pub fn registered_join(
 }
 
 impl RegisteredBlend {
-    /// When which foot is on the ground: in every frame as the clip with the greatest weight has it. `of` are the clips' contacts, the reference's first.
+    /// When which foot is on the ground: where clips with more than half of the weight have it there. `of` are the clips' contacts,
+    /// the reference's first.
     #[must_use]
     pub fn contacts(&self, of: &[&Contacts]) -> Contacts {
         contacts_of(&self.instants, of)
@@ -165,8 +166,8 @@ fn contacts_of(instants: &[Instant], of: &[&Contacts]) -> Contacts {
     let planted = |side: Side| {
         instants.iter().map(move |instant| {
             let parts = instant.weights.iter().zip(&instant.frames).zip(of);
-            let heaviest = parts.max_by(|a, b| a.0.0.total_cmp(b.0.0));
-            heaviest.is_some_and(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize))
+            let planted = parts.filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
+            planted.map(|((weight, _), _)| weight).sum::<f64>() > 0.5
         })
     };
     Contacts::from_flags(Side::BOTH.map(|side| planted(side).collect()))

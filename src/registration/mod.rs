@@ -95,6 +95,16 @@ pub enum RegistrationError {
         /// "outgoing" or "incoming".
         which: &'static str,
     },
+    /// More pairs than can be held.
+    #[error("{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames")]
+    TooManyPairs {
+        /// Pairs of frames asked for.
+        pairs: usize,
+        /// The most that are held.
+        most: usize,
+        /// A stride that would do.
+        stride: usize,
+    },
     /// The sums have not been computed yet.
     #[error("{done} of {total} rows are compared: advance the search to the end first")]
     Unfinished {

@@ -24,6 +24,9 @@ impl Progress {
     }
 }
 
+/// The most pairs that are held: 768 MiB of terms.
+const MOST_PAIRS: usize = 1 << 26;
+
 /// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are `f32`.
 const ROUNDING: f64 = 1e-6;
 
@@ -77,7 +80,8 @@ impl PairTerms {
     /// Memory: 12 bytes per pair of samples.
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip or range is empty, the skeletons' sizes differ, the weights do not fit, or a position is not finite.
+    /// [`RegistrationError`] when a clip or range is empty, the skeletons' sizes differ, the weights do not fit, a position is not finite, or the pairs are
+    /// more than memory should be taken for (67 million).
     pub fn new(
         source: &Clip,
         source_frames: Range<usize>,
@@ -115,6 +119,20 @@ impl PairTerms {
             }
         }
         let stride = stride.max(1);
+        let pairs = |stride| {
+            source_frames
+                .len()
+                .div_ceil(stride)
+                .saturating_mul(target_frames.len().div_ceil(stride))
+        };
+        if pairs(stride) > MOST_PAIRS {
+            let coarser = (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1;
+            return Err(RegistrationError::TooManyPairs {
+                pairs: pairs(stride),
+                most: MOST_PAIRS,
+                stride: coarser,
+            });
+        }
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
         let source = Cloud::new(source, source_frames, stride, &shares, level)?;

@@ -1,9 +1,12 @@
 use super::*;
-use crate::clip::Clip;
+use crate::clip::{Clip, JointTranslations};
 use crate::registration::fixtures::Walk;
 use crate::registration::limb_weights;
+use crate::skeleton::{Joint, Skeleton};
+use glam::{Quat, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 fn registered(a: &Clip, b: &Clip, window: usize, options: &RegistrationOptions) -> Registration {
     let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
@@ -152,5 +155,96 @@ fn a_moved_clip_lies_where_it_was() {
         assert!((found.warp().at(frame) - frame).abs() < 1e-9);
         let still = found.alignment_at(frame).after(&there);
         assert!(still.yaw.abs() < 1e-4 && still.shift.length() < 1e-2, "{frame} {still:?}");
+    }
+}
+
+#[derive(serde::Deserialize)]
+struct Golden {
+    source: Vec<Vec<[f32; 3]>>,
+    target: Vec<Vec<[f32; 3]>>,
+    weights: Vec<f64>,
+    windows: Vec<GoldenWindow>,
+}
+
+#[derive(serde::Deserialize)]
+struct GoldenWindow {
+    window: usize,
+    rms_m: Vec<Vec<f32>>,
+    at_5_9: [f64; 3],
+    paths: Vec<GoldenPath>,
+}
+
+#[derive(serde::Deserialize)]
+struct GoldenPath {
+    slope_limit: usize,
+    cells: Vec<(usize, usize)>,
+    mean_m: f64,
+    warps: Vec<GoldenWarp>,
+}
+
+#[derive(serde::Deserialize)]
+struct GoldenWarp {
+    smoothing: usize,
+    at_frames: Vec<f64>,
+}
+
+/// Points that fly: a root, and joints that move against it.
+fn flying(frames: &[Vec<[f32; 3]>]) -> Clip {
+    let joints = frames[0].len();
+    let joint = |index: usize| Joint {
+        name: format!("p{index}"),
+        parent: (index > 0).then_some(0),
+        offset: Vec3::ZERO,
+        end_site: None,
+        channels: vec![],
+    };
+    let skeleton = Arc::new(Skeleton::new((0..joints).map(joint).collect()).unwrap());
+    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from_array(frame[joint]);
+    let roots = frames.iter().map(|frame| at(frame, 0)).collect();
+    let tracks = (1..joints).map(|joint| JointTranslations {
+        joint,
+        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
+    });
+    let clip = Clip::new("points", skeleton, 30.0, vec![Quat::IDENTITY; joints * frames.len()], roots).unwrap();
+    clip.with_translations(tracks.collect()).unwrap()
+}
+
+#[test]
+fn matrix_path_and_warp_agree_with_scipy() {
+    let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/registration.json")).unwrap();
+    let (source, target) = (flying(&golden.source), flying(&golden.target));
+    let mut terms = PairTerms::new(&source, 0..24, &target, 0..30, &golden.weights, 1).unwrap();
+    terms.finish();
+    for case in &golden.windows {
+        let matrix = terms.distances(case.window, &(0..24), &(0..30)).unwrap();
+        assert_eq!((matrix.rows(), matrix.columns()), (case.rms_m.len(), case.rms_m[0].len()));
+        for (row, wanted) in case.rms_m.iter().enumerate() {
+            for (found, wanted) in matrix.row(row).iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-5, "{found} {wanted}");
+            }
+        }
+        let found = terms.alignment(5, 9, case.window, 0.0).unwrap().transform;
+        for (found, wanted) in [found.yaw, found.shift.x, found.shift.y].into_iter().zip(case.at_5_9) {
+            assert!((found - wanted).abs() < 1e-5, "{found} {wanted}");
+        }
+        for path in &case.paths {
+            for warp in &path.warps {
+                let options = RegistrationOptions {
+                    path: PathOptions {
+                        slope_limit: path.slope_limit,
+                        ..PathOptions::default()
+                    },
+                    smoothing: warp.smoothing,
+                };
+                let found = Registration::new(&terms, &matrix, &options).unwrap();
+                assert_eq!(found.path().cells, path.cells);
+                assert!((found.path().mean_m - path.mean_m).abs() < 1e-6);
+                for (frame, &wanted) in warp.at_frames.iter().enumerate() {
+                    let at = found.warp().at(frame as f64);
+                    // The straightening is known to 1e-5 there.
+                    assert!((at - wanted).abs() < 1e-3, "{} {frame}: {at} {wanted}", warp.smoothing);
+                }
+            }
+        }
     }
 }

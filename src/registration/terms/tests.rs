@@ -202,6 +202,16 @@ fn what_cannot_be_compared_is_refused() {
         PairTerms::new(&a, 0..5, &b, 0..5, &weights[1..], 1),
         Err(RegistrationError::Weights { .. })
     ));
+    let long = Walk {
+        frames: 9000,
+        ..Walk::default()
+    }
+    .clip();
+    assert!(matches!(
+        PairTerms::new(&long, 0..9000, &long, 0..9000, &weights, 1),
+        Err(RegistrationError::TooManyPairs { stride: 3, .. })
+    ));
+    assert!(PairTerms::new(&long, 0..9000, &long, 0..9000, &weights, 3).is_ok());
     let terms = terms(&a, &b, 1);
     assert!(matches!(
         terms.alignment(60, 0, 9, 0.0),
