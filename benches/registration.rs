@@ -55,7 +55,7 @@ fn distances(c: &mut Criterion) {
     let mut group = c.benchmark_group("distances");
     group.sample_size(10);
     group.bench_function("pair terms (once per pair of clips)", |bench| {
-        bench.iter(|| terms(&a, black_box(&b), &weights))
+        bench.iter(|| terms(&a, black_box(&b), &weights));
     });
     let terms = terms(&a, &b, &weights);
     group.bench_function("a new window", |bench| {
@@ -64,7 +64,7 @@ fn distances(c: &mut Criterion) {
     let matrix = terms.distances(WINDOW, &all, &all).expect("complete");
     let options = RegistrationOptions::new(FPS);
     group.bench_function("a path", |bench| {
-        bench.iter(|| optimal_path(black_box(&matrix), &PathOptions::default()).expect("a path"))
+        bench.iter(|| optimal_path(black_box(&matrix), &PathOptions::default()).expect("a path"));
     });
     group.bench_function("path and curves (a new slope limit)", |bench| {
         bench.iter(|| Registration::new(&terms, black_box(&matrix), &options).expect("a path"));

@@ -231,7 +231,9 @@ impl<'a> Blend<'a> {
         }
         let sum: f64 = weights.iter().sum();
         if sum > 1.0 {
-            weights.iter_mut().for_each(|weight| *weight /= sum);
+            for weight in &mut weights {
+                *weight /= sum;
+            }
         } else {
             weights[0] = 1.0 - sum;
         }
@@ -266,9 +268,9 @@ impl<'a> Blend<'a> {
                 break;
             }
             if off > 0.0 {
-                high = at
+                high = at;
             } else {
-                low = at
+                low = at;
             }
             let others = self.partners.iter().zip(&weights[1..]);
             let rate = weights[0]

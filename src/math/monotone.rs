@@ -43,8 +43,7 @@ impl MonotoneCurve {
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let ((from, low), (to, high)) = (self.first(), self.last());
-        // Negated, so that NaN ends here too.
-        if !(x > from) {
+        if x <= from || x.is_nan() {
             return low + (x - from);
         }
         if x >= to {
@@ -66,7 +65,7 @@ impl MonotoneCurve {
     #[must_use]
     pub fn inverse(&self, y: f64) -> f64 {
         let ((from, low), (to, high)) = (self.first(), self.last());
-        if !(y > low) {
+        if y <= low || y.is_nan() {
             return from + (y - low);
         }
         if y >= high {
