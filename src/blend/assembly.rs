@@ -19,7 +19,12 @@ pub(crate) struct Assembly {
 impl Assembly {
     /// An empty clip on the body and at the rate of `first`, with room for `frames`.
     pub(crate) fn new(first: &Clip, second: &Clip, frames: usize) -> Self {
-        let tracks = moving_joints(first, second).into_iter().map(|joint| JointTranslations {
+        Self::of(first, [first, second], frames)
+    }
+
+    /// Likewise for frames that are made of any number of clips.
+    pub(super) fn of<'a>(first: &Clip, clips: impl IntoIterator<Item = &'a Clip>, frames: usize) -> Self {
+        let tracks = moving_joints_of(clips).into_iter().map(|joint| JointTranslations {
             joint,
             values: Vec::with_capacity(frames),
         });
@@ -113,7 +118,13 @@ pub(crate) fn standing_over(
 
 /// The joints other than the root that move against their parent in either clip, in order.
 pub(crate) fn moving_joints(a: &Clip, b: &Clip) -> Vec<usize> {
-    let mut joints: Vec<usize> = a.translations().iter().chain(b.translations()).map(|track| track.joint).collect();
+    moving_joints_of([a, b])
+}
+
+/// Likewise for any number of clips.
+pub(super) fn moving_joints_of<'a>(clips: impl IntoIterator<Item = &'a Clip>) -> Vec<usize> {
+    let tracks = clips.into_iter().flat_map(Clip::translations);
+    let mut joints: Vec<usize> = tracks.map(|track| track.joint).collect();
     joints.sort_unstable();
     joints.dedup();
     joints

@@ -188,6 +188,19 @@ pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, wi
 
 /// Whether the clips can follow each other with this overlap.
 pub(crate) fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: usize) -> Result<(), BlendError> {
+    check_bodies(a, b)?;
+    // B gives at least one frame, A may end right before a cut.
+    for (which, clip, at, window) in [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))] {
+        let frames = clip.frames();
+        if frames == 0 || at > frames || frames - at < window {
+            return Err(BlendError::Window { which, frames, at, window });
+        }
+    }
+    Ok(())
+}
+
+/// Whether the clips move the same body at the same rate.
+pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
     let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
     if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
         return Err(BlendError::Skeletons {
@@ -197,13 +210,6 @@ pub(crate) fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: 
     }
     if (a_fps - b_fps).abs() > 1e-4 * a_fps {
         return Err(BlendError::FrameRates { a_fps, b_fps });
-    }
-    // B gives at least one frame, A may end right before a cut.
-    for (which, clip, at, window) in [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))] {
-        let frames = clip.frames();
-        if frames == 0 || at > frames || frames - at < window {
-            return Err(BlendError::Window { which, frames, at, window });
-        }
     }
     Ok(())
 }

@@ -31,7 +31,9 @@ mod dissolve;
 mod layers;
 mod mask;
 mod place;
+mod registered;
 mod weight;
+mod weight_curve;
 
 pub(crate) use assembly::{Assembly, moving_joints, standing_over, translation_of};
 pub use concatenation::Concatenation;
@@ -40,7 +42,9 @@ pub(crate) use dissolve::{check, common_carrier, laid_on};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};
+pub use registered::{Instant, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join};
 pub use weight::WeightLaw;
+pub use weight_curve::WeightCurve;
 
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
@@ -81,6 +85,14 @@ pub enum BlendError {
         at: usize,
         /// Frames of the window.
         window: usize,
+    },
+    /// Nothing is registered that could be blended.
+    #[error(
+        "`{reference}` and the clips blended with it have no registered part in common: register them over the same frames, or free fewer ends"
+    )]
+    Apart {
+        /// Name of the clip that the others are registered to.
+        reference: String,
     },
     /// A time that is none.
     #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]

@@ -69,6 +69,12 @@ impl Planar {
         Vec3::new(p.x as f32, point.y, p.y as f32)
     }
 
+    /// The image of a point of the ground, (x, z) in metres.
+    #[must_use]
+    pub fn apply_ground(&self, point: DVec2) -> DVec2 {
+        self.turned(point) + self.shift
+    }
+
     /// The image of a direction or velocity: turned, not shifted.
     #[must_use]
     pub fn apply_vector(&self, v: Vec3) -> Vec3 {

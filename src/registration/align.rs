@@ -55,11 +55,12 @@ pub fn align(source: &[Vec3], target: &[Vec3], weights: &[f64], fallback_yaw: f6
         let (p, q) = (p.as_dvec3() - source_centre, q.as_dvec3() - target_centre);
         sums.add(weights[index % weights.len()], p, q);
     }
-    sums.alignment(fallback_yaw, source_centre, target_centre)
+    let ground = |v: DVec3| DVec2::new(v.x, v.z);
+    sums.alignment(fallback_yaw, ground(source_centre), ground(target_centre), 1e-9)
 }
 
 /// The mean of the points on the ground (its height is 0): sums about it keep their digits however far from the origin a clip walks.
-pub(super) fn ground_mean(points: &[Vec3]) -> DVec3 {
+fn ground_mean(points: &[Vec3]) -> DVec3 {
     let sum: DVec3 = points.iter().map(|p| DVec3::new(f64::from(p.x), 0.0, f64::from(p.z))).sum();
     sum / points.len().max(1) as f64
 }
@@ -97,22 +98,28 @@ impl PairMoments {
         self.height += w * (p.y - q.y) * (p.y - q.y);
     }
 
-    /// The minimiser and the minimum, for clouds that were summed about the given centres.
-    pub(super) fn alignment(&self, fallback_yaw: f64, source_centre: DVec3, target_centre: DVec3) -> Result<Alignment, RegistrationError> {
+    /// The minimiser and the minimum, for clouds that were summed about the given centres on the ground. `rounding` is what share of the spread the
+    /// sums may be off by.
+    pub(super) fn alignment(
+        &self,
+        fallback_yaw: f64,
+        source_centre: DVec2,
+        target_centre: DVec2,
+        rounding: f64,
+    ) -> Result<Alignment, RegistrationError> {
         let (w, p, q) = (self.weight, self.source, self.target);
         let a = self.cross - (p.x * q.y - q.x * p.y) / w;
         let b = self.dot - p.dot(q) / w;
         let spread = (self.source_square - p.length_squared() / w) + (self.target_square - q.length_squared() / w);
         let strength = a.hypot(b);
         // What rounding alone makes of a perfectly round or point-like cloud.
-        let noise = 1e-9 * spread + 1e-14 * (self.source_square + self.target_square);
+        let noise = rounding * spread + 1e-14 * (self.source_square + self.target_square);
         // Negated, so that NaN counts as free and is then caught by the test below.
         let turn_is_free = strength.partial_cmp(&noise) != Some(std::cmp::Ordering::Greater);
         let yaw = if turn_is_free { fallback_yaw } else { a.atan2(b) };
         let (sin, cos) = yaw.sin_cos();
         let turned = |v: DVec2| DVec2::new(v.x * cos + v.y * sin, -v.x * sin + v.y * cos);
-        let ground = |v: DVec3| DVec2::new(v.x, v.z);
-        let shift = (p - turned(q)) / w + ground(source_centre) - turned(ground(target_centre));
+        let shift = (p - turned(q)) / w + source_centre - turned(target_centre);
         let distance = (spread - 2.0 * strength + self.height).max(0.0);
         if !(distance.is_finite() && spread.is_finite() && shift.is_finite() && yaw.is_finite()) {
             return Err(RegistrationError::NotFinite);

@@ -2,7 +2,7 @@ use super::REFERENCE_HEIGHT_M;
 
 /// Distances between windows of two clips: one row per source frame, one column per target frame, every `stride` frames.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DistanceGrid {
+pub struct DistanceMatrix {
     pub(super) stride: usize,
     pub(super) window: usize,
     pub(super) source_start: usize,
@@ -12,7 +12,7 @@ pub struct DistanceGrid {
     pub(super) rms_m: Vec<f32>,
 }
 
-impl DistanceGrid {
+impl DistanceMatrix {
     /// Rows: source windows.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -49,7 +49,7 @@ impl DistanceGrid {
         &self.rms_m
     }
 
-    /// One distance, metres; `None` outside the grid.
+    /// One distance, metres; `None` outside the matrix.
     #[must_use]
     pub fn get(&self, row: usize, column: usize) -> Option<f32> {
         if row < self.rows && column < self.columns {
@@ -59,13 +59,46 @@ impl DistanceGrid {
         }
     }
 
+    /// The distances of one row, metres; empty outside the matrix.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[f32] {
+        let start = row.saturating_mul(self.columns);
+        self.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
+    }
+
+    /// The mean of every block of `factor` × `factor` cells, less at the far borders: the same picture with fewer cells.
+    #[must_use]
+    pub fn pooled(&self, factor: usize) -> Self {
+        let factor = factor.max(1);
+        let (rows, columns) = (self.rows.div_ceil(factor), self.columns.div_ceil(factor));
+        let mut rms_m = Vec::with_capacity(rows * columns);
+        let mut sums = vec![0.0_f32; columns];
+        for first in (0..self.rows).step_by(factor) {
+            let block = first..(first + factor).min(self.rows);
+            sums.fill(0.0);
+            for row in block.clone() {
+                for (sum, cells) in sums.iter_mut().zip(self.row(row).chunks(factor)) {
+                    *sum += cells.iter().sum::<f32>() / cells.len() as f32;
+                }
+            }
+            rms_m.extend(sums.iter().map(|sum| sum / block.len() as f32));
+        }
+        Self {
+            stride: self.stride * factor,
+            rows,
+            columns,
+            rms_m,
+            ..*self
+        }
+    }
+
     /// What turns [`rms_m`](Self::rms_m) into centimetres on the reference body.
     #[must_use]
     pub fn cm_scale(body_height: f64) -> f64 {
         100.0 * REFERENCE_HEIGHT_M / body_height
     }
 
-    /// The cell of the smallest distance, the first of equals; `None` for an empty grid.
+    /// The cell of the smallest distance, the first of equals; `None` for an empty matrix.
     #[must_use]
     pub fn minimum(&self) -> Option<(usize, usize)> {
         let (at, _) = self.rms_m.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
@@ -108,7 +141,7 @@ mod tests {
 
     #[test]
     fn minima_are_sorted_and_a_plateau_counts_once() {
-        let grid = DistanceGrid {
+        let matrix = DistanceMatrix {
             stride: 1,
             window: 1,
             source_start: 0,
@@ -117,8 +150,11 @@ mod tests {
             columns: 4,
             rms_m: vec![5.0, 9.0, 2.0, 2.0, 9.0, 9.0, 2.0, 9.0, 1.0, 9.0, 9.0, 9.0],
         };
-        assert_eq!(grid.local_minima(), [(2, 0), (0, 2), (0, 0)]);
-        assert_eq!(grid.minimum(), Some((2, 0)));
-        assert_eq!(grid.get(0, 4), None);
+        assert_eq!(matrix.local_minima(), [(2, 0), (0, 2), (0, 0)]);
+        assert_eq!(matrix.minimum(), Some((2, 0)));
+        assert_eq!(matrix.get(0, 4), None);
+        let pooled = matrix.pooled(3);
+        assert_eq!((pooled.rows(), pooled.columns(), pooled.frames(0, 1)), (1, 2, (0, 3)));
+        assert!((pooled.rms_m()[0] - 55.0 / 9.0).abs() < 1e-6 && (pooled.rms_m()[1] - 20.0 / 3.0).abs() < 1e-6);
     }
 }

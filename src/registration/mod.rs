@@ -13,19 +13,28 @@
 //! centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
 
 mod align;
+mod cloud;
+mod curves;
 mod distance;
 #[cfg(test)]
 pub(crate) mod fixtures;
-mod grid;
+mod path;
+mod path_error;
 mod points;
 mod pose;
+mod sweep;
+mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use distance::DistanceGrid;
-pub use grid::{PairSums, Progress};
+pub use curves::{Registration, RegistrationOptions};
+pub use distance::DistanceMatrix;
+pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_path, path_in_corridor};
+pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
+pub use sweep::Sweep;
+pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 
 /// Why two motions cannot be laid on each other.
@@ -85,6 +94,16 @@ pub enum RegistrationError {
     Empty {
         /// "outgoing" or "incoming".
         which: &'static str,
+    },
+    /// More pairs than can be held.
+    #[error("{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames")]
+    TooManyPairs {
+        /// Pairs of frames asked for.
+        pairs: usize,
+        /// The most that are held.
+        most: usize,
+        /// A stride that would do.
+        stride: usize,
     },
     /// The sums have not been computed yet.
     #[error("{done} of {total} rows are compared: advance the search to the end first")]

@@ -1,4 +1,4 @@
-use super::{Alignment, PairSums, Progress, RegistrationError, rms_cm};
+use super::{Alignment, PairTerms, Progress, RegistrationError, rms_cm};
 use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
@@ -96,7 +96,7 @@ pub struct Transition {
     pub grown: bool,
 }
 
-/// How many minima of the coarse grid are looked at closely.
+/// How many minima of the coarse matrix are looked at closely.
 const CANDIDATES: usize = 4;
 
 /// The search for the best transition between two clips, with everything cached that does not depend on the window.
@@ -110,7 +110,7 @@ pub struct TransitionSearch {
     incoming: Arc<Clip>,
     weights: Vec<f64>,
     body_height: f64,
-    sums: PairSums,
+    terms: PairTerms,
 }
 
 impl TransitionSearch {
@@ -126,25 +126,25 @@ impl TransitionSearch {
         }
         let longest = outgoing.frames().max(incoming.frames());
         let stride = ((source_fps / 30.0).ceil() as usize).max(longest.div_ceil(400)).max(1);
-        let sums = PairSums::new(&outgoing, 0..outgoing.frames(), &incoming, 0..incoming.frames(), weights, stride)?;
+        let terms = PairTerms::new(&outgoing, 0..outgoing.frames(), &incoming, 0..incoming.frames(), weights, stride)?;
         Ok(Self {
             outgoing,
             incoming,
             weights: weights.to_vec(),
             body_height,
-            sums,
+            terms,
         })
     }
 
-    /// Compares up to `rows` more rows of the coarse grid; there are at most about 400.
+    /// Compares up to `rows` more rows of the coarse matrix; there are at most about 400.
     pub fn advance(&mut self, rows: usize) -> Progress {
-        self.sums.advance(rows)
+        self.terms.advance(rows)
     }
 
-    /// The coarse sums, for a picture of all distances.
+    /// The coarse terms, for a picture of all distances.
     #[must_use]
-    pub fn sums(&self) -> &PairSums {
-        &self.sums
+    pub fn terms(&self) -> &PairTerms {
+        &self.terms
     }
 
     /// The best transition for these options.
@@ -155,7 +155,7 @@ impl TransitionSearch {
         let window = options.window.max(1);
         let (leave, leave_grew) = options.leave_starts(self.outgoing.frames())?;
         let (enter, enter_grew) = options.enter_starts(self.incoming.frames())?;
-        let grid = self.sums.distances(window, &leave, &enter)?;
+        let grid = self.terms.distances(window, &leave, &enter)?;
         let mut candidates: Vec<(usize, usize)> = (grid.local_minima().into_iter().take(CANDIDATES))
             .map(|(r, c)| grid.frames(r, c))
             .collect();
@@ -165,7 +165,7 @@ impl TransitionSearch {
         }
         let mut best: Option<(f32, usize, usize)> = None;
         for (i, j) in candidates {
-            let found = self.refined(i, j, self.sums.stride(), window, &leave, &enter)?;
+            let found = self.refined(i, j, self.terms.stride(), window, &leave, &enter)?;
             if best.is_none_or(|best| found.0 < best.0) {
                 best = Some(found);
             }
@@ -198,7 +198,7 @@ impl TransitionSearch {
         let stride = radius.div_ceil(8).max(1);
         let band = rows.len().max(columns.len()).div_ceil(stride);
         let with_window = |starts: &Range<usize>| starts.start..starts.end + window - 1;
-        let mut sums = PairSums::banded(
+        let mut terms = PairTerms::banded(
             &self.outgoing,
             with_window(&rows),
             &self.incoming,
@@ -207,8 +207,8 @@ impl TransitionSearch {
             stride,
             band,
         )?;
-        sums.finish();
-        let grid = sums.distances(window, &rows, &columns)?;
+        terms.finish();
+        let grid = terms.distances(window, &rows, &columns)?;
         let (row, column) = grid.minimum().unwrap_or_default();
         let (i, j) = grid.frames(row, column);
         if stride > 1 {
@@ -235,7 +235,7 @@ pub fn best_transition(
     options: &SearchOptions,
 ) -> Result<Transition, RegistrationError> {
     let mut search = TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights, body_height)?;
-    search.sums.finish();
+    search.terms.finish();
     search.best(options)
 }
 

@@ -1,7 +1,7 @@
 use super::LoopError;
 use crate::blend::Source;
 use crate::clip::{Clip, Contacts};
-use crate::registration::{PairSums, REFERENCE_HEIGHT_M, limb_weights};
+use crate::registration::{PairTerms, REFERENCE_HEIGHT_M, limb_weights};
 use crate::skeleton::Side;
 use std::ops::Range;
 
@@ -175,9 +175,9 @@ impl Finder<'_> {
         minima: bool,
     ) -> Result<Vec<Place>, LoopError> {
         let with_window = |starts: &Range<usize>| starts.start..starts.end.saturating_add(window - 1);
-        let mut sums = PairSums::new(self.clip, with_window(starts), self.clip, with_window(ends), &self.weights, stride)?;
-        sums.finish();
-        let grid = sums.distances(window, starts, ends)?;
+        let mut terms = PairTerms::new(self.clip, with_window(starts), self.clip, with_window(ends), &self.weights, stride)?;
+        terms.finish();
+        let grid = terms.distances(window, starts, ends)?;
         let allowed = |&(row, column): &(usize, usize)| {
             let (start, end) = grid.frames(row, column);
             end.checked_sub(start).is_some_and(|length| self.lengths.contains(&length)) && end < self.clip.frames()

@@ -6,11 +6,11 @@ use crate::registration::{limb_weights, uniform_weights};
 fn brute_force(a: &Clip, b: &Clip, weights: &[f64], options: &SearchOptions) -> f64 {
     let (leave, _) = options.leave.starts(a.frames(), options.window).unwrap();
     let (enter, _) = options.enter.starts(b.frames(), options.window).unwrap();
-    let mut sums = PairSums::new(a, 0..a.frames(), b, 0..b.frames(), weights, 1).unwrap();
-    sums.finish();
-    let grid = sums.distances(options.window, &leave, &enter).unwrap();
-    let (r, c) = grid.minimum().unwrap();
-    f64::from(grid.get(r, c).unwrap())
+    let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), weights, 1).unwrap();
+    terms.finish();
+    let matrix = terms.distances(options.window, &leave, &enter).unwrap();
+    let (r, c) = matrix.minimum().unwrap();
+    f64::from(matrix.get(r, c).unwrap())
 }
 
 #[test]

@@ -1,0 +1,442 @@
+use super::assembly::{Assembly, moving_joints_of, translation_of};
+use super::dissolve::check_bodies;
+use super::{BlendError, Concatenation, Source, WeightCurve, WeightLaw};
+use crate::clip::{Clip, Contacts, Interpolation};
+use crate::math::{Planar, quat, wrap_angle};
+use crate::registration::Registration;
+use crate::skeleton::{Pose, Side, WorldPose};
+use glam::{DVec2, Quat, Vec3};
+
+/// A clip that is blended with a reference, which it is registered to as the target.
+#[derive(Clone, Copy, Debug)]
+pub struct Partner<'a> {
+    /// The clip.
+    pub source: &'a Source,
+    /// Its registration to the reference.
+    pub registration: &'a Registration,
+    /// Its weight over the course of the blend. What all partners leave of 1 is the reference's; partners that are more than 1 together share it.
+    pub weight: &'a WeightCurve,
+}
+
+/// What a frame of a registered blend is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instant {
+    /// The frame that each clip shows, which may lie between two: the reference, then the partners in order.
+    pub frames: Vec<f64>,
+    /// The weight of each clip; they add up to 1.
+    pub weights: Vec<f64>,
+}
+
+/// Registered clips played as one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegisteredBlend {
+    /// The blend, in the world of the reference; it begins where the registered part does.
+    pub clip: Clip,
+    /// What each frame is made of.
+    pub instants: Vec<Instant>,
+    /// Where the character stands and faces (`world_from_character`).
+    pub frames: Vec<Planar>,
+}
+
+/// One clip that goes over to another along their registration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegisteredJoin {
+    /// The clips joined.
+    pub joined: Concatenation,
+    /// What each frame of the transition is made of: A, then B.
+    pub during: Vec<Instant>,
+}
+
+/// Blends clips along their registrations (Kovar, Gleicher 2003, section 5).
+///
+/// The clips show frames that are alike: while the reference shows its frame t, a partner shows `warp(t)`. From frame to frame the clips' clocks go on by
+/// one frame in their weighted mean, so that a clip that has all the weight plays at its own speed. Poses are blended as they lie on each other by the
+/// alignment curves; the way over the ground is made of the steps that the blended character takes while every clip is moved rigidly.
+///
+/// # Errors
+/// [`BlendError`] when clips move different bodies or run at different rates, or the registered parts have less than two frames in common.
+pub fn registered_blend(reference: &Source, partners: &[Partner<'_>]) -> Result<RegisteredBlend, BlendError> {
+    let blend = Blend::new(reference, partners)?;
+    let span = blend.span()?;
+    let instants = blend.schedule(span, None);
+    let (clip, frames) = blend.clip(&instants)?;
+    Ok(RegisteredBlend { clip, instants, frames })
+}
+
+/// From clip A to clip B, registered to it: A up to frame `leave`, then both along the registration while the weight goes over, then B. The transition takes
+/// the registered part of A from `leave` up to about frame `arrive`: to the whole frame of B that is nearest. Its first frame is all A, its last all B.
+///
+/// The clocks are stretched by at most half a frame over the transition, so that it ends on a frame.
+///
+/// # Errors
+/// [`BlendError`] as for [`registered_blend`]; [`BlendError::Apart`] too when fewer than two frames of either clip lie between `leave` and `arrive`.
+pub fn registered_join(
+    a: &Source,
+    b: &Source,
+    registration: &Registration,
+    leave: usize,
+    arrive: usize,
+    law: WeightLaw,
+) -> Result<RegisteredJoin, BlendError> {
+    // Keys would ease twice: the law is applied to a share of its own.
+    let weight = WeightCurve::constant(0.0);
+    let partner = [Partner {
+        source: b,
+        registration,
+        weight: &weight,
+    }];
+    let blend = Blend {
+        law: Some(law),
+        ..Blend::new(a, &partner)?
+    };
+    let (from, to) = blend.span()?;
+    let apart = || BlendError::Apart {
+        reference: a.clip().name().into(),
+    };
+    let warp = registration.warp();
+    let start = leave as f64;
+    let end_in_b = warp.at((arrive as f64).min(to)).round().min(warp.at(to).floor());
+    let end = warp.inverse(end_in_b);
+    if start < from - 1e-9 || end < start + 1.0 || end_in_b < warp.at(start) + 1.0 {
+        return Err(apart());
+    }
+    let mut during = blend.schedule((start, end), None);
+    // The whole number of frames that is nearest to what the clocks need.
+    let steps = during.len() - 1;
+    let left = during.last().map_or(0.0, |last| blend.clock(&last.weights, last.frames[0], end));
+    let needed = steps as f64 + left;
+    let steps = (needed.round() as usize).max(1);
+    during = blend.schedule((start, end), Some((steps, needed / steps as f64)));
+    let (middle, frames) = blend.clip(&during)?;
+
+    let enter_end = (end_in_b as usize).min(b.clip().frames().saturating_sub(1));
+    let mut made = Assembly::new(a.clip(), b.clip(), leave + during.len() + b.clip().frames() - enter_end - 1);
+    made.play(a.clip(), 0..leave);
+    made.play(&middle, 0..middle.frames());
+    let b_during: Vec<Planar> = (during.iter().zip(&frames))
+        .map(|(instant, frame)| frame.after(&character_at(b, instant.frames[1]).inverse()))
+        .collect();
+    let world_from_b = frames.last().ok_or_else(apart)?.after(&b.frames()[enter_end].inverse());
+    made.play_moved(b.clip(), enter_end + 1..b.clip().frames(), &world_from_b);
+    let clip = made.finish(format!("{} → {}", a.clip().name(), b.clip().name()))?;
+    let half = during.iter().position(|instant| instant.weights[1] >= 0.5).unwrap_or(during.len());
+    let mut all_frames = a.frames()[..leave].to_vec();
+    all_frames.extend(frames);
+    all_frames.extend(b.frames()[enter_end + 1..].iter().map(|frame| world_from_b.after(frame)));
+    Ok(RegisteredJoin {
+        joined: Concatenation {
+            clip,
+            transition: leave..leave + during.len(),
+            handover: leave + half,
+            aligned_b: registration.alignment_at(start),
+            b_during,
+            world_from_b,
+            frames: all_frames,
+        },
+        during,
+    })
+}
+
+impl RegisteredBlend {
+    /// When which foot is on the ground: where clips with more than half of the weight have it there. `of` are the clips' contacts,
+    /// the reference's first.
+    #[must_use]
+    pub fn contacts(&self, of: &[&Contacts]) -> Contacts {
+        contacts_of(&self.instants, of)
+    }
+}
+
+impl RegisteredJoin {
+    /// When which foot is on the ground in the whole result; `a` and `b` are the clips' contacts.
+    #[must_use]
+    pub fn contacts(&self, a: &Contacts, b: &Contacts) -> Contacts {
+        let during = contacts_of(&self.during, &[a, b]);
+        let last = self.during.last().map_or(0, |last| last.frames[1].round() as usize);
+        let planted = Side::BOTH.map(|side| {
+            let before = (0..self.joined.transition.start).map(|frame| a.planted(side, frame));
+            let during = (0..during.frames()).map(|frame| during.planted(side, frame));
+            let after = (last + 1..b.frames()).map(|frame| b.planted(side, frame));
+            before.chain(during).chain(after).collect()
+        });
+        Contacts::from_flags(planted)
+    }
+}
+
+fn contacts_of(instants: &[Instant], of: &[&Contacts]) -> Contacts {
+    let planted = |side: Side| {
+        instants.iter().map(move |instant| {
+            let parts = instant.weights.iter().zip(&instant.frames).zip(of);
+            let planted = parts.filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
+            planted.map(|((weight, _), _)| weight).sum::<f64>() > 0.5
+        })
+    };
+    Contacts::from_flags(Side::BOTH.map(|side| planted(side).collect()))
+}
+
+struct Blend<'a> {
+    reference: &'a Source,
+    partners: &'a [Partner<'a>],
+    /// How the reference's weight falls, in place of the first partner's curve.
+    law: Option<WeightLaw>,
+}
+
+impl<'a> Blend<'a> {
+    fn new(reference: &'a Source, partners: &'a [Partner<'a>]) -> Result<Self, BlendError> {
+        for partner in partners {
+            check_bodies(reference, partner.source)?;
+        }
+        Ok(Self {
+            reference,
+            partners,
+            law: None,
+        })
+    }
+
+    fn sources(&self) -> impl Iterator<Item = &'a Source> + '_ {
+        std::iter::once(self.reference).chain(self.partners.iter().map(|partner| partner.source))
+    }
+
+    /// The frames of the reference at which all clips are registered.
+    fn span(&self) -> Result<(f64, f64), BlendError> {
+        let last = |source: &Source| source.clip().frames() as f64 - 1.0;
+        let mut span = (0.0_f64, last(self.reference));
+        for partner in self.partners {
+            let warp = partner.registration.warp();
+            let (first, end) = (warp.first(), warp.last());
+            // A registration of other, longer clips reaches beyond this one.
+            span.0 = span.0.max(first.0).max(warp.inverse(0.0));
+            span.1 = span.1.min(end.0).min(warp.inverse(last(partner.source)));
+        }
+        if span.1 - span.0 >= 1.0 {
+            Ok(span)
+        } else {
+            Err(BlendError::Apart {
+                reference: self.reference.clip().name().into(),
+            })
+        }
+    }
+
+    /// The frames that all clips show while the reference shows `frame`.
+    fn frames(&self, frame: f64) -> Vec<f64> {
+        let others = self.partners.iter().map(|partner| partner.registration.warp().at(frame));
+        std::iter::once(frame).chain(others).collect()
+    }
+
+    fn weights(&self, share: f64) -> Vec<f64> {
+        let mut weights = vec![0.0];
+        if let Some(law) = self.law {
+            weights.push(1.0 - law.alpha(share));
+        } else {
+            weights.extend(self.partners.iter().map(|partner| partner.weight.at(share)));
+        }
+        let sum: f64 = weights.iter().sum();
+        if sum > 1.0 {
+            for weight in &mut weights {
+                *weight /= sum;
+            }
+        } else {
+            weights[0] = 1.0 - sum;
+        }
+        weights
+    }
+
+    /// Frames that go by in the weighted mean of the clips' clocks while the reference goes from one frame to another.
+    fn clock(&self, weights: &[f64], from: f64, to: f64) -> f64 {
+        let others = self.partners.iter().zip(&weights[1..]).filter(|(_, weight)| **weight > 0.0);
+        let others = others.map(|(partner, weight)| {
+            let warp = partner.registration.warp();
+            weight * (warp.at(to) - warp.at(from))
+        });
+        weights[0] * (to - from) + others.sum::<f64>()
+    }
+
+    /// The frame of the reference when the mean clock has gone on by `step` from `from`; `None` behind the end.
+    fn next(&self, weights: &[f64], from: f64, end: f64, step: f64) -> Option<f64> {
+        // What rounding has left of the last frame is a frame.
+        let left = self.clock(weights, from, end) - step;
+        if left < 1e-6 {
+            return (left > -1e-6).then_some(end);
+        }
+        let (mut low, mut high) = (from, end);
+        let mut at = from + step;
+        for _ in 0..80 {
+            if !(at > low && at < high) {
+                at = 0.5 * (low + high);
+            }
+            let off = self.clock(weights, from, at) - step;
+            if off.abs() < 1e-11 {
+                break;
+            }
+            if off > 0.0 {
+                high = at;
+            } else {
+                low = at;
+            }
+            let others = self.partners.iter().zip(&weights[1..]);
+            let rate = weights[0]
+                + others
+                    .map(|(partner, weight)| weight * partner.registration.warp().slope(at))
+                    .sum::<f64>();
+            at -= off / rate;
+        }
+        Some(at)
+    }
+
+    /// What every frame of the blend shows, from one frame of the reference to another: as many as there are, or a number of steps of a given length,
+    /// the last of which ends at the end.
+    fn schedule(&self, (start, end): (f64, f64), steps: Option<(usize, f64)>) -> Vec<Instant> {
+        let instant = |at: f64| Instant {
+            frames: self.frames(at),
+            weights: self.weights((at - start) / (end - start)),
+        };
+        let mut at = start;
+        let mut instants = vec![instant(at)];
+        let (count, step) = steps.unwrap_or((usize::MAX, 1.0));
+        while instants.len() <= count {
+            // The weights of the middle of the step, nearly.
+            let rate = self.clock(&self.weights((at - start) / (end - start)), at, (at + 0.5).min(end)) / (end - at).min(0.5);
+            let middle = (at + 0.5 * step / rate.max(0.05)).min(end);
+            let weights = self.weights((middle - start) / (end - start));
+            at = match self.next(&weights, at, end, step) {
+                Some(next) if instants.len() < count => next,
+                None if steps.is_none() => break,
+                _ => end,
+            };
+            instants.push(instant(at));
+            if at >= end && steps.is_none() {
+                break;
+            }
+        }
+        instants
+    }
+
+    /// Where each clip's world lies in the reference's while that shows `frame`.
+    fn alignments(&self, frame: f64) -> Vec<Planar> {
+        let others = self.partners.iter().map(|partner| partner.registration.alignment_at(frame));
+        std::iter::once(Planar::IDENTITY).chain(others).collect()
+    }
+
+    /// The blended character in the reference's world, with each clip laid there by `alignments`.
+    fn character(&self, instant: &Instant, alignments: &[Planar]) -> Planar {
+        let mut mean = Planar::IDENTITY;
+        let mut sum = 0.0;
+        let parts = self.sources().zip(alignments).zip(instant.frames.iter().zip(&instant.weights));
+        for ((source, alignment), (&frame, &weight)) in parts.filter(|(_, (_, weight))| **weight > 0.0) {
+            let here = alignment.after(&character_at(source, frame));
+            sum += weight;
+            mean = between(&mean, &here, weight / sum);
+        }
+        mean
+    }
+
+    /// Where the character stands and faces in every frame: the steps of the blend, one after the other.
+    fn way(&self, instants: &[Instant]) -> Vec<(Planar, Planar, Vec<Planar>)> {
+        let mut way: Vec<(Planar, Planar, Vec<Planar>)> = Vec::with_capacity(instants.len());
+        for instant in instants {
+            let alignments = self.alignments(instant.frames[0]);
+            let in_reference = self.character(instant, &alignments);
+            let here = match way.last() {
+                None => in_reference,
+                // Every clip is moved rigidly in the step, as it lay before it.
+                Some((here, before, alignments)) => here.after(&before.inverse().after(&self.character(instant, alignments))),
+            };
+            way.push((here, in_reference, alignments));
+        }
+        way
+    }
+
+    fn clip(&self, instants: &[Instant]) -> Result<(Clip, Vec<Planar>), BlendError> {
+        let clips: Vec<&Clip> = self.sources().map(|source| &**source.clip()).collect();
+        let mut made = Assembly::of(clips[0], clips.iter().copied(), instants.len());
+        let moving = moving_joints_of(clips.iter().copied());
+        let root = self.reference.motion_root();
+        let carrier = (root != 0 && self.sources().all(|source| source.motion_root() == root)).then_some(root);
+        let mut world = WorldPose::default();
+        let way = self.way(instants);
+        for (instant, (here, in_reference, alignments)) in instants.iter().zip(&way) {
+            let mut mean = Mean::default();
+            for (index, clip) in clips.iter().enumerate() {
+                let weight = instant.weights[index];
+                let pose = (weight > 0.0)
+                    .then(|| clip.sample(instant.frames[index] / clip.fps(), Interpolation::Linear))
+                    .flatten();
+                if let Some(pose) = pose {
+                    mean.add(weight, clip, &pose, &alignments[index], &moving);
+                }
+            }
+            let place = here.after(&in_reference.inverse());
+            if let Some(rotation) = mean.rotations.first_mut() {
+                *rotation = quat::renormalize(place.rotation() * *rotation);
+            }
+            let carried = carrier.map(|joint| (joint, *here));
+            made.push(place.apply(mean.root), &mean.rotations, &mean.translations, carried, &mut world);
+        }
+        let names: Vec<&str> = clips.iter().map(|clip| clip.name()).collect();
+        let clip = made.finish(names.join(" + "))?;
+        Ok((clip, way.into_iter().map(|(here, _, _)| here).collect()))
+    }
+}
+
+/// A weighted mean of poses, clip by clip: rotations slerp by the shorter way towards each further clip, which for two clips is the slerp between them.
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    root: Vec3,
+    rotations: Vec<Quat>,
+    translations: Vec<Vec3>,
+}
+
+impl Mean {
+    fn add(&mut self, weight: f64, clip: &Clip, pose: &Pose, world_from_clip: &Planar, moving: &[usize]) {
+        self.sum += weight;
+        let share = (weight / self.sum) as f32;
+        let turn = world_from_clip.rotation();
+        let root = world_from_clip.apply(pose.root_translation);
+        let rotations = pose
+            .rotations
+            .iter()
+            .enumerate()
+            .map(|(joint, &q)| if joint == 0 { quat::renormalize(turn * q) } else { q });
+        let translations = moving.iter().map(|&joint| {
+            let own = pose.translations.iter().find(|(of, _)| *of == joint);
+            own.map_or_else(|| translation_of(clip, joint, 0), |&(_, value)| value)
+        });
+        if self.rotations.is_empty() {
+            self.root = root;
+            self.rotations.extend(rotations);
+            self.translations.extend(translations);
+            return;
+        }
+        self.root = self.root.lerp(root, share);
+        for (mean, q) in self.rotations.iter_mut().zip(rotations) {
+            *mean = quat::slerp(*mean, q, share);
+        }
+        for (mean, value) in self.translations.iter_mut().zip(translations) {
+            *mean = mean.lerp(value, share);
+        }
+    }
+}
+
+/// Where the character stands and faces at a frame that may lie between two.
+fn character_at(source: &Source, frame: f64) -> Planar {
+    let frames = source.frames();
+    let last = frames.len().saturating_sub(1);
+    let at = frame.max(0.0).min(last as f64);
+    let (before, next) = (at.floor() as usize, (at.floor() as usize + 1).min(last));
+    match (frames.get(before), frames.get(next)) {
+        (Some(before), Some(next)) => between(before, next, at.fract()),
+        _ => Planar::IDENTITY,
+    }
+}
+
+/// `share` of the way from one frame to the other, turning the shorter way.
+fn between(from: &Planar, to: &Planar, share: f64) -> Planar {
+    let shift: DVec2 = from.shift + (to.shift - from.shift) * share;
+    Planar {
+        yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * share),
+        shift,
+    }
+}
+
+#[cfg(test)]
+mod tests;

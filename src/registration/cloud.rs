@@ -1,0 +1,160 @@
+use super::RegistrationError;
+use crate::clip::Clip;
+use crate::skeleton::WorldPose;
+use glam::{DVec2, Vec4};
+use std::ops::Range;
+
+/// Samples side by side in one SIMD register.
+pub(super) const LANES: usize = 4;
+
+/// Four samples of one joint: x, z and height.
+pub(super) type Lanes = [Vec4; 3];
+
+/// Four samples of one joint, each spread over a whole register and weighted: what is multiplied with [`Lanes`].
+pub(super) type Spread = [[Vec4; 3]; LANES];
+
+/// The joints that weigh something, with their weights as shares of 1.
+#[derive(Clone, Debug)]
+pub(super) struct Shares(Vec<(usize, f32)>);
+
+impl Shares {
+    pub(super) fn new(weights: &[f64], sum: f64) -> Self {
+        let shares = weights.iter().enumerate().filter(|&(_, &w)| w > 0.0);
+        Self(shares.map(|(joint, &w)| (joint, (w / sum) as f32)).collect())
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The weighted mean height of a clip's frame, metres.
+    pub(super) fn mean_height(&self, clip: &Clip, frame: usize) -> f64 {
+        let world = clip.world_pose(frame);
+        let heights = self.0.iter().map(|&(joint, w)| f64::from(w) * f64::from(world.positions[joint].y));
+        heights.sum()
+    }
+}
+
+/// Every `stride`-th frame of a part of a clip as a cloud of points about the cloud's own centre of mass on the ground.
+///
+/// About their own centre the points are never farther off than a body is long, so that their products keep their digits in `f32`; the centres,
+/// which walk away, are kept in `f64`.
+#[derive(Clone, Debug)]
+pub(super) struct Cloud {
+    pub(super) start: usize,
+    /// Frames of the clip that the part has, sampled or not.
+    pub(super) span: usize,
+    pub(super) samples: usize,
+    /// Where all centres are measured from, metres: (x, z) of the first.
+    pub(super) origin: DVec2,
+    /// The weighted centres on the ground, one per sample.
+    pub(super) x: Vec<f64>,
+    pub(super) z: Vec<f64>,
+    /// Σw(x² + z²) + Σwy² of every sample, about its centre: rounded exactly as a pair's products are, so that equal poses are 0 apart.
+    pub(super) square: Vec<f64>,
+    /// Samples in groups of [`LANES`], each `shares.len()` long.
+    points: Vec<Lanes>,
+    joints: usize,
+}
+
+impl Cloud {
+    /// `frames` lie inside the clip and are not empty. Heights are measured from `level`.
+    pub(super) fn new(clip: &Clip, frames: Range<usize>, stride: usize, shares: &Shares, level: f64) -> Result<Self, RegistrationError> {
+        let samples = frames.len().div_ceil(stride);
+        let joints = shares.len();
+        let mut cloud = Self {
+            start: frames.start,
+            span: frames.len(),
+            samples,
+            origin: DVec2::ZERO,
+            x: Vec::with_capacity(samples),
+            z: Vec::with_capacity(samples),
+            square: Vec::with_capacity(samples),
+            points: vec![[Vec4::ZERO; 3]; samples.div_ceil(LANES) * joints],
+            joints,
+        };
+        let mut world = WorldPose::default();
+        for (sample, frame) in frames.step_by(stride).enumerate() {
+            clip.world_pose_into(frame, &mut world);
+            if !world.positions.iter().all(|p| p.is_finite()) {
+                return Err(RegistrationError::NotFinite);
+            }
+            let at = |joint: usize| world.positions[joint].as_dvec3();
+            let weighed = shares.0.iter().map(|&(joint, w)| at(joint) * f64::from(w));
+            let (sum, weight) = (
+                weighed.sum::<glam::DVec3>(),
+                shares.0.iter().map(|&(_, w)| f64::from(w)).sum::<f64>(),
+            );
+            let centre = sum / weight;
+            if sample == 0 {
+                cloud.origin = DVec2::new(centre.x, centre.z);
+            }
+            cloud.x.push(centre.x - cloud.origin.x);
+            cloud.z.push(centre.z - cloud.origin.y);
+            let (group, lane) = (sample / LANES, sample % LANES);
+            for (lanes, &(joint, _)) in cloud.points[group * joints..].iter_mut().zip(&shares.0) {
+                let p = at(joint);
+                let of = [p.x - centre.x, p.z - centre.z, p.y - level];
+                for (lanes, of) in lanes.iter_mut().zip(of) {
+                    lanes[lane] = of as f32;
+                }
+            }
+        }
+        let mut spread = Vec::new();
+        for group in 0..cloud.groups() {
+            spread.clear();
+            cloud.spread(group, shares, &mut spread);
+            let [flat, _, height] = tile(&spread, cloud.group(group));
+            let own = (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
+            cloud.square.extend(own.take(samples - group * LANES));
+        }
+        Ok(cloud)
+    }
+
+    /// Groups of [`LANES`] samples; the last is filled up with points at its centre.
+    pub(super) fn groups(&self) -> usize {
+        self.samples.div_ceil(LANES)
+    }
+
+    pub(super) fn group(&self, group: usize) -> &[Lanes] {
+        &self.points[group * self.joints..(group + 1) * self.joints]
+    }
+
+    /// Adds a group to `out` in the form of the left factor.
+    pub(super) fn spread(&self, group: usize, shares: &Shares, out: &mut Vec<Spread>) {
+        let spread = self.group(group).iter().zip(&shares.0);
+        out.extend(spread.map(|(lanes, &(_, w))| std::array::from_fn(|lane| lanes.map(|of| Vec4::splat(of[lane] * w)))));
+    }
+
+    /// Where the centre of a sample lies.
+    pub(super) fn centre(&self, sample: usize) -> DVec2 {
+        DVec2::new(self.x[sample], self.z[sample])
+    }
+
+    /// Samples whose window of `window` frames starts in `starts` (clip frames) and does not cross the end of the part.
+    pub(super) fn starts(&self, starts: &Range<usize>, window: usize, stride: usize) -> Range<usize> {
+        let end = starts.end.min((self.start + self.span + 1).saturating_sub(window));
+        let first = starts.start.saturating_sub(self.start).div_ceil(stride);
+        let last = end.saturating_sub(self.start).div_ceil(stride).min(self.samples);
+        first.min(last)..last
+    }
+}
+
+/// The products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z' - z x') and Σw y y', each by row.
+///
+/// Twelve sums stay in registers while the joints run through. The order of all operations is fixed, and none is fused: every machine, with
+/// whatever registers, gets the same bits.
+pub(super) fn tile(rows: &[Spread], columns: &[Lanes]) -> [[Vec4; LANES]; 3] {
+    let mut dot = [Vec4::ZERO; LANES];
+    let mut cross = [Vec4::ZERO; LANES];
+    let mut height = [Vec4::ZERO; LANES];
+    for (rows, &[x, z, y]) in rows.iter().zip(columns) {
+        for lane in 0..LANES {
+            let [sx, sz, sy] = rows[lane];
+            dot[lane] += sx * x + sz * z;
+            cross[lane] += sx * z - sz * x;
+            height[lane] += sy * y;
+        }
+    }
+    [dot, cross, height]
+}

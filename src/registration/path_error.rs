@@ -1,0 +1,79 @@
+use super::RegistrationError;
+use super::path::MAX_SLOPE_LIMIT;
+
+/// Why there is no path through a distance matrix. Places are frames: (first clip, second clip).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PathError {
+    /// There is no window of one of the clips.
+    #[error(
+        "a clip is shorter than the window of {window} frames, so that there is nothing to register: lower the window or use a longer clip"
+    )]
+    TooShort {
+        /// Frames of the window.
+        window: usize,
+    },
+    /// A limit that is none.
+    #[error("a slope limit of {slope_limit} cannot be used: give a number from 1 to {MAX_SLOPE_LIMIT}")]
+    SlopeLimit {
+        /// The limit given.
+        slope_limit: usize,
+    },
+    /// A pin beside the matrix.
+    #[error(
+        "the pin in row {row}, column {column} lies outside the matrix of {rows} rows and {columns} columns: move it inside or remove it"
+    )]
+    PinOutside {
+        /// Row of the pin.
+        row: usize,
+        /// Column of the pin.
+        column: usize,
+        /// Rows of the matrix.
+        rows: usize,
+        /// Columns of the matrix.
+        columns: usize,
+    },
+    /// Two pins of which one lies before the other in one clip and behind it, or beside it, in the other.
+    #[error(
+        "the pins at frames {} | {} and {} | {} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
+        first.0, first.1, second.0, second.1
+    )]
+    Pins {
+        /// Frames of the pin that comes first in the first clip.
+        first: (usize, usize),
+        /// Frames of the other.
+        second: (usize, usize),
+    },
+    /// A pin beside the corner where the path must begin or end.
+    #[error("the pin at frames {} | {} holds one clip back at the path's {end}: free the {end}, or move the pin inwards", pin.0, pin.1)]
+    PinAtEnd {
+        /// Frames of the pin.
+        pin: (usize, usize),
+        /// "start" or "end".
+        end: &'static str,
+    },
+    /// One clip is so much longer, here, that the limit leaves no path.
+    #[error(
+        "no path with a slope limit of {slope_limit} goes from {} to {}: raise the slope limit to {needed} or more, free the ends, or move the pins",
+        place(*from, "the start"), place(*to, "the end")
+    )]
+    NoPath {
+        /// Frames where the stretch begins; `None` for a free start.
+        from: Option<(usize, usize)>,
+        /// Frames where it ends; `None` for a free end.
+        to: Option<(usize, usize)>,
+        /// The limit given.
+        slope_limit: usize,
+        /// The smallest limit that may do.
+        needed: usize,
+    },
+    /// The clips cannot be compared along the path.
+    #[error(transparent)]
+    Registration(#[from] RegistrationError),
+    /// The distances are no numbers.
+    #[error("a distance is not a finite number: repair or crop the clips first")]
+    NotFinite,
+}
+
+fn place(frames: Option<(usize, usize)>, free: &str) -> String {
+    frames.map_or_else(|| free.to_owned(), |(i, j)| format!("frames {i} | {j}"))
+}
