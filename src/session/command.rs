@@ -26,8 +26,8 @@ pub enum Command {
     CorrectRole(String, Role, Option<usize>),
     /// Reads a clip's file again with other options.
     Reimport(String, ImportOptions),
-    /// Keeps the clip of the Make lab in the library.
-    KeepMade,
+    /// Puts the result of a pane, counted from 0, into the library.
+    Keep(usize),
     /// Moves the playhead, seconds.
     Seek(f64),
     /// Moves the playhead by whole frames and pauses.

@@ -277,8 +277,8 @@ parameters! {
     B "b" "B" Page Kind::Clip, Start::Word("run"), "", "The clip that follows.";
 
     BlendWindow "blend_window" "Blend window" Blend number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
-    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the blend window begins in A.";
-    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the blend window begins in B.";
+    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A.";
+    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B.";
     WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that feet slide less.";
@@ -299,8 +299,8 @@ parameters! {
     Speed "speed" "Speed" Speed auto(0.2, 10.0, 0.05), Start::Auto, "m/s", "How fast it goes. Left to Segue: half way between both clips.";
     PhaseAlign "phase_align" "Align phases" Speed Kind::Switch, Start::Switch(true), "", "Lays strikes of the feet on strikes. Without it each clip begins where it begins, and legs cross.";
 
-    LoopFrom "loop_from" "Cycle from" Loop auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where the cycle begins in A.";
-    LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
+    LoopFrom "loop_from" "Cycle from" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A.";
+    LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
     LoopMethod "loop_method" "Method" Loop Kind::Choice(LOOP_METHODS), Start::Word("exact"), "", "How the difference between the ends is spread over the cycle.";
     LoopRatio "loop_ratio" "Ratio" Loop number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
     Mistake "mistake" "Break it" Transition Kind::Choice(MISTAKES), Start::Word("none"), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";

@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod kept;
 mod layers;
 mod looping;
 mod make;
@@ -16,10 +17,11 @@ mod speed;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
-pub(super) use make::{made_id, made_motion, made_params, preset_motion, synth_action};
+pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 

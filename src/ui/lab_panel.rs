@@ -61,10 +61,6 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     compare_ui(Key::GaitSpeed, session, out, ui);
     ui.add_space(space::S);
-    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).primary(), ui).clicked() {
-        out.commands.push(Command::KeepMade);
-    }
-    ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
 
@@ -124,7 +120,7 @@ fn value_in_words((key, value): &(Key, Value)) -> String {
     format!("{} {}", key.param().spoken(value), key.param().unit)
 }
 
-/// Saves the result; which one, where several stand side by side.
+/// Keeps the result, or saves it; which one, where several stand side by side.
 pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
@@ -138,6 +134,10 @@ pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
             state.saved_pane = pane;
         }
     }
+    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).primary(), ui).clicked() {
+        out.commands.push(Command::Keep(state.saved_pane));
+    }
+    ui.add_space(space::S);
     save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
 }
 

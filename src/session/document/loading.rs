@@ -8,7 +8,7 @@ use crate::session::motion::Motion;
 use crate::session::notice::Level;
 use crate::session::params::{Key, Value};
 use crate::session::reading::{About, Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
-use crate::session::recipe::{Slot, made_params};
+use crate::session::recipe::{Slot, recipe_params};
 use crate::session::saved::{Saved, SavedEntry, SavedFile};
 use crate::session::undo::History;
 use std::collections::BTreeMap;
@@ -429,7 +429,7 @@ impl Session {
             let entry = match &stored.file {
                 None => match self.library.find(&stored.id) {
                     Some(entry) => (**entry).clone(),
-                    None if made_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
+                    None if recipe_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
                     None => continue,
                 },
                 Some(file) => {

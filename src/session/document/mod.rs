@@ -17,7 +17,7 @@ use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Layerer, Outcome, Pairs, Slot};
-use super::recipe::{made_id, made_motion, made_params, middle_mps, synth_action};
+use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::synth;
@@ -299,7 +299,7 @@ impl Session {
             }
             Command::CorrectRole(id, role, joint) => self.correct_role(&id, role, joint)?,
             Command::Reimport(id, options) => self.reimport(&id, &options)?,
-            Command::KeepMade => self.keep_made()?,
+            Command::Keep(pane) => self.keep(pane)?,
             Command::Seek(secs) => {
                 let to = if secs.is_finite() {
                     secs.clamp(0.0, self.duration_secs())
@@ -471,12 +471,10 @@ impl Session {
         if self.library.find(reference).is_some() {
             return true;
         }
-        let made = made_params(reference).is_some();
-        if made {
-            self.library.put(Entry::new(reference, reference, Origin::Made));
-            self.library_revision += 1;
-        }
-        made
+        let Some(params) = recipe_params(reference) else { return false };
+        self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
+        self.library_revision += 1;
+        true
     }
 
     fn change_entry(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> Result<(), CommandError> {
@@ -540,18 +538,30 @@ impl Session {
         })
     }
 
-    fn keep_made(&mut self) -> Result<(), CommandError> {
-        let id = made_id(&self.params);
+    /// Puts a pane's result into the library.
+    fn keep(&mut self, pane: usize) -> Result<(), CommandError> {
+        let nothing = CommandError::NotPossible("there is no result to keep");
+        let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
+        let params = self.params_of(pane);
+        let outcome = pane.outcome.clone().ok_or(nothing)?;
+        let fps = [Slot::A, Slot::B].map(|slot| {
+            let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
+            motion.map_or(1.0, |motion| motion.clip.fps())
+        });
+        let known = CommandError::NotPossible("this clip is in the library already");
+        let id = recipe_id(&params, &outcome, fps).ok_or_else(|| known.clone())?;
         if self.library.find(&id).is_some() {
-            return Err(CommandError::NotPossible("this clip is in the library already"));
+            return Err(known);
         }
-        let motion = made_motion(&self.params).map_err(|_| CommandError::NotPossible("there is no clip to keep"))?;
+        let name = recipe_name(&recipe_params(&id).unwrap_or(params));
         self.remember(None);
+        let said = format!("{name} is in the library now: choose it as A or B.");
         self.library.put(Entry {
-            motion: Some(Arc::new(motion)),
-            ..Entry::new(id.clone(), id, Origin::Made)
+            motion: Some(Arc::clone(&outcome.motion)),
+            ..Entry::new(id, name, Origin::Made)
         });
         self.library_revision += 1;
+        self.say(Level::Info, said);
         Ok(())
     }
 

@@ -7,13 +7,13 @@ use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
-use crate::session::params::{Group, Key, Params, Value};
+use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, Slot, SpeedInputs};
-use crate::session::recipe::{made_id, made_motion, made_params, preset_motion};
+use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
     pub variant: Option<(Key, Value)>,
@@ -160,8 +160,8 @@ impl Session {
             }
             Origin::Preset => Arc::new(preset_motion(&id)?),
             Origin::Made => {
-                let params = made_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
-                Arc::new(made_motion(&params)?)
+                let params = recipe_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
+                self.made_again(&params)?
             }
             Origin::File(file) if entry.awaits_skeleton() => {
                 return Err(format!("{} waits for its skeleton: drop its .asf file.", file.name));
@@ -184,6 +184,30 @@ impl Session {
         Ok(motion)
     }
 
+    /// What a recipe makes, once more: its clips may have to be made themselves, or loaded.
+    fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, String> {
+        for key in [Key::A, Key::B] {
+            let reference = params.text(key).to_owned();
+            self.bring(&reference);
+        }
+        let mut pane = Pane::default();
+        self.refresh_pane(&mut pane, params, widest_window(params, None));
+        match (pane.outcome, pane.problem) {
+            (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
+            (None, problem) => Err(problem.unwrap_or_default()),
+        }
+    }
+
+    /// The parameters with a pane's own value of the compared one.
+    pub(super) fn params_of(&self, pane: &Pane) -> Params {
+        let mut params = self.params.clone();
+        if let Some((key, value)) = &pane.variant {
+            let result = params.set(*key, value.clone());
+            debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
+        }
+        params
+    }
+
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
@@ -200,20 +224,9 @@ impl Session {
         let mut old = std::mem::take(&mut self.panes).into_iter();
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
-            let mut pane = old.next().unwrap_or(Pane {
-                variant: None,
-                outcome: None,
-                problem: None,
-                inputs: None,
-                place: Planar::IDENTITY,
-                glide: None,
-            });
-            pane.variant.clone_from(&variant);
-            let mut params = self.params.clone();
-            if let Some((key, value)) = variant {
-                let result = params.set(key, value);
-                debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
-            }
+            let mut pane = old.next().unwrap_or_default();
+            pane.variant = variant;
+            let params = self.params_of(&pane);
             self.refresh_pane(&mut pane, &params, match_window);
             self.panes.push(pane);
         }
@@ -267,21 +280,6 @@ impl Session {
                 pane.inputs = None;
             }
         }
-    }
-}
-
-/// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
-fn belongs_to(key: Key, lab: &str) -> bool {
-    let group = key.param().group;
-    match lab {
-        "view" => group == Group::View,
-        "make" => group == Group::Make,
-        "blend" => group == Group::Blend,
-        "transition" => matches!(group, Group::Blend | Group::Transition),
-        "speed" => group == Group::Speed,
-        "loop" => group == Group::Loop || key == Key::HalfLife,
-        "layers" => group == Group::Layers,
-        _ => false,
     }
 }
 

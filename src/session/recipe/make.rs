@@ -61,21 +61,9 @@ pub(in crate::session) fn made_id(params: &Params) -> String {
     format!("{}({})", params.text(Key::Gait), list.join(","))
 }
 
-/// The parameters that an id made by [`made_id`] stands for.
-pub(in crate::session) fn made_params(id: &str) -> Option<Params> {
-    let (gait, list) = id.strip_suffix(')')?.split_once('(')?;
-    let mut params = Params::default();
-    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
-    set(Key::Gait, gait)?;
-    for pair in list.split(',').filter(|pair| !pair.is_empty()) {
-        let (name, value) = pair.split_once(':')?;
-        set(Key::from_name(name).filter(|key| key.param().group == Group::Make)?, value)?;
-    }
-    Some(params)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::recipe_params;
     use super::*;
     use crate::session::params::Value;
 
@@ -87,7 +75,8 @@ mod tests {
         params.set(Key::GaitSpeed, Value::Number(3.05)).unwrap();
         let id = made_id(&params);
         assert_eq!(id, "run(gait_speed:3.05,turn_rate:-20)");
-        assert_eq!(made_params(&id), Some(params));
+        params.set(Key::Lab, Value::Choice("make")).unwrap();
+        assert_eq!(recipe_params(&id), Some(params));
         for id in [
             "walk",
             "walk)",
@@ -96,7 +85,7 @@ mod tests {
             "walk(turn_rate:900)",
             "walk(turn_rate)",
         ] {
-            assert_eq!(made_params(id), None, "{id}");
+            assert_eq!(recipe_params(id), None, "{id}");
         }
     }
 }

@@ -1,0 +1,197 @@
+//! Results that are kept: their id is the recipe, and all that a link needs to make them again.
+
+use super::make::made_id;
+use super::{CycleMade, Outcome};
+use crate::session::params::{Group, Key, Kind, PARAMS, Param, Params, Value};
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+
+/// What would end a value, and what says that something is written otherwise.
+const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
+
+/// A result of a result of a result: deeper ids name nothing.
+const DEEPEST: usize = 6;
+
+/// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
+pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
+    let group = key.param().group;
+    match lab {
+        "view" => group == Group::View,
+        "make" => group == Group::Make,
+        "blend" => group == Group::Blend,
+        "transition" => matches!(group, Group::Blend | Group::Transition),
+        "speed" => group == Group::Speed || key == Key::FootLock,
+        "loop" => group == Group::Loop || matches!(key, Key::HalfLife | Key::FootLock),
+        "layers" => group == Group::Layers || key == Key::FootLock,
+        _ => false,
+    }
+}
+
+/// Whether a parameter is part of what a lab's result is made from.
+fn is_ingredient(key: Key, lab: &str) -> bool {
+    match key {
+        Key::A => true,
+        Key::B => lab != "loop",
+        _ => belongs_to(key, lab),
+    }
+}
+
+/// The id of what the parameters make: `run(turn_rate:20)` of the Make lab, `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
+///
+/// What was left to Segue is written down as it was found, so that the same comes out again, and at once. `fps` are the clips' own frame rates.
+pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
+    let lab = params.text(Key::Lab);
+    match lab {
+        "view" => return None,
+        "make" => return Some(made_id(params)),
+        _ => {}
+    }
+    let mut params = params.clone();
+    for (key, value) in found(lab, outcome, fps) {
+        if *params.get(key) == Value::Auto {
+            params.set(key, Value::Number(value)).ok()?;
+        }
+    }
+    let ingredients = PARAMS.iter().filter(|param| is_ingredient(param.key, lab)).filter(|param| {
+        let named = matches!(param.kind, Kind::Clip);
+        named || *params.get(param.key) != param.default_value()
+    });
+    let list: Vec<String> = ingredients
+        .map(|param| format!("{}:{}", param.name, written(param, params.get(param.key))))
+        .collect();
+    Some(format!("{lab}({})", list.join(",")))
+}
+
+/// The parameters that an id stands for; `None` when it stands for none.
+pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
+    let (word, list) = id.strip_suffix(')')?.split_once('(')?;
+    let mut params = Params::default();
+    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
+    let is_lab = Key::Lab.param().parse(word).is_ok() && !matches!(word, "view" | "make");
+    let lab = if is_lab { word } else { "make" };
+    set(Key::Lab, lab)?;
+    if !is_lab {
+        set(Key::Gait, word)?;
+    }
+    for pair in parts(list)? {
+        let (name, value) = pair.split_once(':')?;
+        let key = Key::from_name(name)?;
+        let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
+        let value = if key.param().kind == Kind::Clip && !value.ends_with(')') {
+            percent_decode_str(value).decode_utf8().ok()?
+        } else {
+            value.into()
+        };
+        set(Some(key).filter(|_| allowed)?, &value)?;
+    }
+    Some(params)
+}
+
+/// What a person calls what the parameters make.
+pub(in crate::session) fn recipe_name(params: &Params) -> String {
+    let [a, b] = [Key::A, Key::B].map(|key| params.text(key).split('~').next().unwrap_or_default());
+    match params.text(Key::Lab) {
+        "make" => made_id(params),
+        "loop" => format!("{a}, looped"),
+        "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
+        "layers" => format!("{a} with {b}"),
+        _ => format!("{a} to {b}"),
+    }
+}
+
+/// What was found where it was left to Segue.
+fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
+    let mut found = Vec::new();
+    if let Some(transition) = &outcome.transition {
+        found.extend(match lab {
+            "transition" => [
+                (Key::MixFrameA, (transition.leave_a_secs * fps[0]).round()),
+                (Key::MixFrameB, (transition.enter_b_secs * fps[1]).round()),
+            ],
+            _ => [(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)],
+        });
+    }
+    match outcome.cycle.map(|cycle| cycle.made) {
+        Some(CycleMade::Cut { from_secs, to_secs, .. }) => found.extend([(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)]),
+        Some(CycleMade::Gait { asked_mps, .. }) => found.push((Key::Speed, asked_mps)),
+        None => {}
+    }
+    found
+}
+
+/// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
+fn written(param: &Param, value: &Value) -> String {
+    let text = param.format(value);
+    if param.kind == Kind::Clip && recipe_params(&text).is_none() {
+        utf8_percent_encode(&text, RESERVED).to_string()
+    } else {
+        text
+    }
+}
+
+/// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
+fn parts(list: &str) -> Option<Vec<&str>> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
+    for (at, letter) in list.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.checked_sub(1)?,
+            ',' if depth == 0 => {
+                parts.push(&list[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return None;
+        }
+    }
+    parts.push(&list[start..]);
+    parts.retain(|part| !part.is_empty());
+    (depth == 0).then_some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn named(a: &str, b: &str) -> Option<Params> {
+        let mut params = Params::default();
+        params.set(Key::Lab, Value::Choice("transition")).ok()?;
+        params.set(Key::A, Value::Text(a.to_owned())).ok()?;
+        params.set(Key::B, Value::Text(b.to_owned())).ok()?;
+        Some(params)
+    }
+
+    fn id_of(params: &Params) -> String {
+        let motion = super::super::made_motion(&Params::default()).expect("a walk");
+        recipe_id(params, &Outcome::plain(std::sync::Arc::new(motion)), [60.0; 2]).expect("a recipe")
+    }
+
+    #[test]
+    fn ids_that_are_none_name_nothing() {
+        for id in [
+            "blend(a:walk",
+            "blend(a:walk))",
+            "blend(gait:run)",
+            "loop(a:walk,b:run)",
+            "view(a:walk)",
+            "make(gait:run)",
+            "blend(a:walk,blend_window:0)",
+            "blend((((((((((())))))))))))",
+        ] {
+            assert_eq!(recipe_params(id), None, "{id}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_name_of_a_file_comes_back(a in ".{0,24}", b in "[a-z(),:%~ ]{0,16}") {
+            let params = named(&a, &b).expect("texts");
+            prop_assert_eq!(recipe_params(&id_of(&params)), Some(params.clone()));
+            // And once more inside of another.
+            let outer = named(&id_of(&params), &b).expect("texts");
+            prop_assert_eq!(recipe_params(&id_of(&outer)), Some(outer));
+        }
+    }
+}
