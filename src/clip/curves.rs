@@ -11,6 +11,8 @@ pub enum CurveKind {
     Speed,
     /// Height above `y = 0`, metres.
     Height,
+    /// How far it is turned against its parent from the rest pose, degrees: 0 to 180.
+    Angle,
     /// Speed of its rotation in the world, degrees per second.
     AngularSpeed,
 }
@@ -32,6 +34,7 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
             match kind {
                 CurveKind::Height => track[frame].0.y,
                 CurveKind::Speed => (track[after].0 - track[before].0).length() / secs,
+                CurveKind::Angle => quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees(),
                 CurveKind::AngularSpeed => quat::angle_between(track[before].1, track[after].1).to_degrees() / secs,
             }
         })

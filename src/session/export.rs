@@ -117,6 +117,7 @@ fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
     let quantity = match kind {
         CurveKind::Speed => "speed_m_per_s",
         CurveKind::Height => "height_m",
+        CurveKind::Angle => "angle_deg",
         CurveKind::AngularSpeed => "turn_deg_per_s",
     };
     let joint = joint_of(motion, name)?;

@@ -77,6 +77,7 @@ pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
 pub fn curve_kind(word: &str) -> CurveKind {
     match word {
         "height" => CurveKind::Height,
+        "angle" => CurveKind::Angle,
         "turn" => CurveKind::AngularSpeed,
         _ => CurveKind::Speed,
     }

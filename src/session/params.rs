@@ -268,7 +268,12 @@ const GAITS: &[Choice] = &[
 const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
 const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
-const CURVES: &[Choice] = &[choice("speed", "speed"), choice("height", "height"), choice("turn", "turn rate")];
+const CURVES: &[Choice] = &[
+    choice("speed", "speed"),
+    choice("height", "height"),
+    choice("angle", "angle"),
+    choice("turn", "turn rate"),
+];
 const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
 
 parameters! {

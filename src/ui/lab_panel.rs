@@ -116,8 +116,8 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
 }
 
 /// `30 frames`.
-fn value_in_words((key, value): &(Key, Value)) -> String {
-    format!("{} {}", key.param().spoken(value), key.param().unit)
+pub(super) fn value_in_words((key, value): &(Key, Value)) -> String {
+    format!("{} {}", key.param().spoken(value), key.param().unit).trim_end().to_owned()
 }
 
 /// Keeps the result, or saves it; which one, where several stand side by side.

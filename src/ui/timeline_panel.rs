@@ -1,6 +1,7 @@
 //! The bottom panel: what happens in time.
 
 use super::kit::{self, Curves, Moment, Part, Series, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use super::lab_panel::value_in_words;
 use super::out::Out;
 use super::state::Layout;
 use super::text;
@@ -11,12 +12,26 @@ use segue::session::{Command, CycleMade, Key, Kind, Motion, Outcome, Session, Sl
 use segue::skeleton::Role;
 use std::sync::Arc;
 
-/// The curves of the chosen joint, kept until the result or the choice changes.
+/// The curves of the chosen joint, of every pane over each other, kept until a result or the choice changes.
 #[derive(Debug, Default)]
 pub(crate) struct CurveCache {
-    outcome: Option<Arc<Outcome>>,
+    panes: Vec<(String, Arc<Outcome>)>,
     what: (String, String),
-    lines: Vec<(Part, Vec<[f64; 2]>)>,
+    lines: Vec<Curve>,
+}
+
+#[derive(Debug)]
+struct Curve {
+    of: CurveOf,
+    points: Vec<[f64; 2]>,
+}
+
+#[derive(Debug)]
+enum CurveOf {
+    /// One of the clips that a result was made from.
+    Source(Part),
+    /// The result of a pane, by its number and its name.
+    Pane(usize, String),
 }
 
 /// More points than a screen is wide only cost time.
@@ -51,25 +66,28 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         None => {}
     }
 
-    cache.update(outcome, joint, quantity);
+    let panes = named_outcomes(session);
+    cache.update(outcome, &panes, joint, quantity);
     let palette = palette_of(ui);
     let series: Vec<Series<'_>> = cache
         .lines
         .iter()
-        .map(|(part, points)| {
-            let color = if *part == Part::Result {
-                palette.accent
-            } else {
-                part.fill(palette).0
-            };
-            let name = if *part == Part::Result { text::RESULT } else { part.letter() };
-            Series {
-                name,
-                color,
+        .map(|Curve { of, points }| match of {
+            CurveOf::Source(part) => Series {
+                name: of.name(),
+                color: part.fill(palette).0,
                 ink: part.ink(palette),
-                strong: *part == Part::Result,
+                strong: false,
                 points,
-            }
+            },
+            CurveOf::Pane(index, _) => Series {
+                name: of.name(),
+                // The first is the result that everything else on the page shows; two more are told apart by light, the last by warmth.
+                color: [palette.accent, palette.text, palette.muted, palette.warning][index % 4],
+                ink: [palette.accent_ink, palette.text, palette.muted, palette.warning][index % 4],
+                strong: *index == 0,
+                points,
+            },
         })
         .collect();
     let names = [Key::A, Key::B].map(|key| {
@@ -201,28 +219,56 @@ fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
     ]
 }
 
+/// The results of all panes, with what tells them apart.
+fn named_outcomes(session: &Session) -> Vec<(String, &Arc<Outcome>)> {
+    let named = session.panes().iter().filter_map(|pane| {
+        let name = pane.variant.as_ref().map_or_else(|| text::RESULT.to_owned(), value_in_words);
+        Some((name, pane.outcome.as_ref()?))
+    });
+    named.collect()
+}
+
+impl CurveOf {
+    /// Its name beside the plot.
+    fn name(&self) -> &str {
+        match self {
+            Self::Source(part) => part.letter(),
+            Self::Pane(_, name) => name,
+        }
+    }
+}
+
 impl CurveCache {
-    fn update(&mut self, outcome: &Arc<Outcome>, joint: &str, quantity: &str) {
-        let same = self.outcome.as_ref().is_some_and(|known| Arc::ptr_eq(known, outcome));
+    fn update(&mut self, main: &Arc<Outcome>, panes: &[(String, &Arc<Outcome>)], joint: &str, quantity: &str) {
+        let shown = panes.iter().map(|(name, outcome)| (name, *outcome));
+        let known = self.panes.iter().map(|(name, outcome)| (name, outcome));
+        let same = shown.len() == known.len() && shown.zip(known).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(a.1, b.1));
         if same && self.what.0 == joint && self.what.1 == quantity {
             return;
         }
-        self.outcome = Some(Arc::clone(outcome));
+        self.panes = panes.iter().map(|(name, outcome)| (name.clone(), Arc::clone(outcome))).collect();
         self.what = (joint.to_owned(), quantity.to_owned());
         self.lines.clear();
-        let end = outcome.duration_secs();
-        for source in &outcome.sources {
+        let end = main.duration_secs();
+        for source in &main.sources {
             let part = if source.slot == Slot::A { Part::A } else { Part::B };
             // Sources are shown where they can be compared with the result.
-            let window = outcome.transition.map_or(0.0..end, |transition| {
+            let window = main.transition.map_or(0.0..end, |transition| {
                 let margin = (transition.end_secs - transition.start_secs).max(0.25);
                 transition.start_secs - margin..transition.end_secs + margin
             });
             let mut points = curve(&source.motion, joint, quantity, source.starts_at_secs);
             points.retain(|point| window.contains(&point[0]) && (0.0..=end).contains(&point[0]));
-            self.lines.push((part, points));
+            self.lines.push(Curve {
+                of: CurveOf::Source(part),
+                points,
+            });
         }
-        self.lines.push((Part::Result, curve(&outcome.motion, joint, quantity, 0.0)));
+        let results = panes.iter().enumerate().map(|(index, (name, outcome))| Curve {
+            of: CurveOf::Pane(index, name.clone()),
+            points: curve(&outcome.motion, joint, quantity, 0.0),
+        });
+        self.lines.extend(results);
     }
 }
 
@@ -242,6 +288,7 @@ fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> V
 fn unit_of(quantity: &str) -> &'static str {
     match quantity {
         "height" => "m",
+        "angle" => "°",
         "turn" => "°/s",
         _ => "m/s",
     }
@@ -295,4 +342,35 @@ fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out,
             }
         });
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_results_of_all_panes_are_drawn_over_each_other() {
+        let mut session = Session::new();
+        session
+            .apply(Command::OpenLink("lab=transition&compare=method:inertialize,smooth,dead".into()))
+            .unwrap();
+        while session.work() {}
+        let panes = named_outcomes(&session);
+        let mut cache = CurveCache::default();
+        cache.update(session.main_outcome().unwrap(), &panes, "right foot", "angle");
+        let names: Vec<&str> = cache.lines.iter().map(|line| line.of.name()).collect();
+        assert_eq!(names, ["A", "B", "inertialize", "dissolve, smooth", "dead blend"]);
+        let results = &cache.lines[2..];
+        let length = |line: &Curve| line.points.len();
+        assert!(results.iter().all(|line| length(line) > 100));
+        // They part in the transition, and nowhere before.
+        assert_eq!(results[0].points[..20], results[1].points[..20]);
+        assert!(
+            results[0]
+                .points
+                .iter()
+                .zip(&results[1].points)
+                .any(|(a, b)| (a[1] - b[1]).abs() > 1.0)
+        );
+    }
 }

@@ -142,15 +142,28 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     let title = [curves.title, curves.unit].join(" ");
     let title = line_of(&[Run::new(title.trim(), Type::Small, palette.muted)], area.width(), ui);
     let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
-    let mut runs = Vec::new();
-    for (index, series) in curves.series.iter().enumerate() {
-        if index > 0 {
-            runs.push(Run::new("·", Type::Small, palette.muted).after(space::XS));
+    // Letters share a line; words have one each.
+    let (letters, words): (Vec<_>, Vec<_>) = curves.series.iter().partition(|series| series.name.chars().count() == 1);
+    let lines = if words.len() > 1 {
+        std::iter::once(letters).chain(words.into_iter().map(|word| vec![word])).collect()
+    } else {
+        vec![curves.series.iter().collect::<Vec<_>>()]
+    };
+    let mut top = at.bottom() + 2.0;
+    for line in lines.iter().filter(|line| !line.is_empty()) {
+        let mut runs = Vec::new();
+        for (index, series) in line.iter().enumerate() {
+            if index > 0 {
+                runs.push(Run::new("·", Type::Small, palette.muted).after(space::XS));
+            }
+            runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 { space::XS } else { 0.0 }));
         }
-        runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 { space::XS } else { 0.0 }));
+        let names = line_of(&runs, area.width(), ui);
+        if top + names.size().y > area.bottom() + space::S {
+            break;
+        }
+        top = put(ui.painter(), pos2(area.left(), top), Align2::LEFT_TOP, names).bottom();
     }
-    let names = line_of(&runs, area.width(), ui);
-    put(ui.painter(), at.left_bottom() + vec2(0.0, 2.0), Align2::LEFT_TOP, names);
 }
 
 /// What the curves say at the pointer: a dot on each, and their values with the unit.
