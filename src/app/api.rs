@@ -265,13 +265,8 @@ impl Segue {
 
     /// What a clip's id, `result`, or `result:1` (the second pane) names.
     fn subject(&self, which: &str) -> Result<Subject<'_>, String> {
-        let pane = match which.strip_prefix("result") {
-            Some("") => Some(0),
-            Some(rest) => rest.strip_prefix(':').map(|index| index.parse::<usize>().unwrap_or(usize::MAX)),
-            None => None,
-        };
         let panes = self.session.panes();
-        let Some(index) = pane else {
+        let Some(index) = pane_number(which) else {
             let entry = self.session.library().find(which);
             let entry =
                 entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
@@ -288,6 +283,14 @@ impl Segue {
             (None, Some(problem)) => Err(format!("there is no result: {problem}")),
             (None, None) => Err("there is no result yet".to_owned()),
         }
+    }
+
+    /// Puts a result into the library. Returns the id of the new clip.
+    pub(crate) fn keep(&mut self, which: &str) -> Result<String, String> {
+        let pane = pane_number(which).ok_or_else(|| format!("found `{which}`, expected `result`, or `result:1` for the second pane"))?;
+        self.apply(Command::Keep(pane)).map_err(|error| error.to_string())?;
+        let kept = self.session.library().entries().last();
+        Ok(kept.map(|entry| entry.id.clone()).unwrap_or_default())
     }
 
     /// The motion of [`Self::subject`].
@@ -436,6 +439,14 @@ pub(crate) fn file_name(stem: &str, ending: &str) -> String {
     let stem: String = stem.chars().map(plain).take(100).collect();
     let stem = stem.trim().trim_start_matches('.');
     format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
+}
+
+/// The pane that `result` or `result:1` means, from 0; `None` for the id of a clip.
+fn pane_number(which: &str) -> Option<usize> {
+    match which.strip_prefix("result")? {
+        "" => Some(0),
+        rest => rest.strip_prefix(':').map(|index| index.parse::<usize>().unwrap_or(usize::MAX)),
+    }
 }
 
 #[cfg(test)]

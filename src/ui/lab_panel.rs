@@ -134,7 +134,7 @@ pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
             state.saved_pane = pane;
         }
     }
-    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).primary(), ui).clicked() {
+    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).outlined(), ui).clicked() {
         out.commands.push(Command::Keep(state.saved_pane));
     }
     ui.add_space(space::S);

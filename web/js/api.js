@@ -52,6 +52,7 @@ export function makeApi(handle, { stopped, onLost }) {
     pose: (which, seconds) => call("pose", which, seconds),
     metrics: () => call("metrics"),
     export: (which, format) => call("exportClip", which, format),
+    keep: (which) => call("keep", which),
     snapshot: () => callAsync("snapshot"),
     record: () => call("record"),
     stopRecording: () => callAsync("stopRecording"),

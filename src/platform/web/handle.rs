@@ -212,6 +212,13 @@ impl SegueHandle {
             .bytes)
     }
 
+    /// Puts a result into the library; its id there.
+    pub fn keep(&self, which: &str) -> Result<String, JsValue> {
+        let kept = self.borrow_mut()?.keep(which).map_err(|reason| error(format!("keep: {reason}")));
+        self.changed();
+        kept
+    }
+
     /// The stage as a PNG.
     pub async fn snapshot(&self) -> Result<Blob, JsValue> {
         let canvas = self.canvas.borrow().clone();

@@ -1,0 +1,74 @@
+// The labs: each opens with something to see, its numbers are those of its motion, and what it makes can be kept and used in another.
+
+import assert from "node:assert/strict";
+import { onBothBackends } from "./harness.mjs";
+import { apart, until } from "./help.mjs";
+
+const DESK = { viewport: [1000, 700] };
+
+/** The values of one number, pane by pane. */
+const panes = async (segue, name) => (await segue("metrics"))[name].panes;
+
+// Fails when the speed is not that of the motion, and when a change of it makes the character jump.
+onBothBackends("the speed lab goes at the speed that is asked for, and changes it without a jump", async ({ open }) => {
+  const { segue } = await open("lab=speed&speed=1.5", DESK);
+  await segue("set", {});
+  for (const speed of [1.5, 2.3, 3.4]) {
+    await segue("set", { speed });
+    const [measured] = await panes(segue, "speed_mps");
+    assert.ok(Math.abs(measured - speed) < 0.02 * speed, `asked for ${speed} m/s, measured ${measured}`);
+  }
+  assert.ok((await segue("time")) >= 0);
+});
+
+// Fails when a cycle has a seam, and when the classic ways hide theirs.
+onBothBackends("the exact loop has no seam, one spring alone has", async ({ open }) => {
+  const { segue } = await open("lab=loop&a=walk_left&loop_from=0.3&loop_to=1.2&compare=loop_method:exact,linear&play=off", DESK);
+  await segue("set", {});
+  const [exact, linear] = await panes(segue, "loop_seam_dps");
+  assert.ok(exact < 1, `the exact one: ${exact} °/s`);
+  assert.ok(linear > 5 * Math.max(exact, 0.1), `the linear one: ${linear} °/s`);
+});
+
+// Fails when the mask lets the legs through, or keeps the arms back.
+onBothBackends("a layer moves what its mask covers, and nothing else", async ({ open }) => {
+  const { segue } = await open("lab=layers&mask=arms&feather=0&play=off", DESK);
+  await segue("set", {});
+  const [arms] = await panes(segue, "off_arms_deg");
+  const [legs] = await panes(segue, "off_legs_deg");
+  assert.ok(arms > 5 && legs < 0.01, `arms ${arms}°, legs ${legs}°`);
+  await segue("set", { layer_weight: 0 });
+  assert.ok(apart(await segue("pose", "result", 1), await segue("pose", "walk", 1)) < 1e-4, "without weight it is A");
+});
+
+// Fails when a mistake is not made, or is made where none is asked for.
+onBothBackends("a classic mistake stands beside the right way", async ({ open }) => {
+  const { segue } = await open("lab=transition&compare=mistake:none,degrees,atan&play=off", DESK);
+  await segue("set", {});
+  const seams = await panes(segue, "seam_dps");
+  assert.ok(seams[1] > 10 * seams[0], `seams: ${seams}`);
+  const spins = await panes(segue, "spin_deg");
+  assert.ok(spins[2] > 90 && spins[0] < 10, `spins: ${spins}`);
+});
+
+// Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
+onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
+  const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);
+  await segue("set", {});
+  const id = await segue("keep", "result");
+  assert.match(id, /^transition\(a:walk,b:run,half_life:0.3,mix_frame_a:\d+,mix_frame_b:\d+\)$/);
+  const made = await segue("pose", "result", 2.5);
+  await segue("set", { lab: "blend", a: id, b: "jump" });
+  assert.ok(apart(await segue("pose", id, 2.5), made) < 1e-6, "the clip is the result");
+  await assert.rejects(segue("keep", "walk"), /found `walk`/);
+  const url = new URL(await segue("url"));
+
+  const other = await open(url.search.slice(1), DESK);
+  await other.segue("set", {});
+  assert.ok(apart(await other.segue("pose", id, 2.5), made) < 1e-6, "made again from the link alone");
+
+  await page.evaluate(() => document.dispatchEvent(new Event("visibilitychange")));
+  await page.reload();
+  await ready();
+  await until("it is in the library", async () => (await segue("clips")).some((clip) => clip.id === id));
+});
