@@ -277,6 +277,11 @@ fn fill<T, const N: usize>(values: &mut Vec<T>, wanted: usize, bytes: &mut &[u8]
     let missing = wanted.saturating_sub(values.len());
     let (all, _) = bytes.as_chunks::<N>();
     let coming = &all[..missing.min(all.len())];
+    if values.is_empty() && !coming.is_empty() {
+        // In one piece: to grow by doubling would copy many megabytes between two frames. The number is from the worker, not from the file, and
+        // where there is no room for it, growing fails with the same words.
+        values.try_reserve_exact(missing).ok();
+    }
     values.extend(coming.iter().map(read));
     *bytes = &bytes[coming.len() * N..];
 }
