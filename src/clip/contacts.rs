@@ -200,8 +200,9 @@ impl Ways {
         let mut body = Vec::with_capacity(clip.frames());
         let mut points: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
         let mut world = WorldPose::default();
+        let needed = skeleton.with_ancestors(wanted.iter().map(|&(_, _, joint, _)| joint).chain([hips]));
         for frame in 0..clip.frames() {
-            clip.world_pose_into(frame, &mut world);
+            clip.world_pose_of(frame, &needed, &mut world);
             body.push(world.positions[hips]);
             for (&(_, _, joint, point), way) in wanted.iter().zip(&mut points) {
                 way.push(world.point(joint, point));

@@ -2,6 +2,7 @@
 
 use super::Clip;
 use crate::math::quat;
+use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
 
 /// What of a joint is plotted.
@@ -43,28 +44,12 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
 
 /// Where one joint is in the world, and how it is turned, in every frame: kinematics of its own chain alone, because plots follow a slider.
 fn joint_track(clip: &Clip, joint: usize) -> Vec<(Vec3, Quat)> {
-    let skeleton = clip.skeleton();
-    let mut chain: Vec<usize> = std::iter::successors(Some(joint), |&j| skeleton.parent(j)).collect();
-    chain.reverse();
-    let links: Vec<_> = chain
-        .iter()
-        .skip(1)
-        .map(|&j| {
-            (
-                j,
-                skeleton.joints()[j].offset,
-                clip.translations().iter().find(|track| track.joint == j),
-            )
-        })
-        .collect();
+    let chain = clip.skeleton().with_ancestors([joint]);
+    let mut world = WorldPose::default();
     (0..clip.frames())
         .map(|frame| {
-            let rotations = clip.rotations(frame);
-            let start = (clip.root_translations()[frame], rotations[0]);
-            links.iter().fold(start, |(position, rotation), &(j, offset, moved)| {
-                let translation = moved.map_or(offset, |track| track.values[frame]);
-                (position + rotation * translation, rotation * rotations[j])
-            })
+            clip.world_pose_of(frame, &chain, &mut world);
+            (world.positions[joint], world.rotations[joint])
         })
         .collect()
 }
@@ -84,6 +69,12 @@ mod tests {
             let track = joint_track(&clip, joint);
             for frame in (0..clip.frames()).step_by(7) {
                 let world = clip.world_pose(frame);
+                let mut part = WorldPose::default();
+                clip.world_pose_of(frame, &clip.skeleton().with_ancestors([joint, 9999]), &mut part);
+                assert_eq!(
+                    (part.positions[joint], part.rotations[joint]),
+                    (world.positions[joint], world.rotations[joint])
+                );
                 assert_eq!(
                     track[frame],
                     (world.positions[joint], world.rotations[joint]),

@@ -8,6 +8,9 @@ const MOVES_M: f32 = 1e-3;
 /// Across axes whose share over the ground is below this are those of a character lying on its side: no facing.
 const LEAST_ACROSS: f32 = 0.2;
 
+/// The pairs of joints whose axes say where the body faces.
+const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
+
 /// The joint that carries the character through the world: the first from the top whose world position varies, on the way from the root to
 /// the hips. Some files hold a `ROOT` still and move the `Hips` below it. The root where nothing moves.
 #[must_use]
@@ -22,8 +25,9 @@ pub fn motion_root(clip: &Clip, roles: &Roles) -> usize {
     candidates.sort_unstable();
     let mut bounds: Vec<Option<(Vec3, Vec3)>> = vec![None; candidates.len()];
     let mut world = WorldPose::default();
+    let needed = skeleton.with_ancestors(candidates.iter().copied());
     for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
+        clip.world_pose_of(frame, &needed, &mut world);
         for (&joint, bound) in candidates.iter().zip(&mut bounds) {
             let p = world.positions[joint];
             *bound = Some(bound.map_or((p, p), |(low, high)| (low.min(p), high.max(p))));
@@ -45,7 +49,7 @@ pub fn motion_root(clip: &Clip, roles: &Roles) -> usize {
 pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
     let across = |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
-    let (hips, shoulders) = (across(Role::thigh), across(Role::upper_arm));
+    let [hips, shoulders] = ACROSS.map(across);
     let forward = if hips.is_none() && shoulders.is_none() {
         *world.rotations.first()? * Vec3::Z
     } else {
@@ -72,8 +76,13 @@ pub fn character_frames(clip: &Clip, roles: &Roles) -> Vec<Planar> {
     let mut world = WorldPose::default();
     let mut frames = Vec::with_capacity(clip.frames());
     let mut known: Vec<Option<f64>> = Vec::with_capacity(clip.frames());
+    let across = ACROSS
+        .into_iter()
+        .flat_map(|role| Side::BOTH.map(role))
+        .filter_map(|role| roles.get(role));
+    let needed = clip.skeleton().with_ancestors(across.chain([root]));
     for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
+        clip.world_pose_of(frame, &needed, &mut world);
         let facing = facing(&world, roles);
         let standing = Planar::standing_at(world.positions[root], facing.unwrap_or(Vec3::Z));
         known.push(facing.map(|_| standing.yaw));

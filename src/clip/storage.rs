@@ -1,5 +1,5 @@
 use crate::math::Planar;
-use crate::skeleton::{Pose, Skeleton, WorldPose, world_pose_into};
+use crate::skeleton::{Pose, Skeleton, WorldPose, world_pose_into, world_pose_of};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -248,6 +248,16 @@ impl Clip {
     pub fn world_pose_into(&self, frame: usize, world: &mut WorldPose) {
         let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
         world_pose_into(&self.skeleton, self.root_translations[frame], self.rotations(frame), moved, world);
+    }
+
+    /// Forward kinematics of some joints of one frame; see [`world_pose_of`].
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    pub fn world_pose_of(&self, frame: usize, joints: &[usize], world: &mut WorldPose) {
+        let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
+        let root = self.root_translations[frame];
+        world_pose_of(&self.skeleton, root, self.rotations(frame), moved, joints, world);
     }
 
     /// Forward kinematics of one frame.

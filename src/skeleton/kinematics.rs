@@ -54,10 +54,35 @@ pub fn world_pose_into(
     translations: impl IntoIterator<Item = (usize, Vec3)>,
     world: &mut WorldPose,
 ) {
-    world.positions.clear();
-    world.rotations.clear();
+    place(skeleton, root_translation, rotations, translations, 0..skeleton.len(), world);
+}
+
+/// As [`world_pose_into`], of `joints` alone: in rising order and with all their ancestors, as [`Skeleton::with_ancestors`] gives them. The entries
+/// of other joints mean nothing. Indices that are no joints are passed over.
+pub fn world_pose_of(
+    skeleton: &Skeleton,
+    root_translation: Vec3,
+    rotations: &[Quat],
+    translations: impl IntoIterator<Item = (usize, Vec3)>,
+    joints: &[usize],
+    world: &mut WorldPose,
+) {
+    place(skeleton, root_translation, rotations, translations, joints.iter().copied(), world);
+}
+
+fn place(
+    skeleton: &Skeleton,
+    root_translation: Vec3,
+    rotations: &[Quat],
+    translations: impl IntoIterator<Item = (usize, Vec3)>,
+    joints: impl Iterator<Item = usize>,
+    world: &mut WorldPose,
+) {
+    world.positions.resize(skeleton.len(), Vec3::ZERO);
+    world.rotations.resize(skeleton.len(), Quat::IDENTITY);
     let mut moved = translations.into_iter().peekable();
-    for (index, joint) in skeleton.joints().iter().enumerate() {
+    for index in joints {
+        let Some(joint) = skeleton.joints().get(index) else { continue };
         let local = rotations.get(index).copied().unwrap_or(Quat::IDENTITY);
         let mut translation = joint.offset;
         while let Some((at, value)) = moved.next_if(|&(at, _)| at <= index) {
@@ -72,7 +97,7 @@ pub fn world_pose_into(
                 (world.positions[parent] + parent_rotation * translation, parent_rotation * local)
             }
         };
-        world.positions.push(position);
-        world.rotations.push(rotation);
+        world.positions[index] = position;
+        world.rotations[index] = rotation;
     }
 }

@@ -109,6 +109,21 @@ impl Skeleton {
         self.joints.get(joint).and_then(|j| j.parent)
     }
 
+    /// These joints, all their ancestors and the root, in rising order: what kinematics of them needs. What is no joint is left out.
+    #[must_use]
+    pub fn with_ancestors(&self, joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
+        let mut needed = vec![false; self.len()];
+        for joint in joints.into_iter().chain([0]) {
+            let mut next = Some(joint).filter(|&joint| joint < self.len());
+            // A joint that is needed already brought its ancestors.
+            while let Some(joint) = next.filter(|&joint| !needed[joint]) {
+                needed[joint] = true;
+                next = self.parent(joint);
+            }
+        }
+        (0..self.len()).filter(|&joint| needed[joint]).collect()
+    }
+
     /// The children of `joint`, in order.
     pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         (joint + 1..self.joints.len()).filter(move |&child| self.joints[child].parent == Some(joint))
