@@ -100,7 +100,12 @@ impl Carried {
     /// The contacts of the result, from those of the original.
     #[must_use]
     pub fn contacts(&self, original: &Contacts) -> Contacts {
-        let planted = |side| self.frames.iter().map(|frame| original.planted(side, frame.round() as usize)).collect();
+        let planted = |side| {
+            self.frames
+                .iter()
+                .map(|frame| original.planted(side, frame.round() as usize))
+                .collect()
+        };
         Contacts::from_flags(Side::BOTH.map(planted))
     }
 
@@ -176,4 +181,3 @@ fn moved(clip: &Clip, frames: &[f64], moves: &[Planar]) -> Result<Clip, PathEdit
     let moved = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
     Ok(moved.with_translations(tracks.collect())?.with_provenance(clip.provenance()))
 }
-

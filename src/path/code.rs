@@ -3,11 +3,12 @@ use super::{GroundSpline, PathEditError};
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use glam::{DVec2, I64Vec2};
+use std::ops::Range;
 
 /// Written points are whole numbers of this length, metres.
 const UNIT_M: f64 = 0.01;
 /// Written knots are whole numbers of this share.
-const KNOT_UNIT: f64 = 1.0 / 65_536.0;
+const KNOT_UNIT: f64 = 1.0 / 1_048_576.0;
 const CLOSED: u64 = 1;
 const KNOTS: u64 = 2;
 
@@ -15,7 +16,7 @@ impl GroundSpline {
     /// The path as a short word for links, letters, digits, `-` and `_`: control points to 1 cm, about three letters to a point and coordinate.
     ///
     /// The word is base64 of numbers of seven bits to a byte: a flag for "closed" and one for "has knots of its own", the number of points, the differences of
-    /// their coordinates, and the differences of the inner knots where they are not uniform.
+    /// their coordinates, and the differences of the inner knots where they are not uniform. The ends of a closed path follow from its other points and are left out.
     #[must_use]
     pub fn to_code(&self) -> String {
         let uniform = self.inner_knots() == uniform_knots(self.points().len());
@@ -24,7 +25,7 @@ impl GroundSpline {
         write(&mut bytes, flags);
         write(&mut bytes, self.points().len() as u64);
         let mut before = I64Vec2::ZERO;
-        for point in self.points() {
+        for point in &self.points()[own_points(self.points().len(), self.is_closed())] {
             let here = (*point / UNIT_M).round().as_i64vec2();
             let step = here - before;
             before = here;
@@ -62,15 +63,17 @@ impl GroundSpline {
         if flags > CLOSED | KNOTS {
             return Err(PathEditError::Code);
         }
-        let mut points = Vec::with_capacity(count);
+        let closed = flags & CLOSED != 0;
+        let mut points = vec![DVec2::ZERO; count];
         let mut here = [0i64; 2];
-        for index in 0..count {
+        let own = own_points(count, closed);
+        for (index, point) in points[own].iter_mut().enumerate() {
             for value in &mut here {
                 let word = next()?;
                 let step = (word >> 1) as i64 ^ -((word & 1) as i64);
                 *value = value.checked_add(step).ok_or(PathEditError::Point { index })?;
             }
-            points.push(DVec2::new(here[0] as f64, here[1] as f64) * UNIT_M);
+            *point = DVec2::new(here[0] as f64, here[1] as f64) * UNIT_M;
         }
         let spline = if flags & KNOTS == 0 {
             Self::uniform(points)?
@@ -86,7 +89,7 @@ impl GroundSpline {
         if bytes.next().is_some() {
             return Err(PathEditError::Code);
         }
-        Ok(if flags & CLOSED == 0 { spline } else { spline.joined() })
+        Ok(if closed { spline.joined() } else { spline })
     }
 
     /// The path as its word tells it: what a link can hold.
@@ -96,6 +99,12 @@ impl GroundSpline {
     pub fn rounded(&self) -> Result<Self, PathEditError> {
         Self::from_code(&self.to_code())
     }
+}
+
+/// The points that a word holds.
+fn own_points(count: usize, closed: bool) -> Range<usize> {
+    let ends = usize::from(closed);
+    ends..count - ends
 }
 
 fn write(bytes: &mut Vec<u8>, mut value: u64) {
@@ -136,7 +145,8 @@ mod tests {
             let refined = path.refined(at).unwrap_or_else(|_| path.clone());
             for path in [path, refined] {
                 let back = GroundSpline::from_code(&path.to_code()).unwrap();
-                for (a, b) in path.points().iter().zip(back.points()) {
+                let own = own_points(path.points().len(), path.is_closed());
+                for (a, b) in path.points()[own.clone()].iter().zip(&back.points()[own]) {
                     prop_assert!((*a - *b).abs().max_element() < 0.011, "{a} {b}");
                 }
                 prop_assert_eq!(back.is_closed(), path.is_closed());

@@ -100,8 +100,21 @@ impl GroundSpline {
             }
             PathEdit::Snap { grid_m } => {
                 check("grid (m)", grid_m, 1e-3, MOST_GRID_M)?;
-                let snapped = |p: DVec2| (p / grid_m).round() * grid_m;
-                all(&snapped)?.held_by(self, pins)
+                let mut points: Vec<DVec2> = self.points().iter().map(|p| (p / grid_m).round() * grid_m).collect();
+                let last = points.len() - 1;
+                if pins.start {
+                    points[0] = self.points()[0];
+                }
+                if pins.end {
+                    points[last] = self.points()[last];
+                }
+                let snapped = self.with_points(points)?;
+                // The ends of a loop follow from their neighbours.
+                if self.is_closed() {
+                    snapped.held_by(self, pins)
+                } else {
+                    Ok(snapped)
+                }
             }
             PathEdit::Shift { by } => {
                 if held {
@@ -148,7 +161,11 @@ impl GroundSpline {
         let end = index == 0 || index == last;
         let pinned = (index == 0 && pins.start) || (index == last && pins.end);
         if !self.is_closed() {
-            return if pinned { Err(PathEditError::Pinned) } else { self.with_points(points) };
+            return if pinned {
+                Err(PathEditError::Pinned)
+            } else {
+                self.with_points(points)
+            };
         }
         let held = pins.start || pins.end;
         if end && held {
@@ -281,7 +298,10 @@ impl GroundSpline {
         }
         let (count, last) = (self.points().len(), self.points().len() - 1);
         if count < LEAST_CLOSED {
-            return Err(PathEditError::TooFewToClose { points: count, least: LEAST_CLOSED });
+            return Err(PathEditError::TooFewToClose {
+                points: count,
+                least: LEAST_CLOSED,
+            });
         }
         let gap = self.points()[0] - self.points()[last];
         if pins.start && pins.end && gap.length() > super::road::LEAST_LENGTH_M {
@@ -298,7 +318,13 @@ impl GroundSpline {
             let wanted = if whole == 0.0 { TAU.copysign(turn) } else { whole * TAU };
             self.bent(|heading, along, _| heading + (wanted - turn) * along, true)?
         };
-        bent.closed_in_place()?.held_by(self, Pins { start: pins.start || !pins.end, end: pins.end && !pins.start })
+        bent.closed_in_place()?.held_by(
+            self,
+            Pins {
+                start: pins.start || !pins.end,
+                end: pins.end && !pins.start,
+            },
+        )
     }
 
     /// A path whose ends coincide, closed: the neighbours of the end are put on one line through it.

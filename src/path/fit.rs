@@ -64,6 +64,8 @@ impl FitOptions {
 /// # Errors
 /// [`PathEditError`] for options out of range, no points, lists of different length, and numbers that are none.
 pub fn fit_spline(points: &[DVec2], parameters: &[f64], options: &FitOptions) -> Result<GroundSpline, PathEditError> {
+    // Before memory is taken for the knots.
+    options.validate()?;
     let knots = uniform_knots(options.control_points);
     fit_with_knots(points, parameters, &knots, options)
 }
@@ -75,7 +77,6 @@ pub(super) fn fit_with_knots(
     inner_knots: &[f64],
     options: &FitOptions,
 ) -> Result<GroundSpline, PathEditError> {
-    options.validate()?;
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
         return Err(PathEditError::Frames { frames: 0 });
     };

@@ -41,6 +41,9 @@ impl FittedPath {
     pub fn new(source: Arc<Source>, options: &FitOptions) -> Result<Self, PathEditError> {
         options.validate()?;
         let way: Vec<DVec2> = source.frames().iter().map(|frame| frame.shift).collect();
+        if way.len() != source.clip().frames() {
+            return Err(PathEditError::Parameters);
+        }
         if way.len() < 2 {
             return Err(PathEditError::Frames { frames: way.len() });
         }
@@ -139,7 +142,9 @@ fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
     };
     let count = way.len() as isize;
     let reach = ((3.0 * deviation).ceil() as isize).min(count - 1);
-    let weights: Vec<f64> = (0..=reach).map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp()).collect();
+    let weights: Vec<f64> = (0..=reach)
+        .map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp())
+        .collect();
     let sum = 2.0 * weights.iter().sum::<f64>() - 1.0;
     let at = |index: isize| {
         if index < 0 {

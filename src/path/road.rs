@@ -19,7 +19,8 @@ const TOLERANCE_M: f64 = 1e-11;
 
 /// A path that knows its length: read by parameter or by metres from its start.
 ///
-/// Lengths are integrals of the speed by Gauss-Legendre, eight parts of five nodes to a piece: to 1e-6 of the length where the path does not stop in a point.
+/// Lengths are integrals of the speed by Gauss-Legendre, eight parts of five nodes to a piece: to 1e-6 of the length, and to 5e-4
+/// where the path turns back in a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Road {
     spline: GroundSpline,
@@ -59,7 +60,11 @@ impl Road {
         if total < LEAST_LENGTH_M {
             return Err(PathEditError::NoLength { length_m: total });
         }
-        Ok(Self { spline, parameters, lengths })
+        Ok(Self {
+            spline,
+            parameters,
+            lengths,
+        })
     }
 
     /// The path.
@@ -100,7 +105,11 @@ impl Road {
             if missing.abs() < TOLERANCE_M {
                 break;
             }
-            if missing > 0.0 { left = u } else { right = u }
+            if missing > 0.0 {
+                left = u
+            } else {
+                right = u
+            }
             let next = u + missing / self.spline.jet(u).first.length();
             // Where the path stands the step is no number, and the middle is taken.
             u = if next > left && next < right { next } else { 0.5 * (left + right) };

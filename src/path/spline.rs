@@ -70,8 +70,15 @@ impl GroundSpline {
         if let Some(index) = points.iter().position(|point| !(point.abs().max_element() <= FARTHEST_M)) {
             return Err(PathEditError::Point { index });
         }
-        let knots: Vec<f64> = [0.0; DEGREE + 1].iter().chain(inner_knots).chain(&[1.0; DEGREE + 1]).copied().collect();
-        let apart = knots[DEGREE..knots.len() - DEGREE].windows(2).all(|pair| pair[1] - pair[0] >= LEAST_SPAN);
+        let knots: Vec<f64> = [0.0; DEGREE + 1]
+            .iter()
+            .chain(inner_knots)
+            .chain(&[1.0; DEGREE + 1])
+            .copied()
+            .collect();
+        let apart = knots[DEGREE..knots.len() - DEGREE]
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] >= LEAST_SPAN);
         if knots.len() != points.len() + DEGREE + 1 || !apart {
             return Err(PathEditError::Knots);
         }
@@ -238,7 +245,11 @@ fn quadratic(t: &[f64], u: f64) -> [f64; 3] {
     let share = |from: f64, to: f64| (u - from) / (to - from);
     let upper = share(t[2], t[3]);
     let (left, right) = (share(t[1], t[3]), share(t[2], t[4]));
-    [(1.0 - upper) * (1.0 - left), (1.0 - upper) * left + upper * (1.0 - right), upper * right]
+    [
+        (1.0 - upper) * (1.0 - left),
+        (1.0 - upper) * left + upper * (1.0 - right),
+        upper * right,
+    ]
 }
 
 /// Cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are the three knots up to the piece and the three behind it.

@@ -30,7 +30,12 @@ pub struct HardTurn {
 
 impl fmt::Display for HardTurn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { frames, turn_dps, limit_dps, .. } = self;
+        let Self {
+            frames,
+            turn_dps,
+            limit_dps,
+            ..
+        } = self;
         write!(
             f,
             "frames {} to {} turn by up to {turn_dps:.0}°/s, and the original by {limit_dps:.0}°/s: widen the bend or slow down",
@@ -44,7 +49,9 @@ impl fmt::Display for HardTurn {
 #[must_use]
 pub fn turn_rates(places: &[Waypoint], fps: f64) -> Vec<f64> {
     let step = |pair: &[Waypoint]| wrap_angle(pair[1].frame.yaw - pair[0].frame.yaw) * fps;
-    std::iter::repeat_n(0.0, places.len().min(1)).chain(places.windows(2).map(step)).collect()
+    std::iter::repeat_n(0.0, places.len().min(1))
+        .chain(places.windows(2).map(step))
+        .collect()
 }
 
 /// Where the new path asks for faster turns than the motion does on the path that it was fitted with: beyond the 99th percentile of curvature × speed, and

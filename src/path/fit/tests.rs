@@ -76,9 +76,17 @@ fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
             assert!(near(jet.first, curve.first[k], 1e-9), "{} {at}", curve.name);
             assert!(near(jet.second, curve.second[k], 1e-7), "{} {at}", curve.name);
             let curvature = curve.curvature[k];
-            assert!((jet.curvature() - curvature).abs() < 1e-8 * (1.0 + curvature.abs()), "{} {at}", curve.name);
+            assert!(
+                (jet.curvature() - curvature).abs() < 1e-8 * (1.0 + curvature.abs()),
+                "{} {at}",
+                curve.name
+            );
             let length = curve.length[k];
-            assert!((road.length_at(at) - length).abs() < 1e-6 * (1.0 + length), "{} {at} {length}", curve.name);
+            assert!(
+                (road.length_at(at) - length).abs() < 1e-6 * (1.0 + length),
+                "{} {at} {length}",
+                curve.name
+            );
         }
         let refined = spline.refined(curve.insert_at).unwrap();
         for (own, other) in refined.points().iter().zip(&curve.inserted) {
@@ -139,7 +147,11 @@ fn smoothing_trades_distance_for_straightness() {
         };
         let spline = fit_spline(&way, &parameters, &options).unwrap();
         assert_eq!((spline.points()[0], spline.points()[13]), (way[0], way[89]));
-        let rest: f64 = way.iter().zip(&parameters).map(|(p, &u)| p.distance_squared(spline.position(u))).sum();
+        let rest: f64 = way
+            .iter()
+            .zip(&parameters)
+            .map(|(p, &u)| p.distance_squared(spline.position(u)))
+            .sum();
         assert!(rest > before, "{smoothing}: {rest}");
         before = rest;
     }
@@ -191,7 +203,10 @@ fn what_cannot_be_fitted_is_said() {
     assert_eq!(of(&way, &[0.0, f64::NAN]), Err(PathEditError::Parameters));
     assert_eq!(of(&way, &[0.5, 0.5]), Err(PathEditError::Parameters));
     assert_eq!(of(&[DVec2::ZERO, DVec2::NAN], &u), Err(PathEditError::Point { index: 1 }));
-    assert_eq!(drawn_path(&[], &FitOptions::default()), Err(PathEditError::NoLength { length_m: 0.0 }));
+    assert_eq!(
+        drawn_path(&[], &FitOptions::default()),
+        Err(PathEditError::NoLength { length_m: 0.0 })
+    );
     assert_eq!(
         drawn_path(&[DVec2::ZERO, DVec2::NAN], &FitOptions::default()),
         Err(PathEditError::Point { index: 1 })
