@@ -78,7 +78,7 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
             path.road().at(parameter)
         };
         let place = match options.timing {
-            Timing::Metres => edited.at_length(old.along_m),
+            Timing::Metres => edited.at_length_near(old.along_m, parameter),
             Timing::Speed | Timing::Duration => edited.at(parameter),
         };
         let turned = place.frame.after(&old.frame.inverse());

@@ -211,8 +211,9 @@ impl Band {
         let mut found = vec![DVec2::ZERO; self.rows.len()];
         for i in (0..self.rows.len()).rev() {
             let row = self.rows[i];
-            // NaN is refused too.
-            if !(row[0].abs() > largest * LEAST_PIVOT) {
+            // NaN compares as no pivot.
+            let pivot = row[0].abs() > largest * LEAST_PIVOT;
+            if !pivot {
                 return None;
             }
             let known: DVec2 = (1..4).filter_map(|k| Some(*found.get(i + k)? * row[k])).sum();

@@ -84,16 +84,13 @@ impl PathEditor {
             carried: slid(&carried.clip),
             locked: None,
         };
-        let clip = match &options.foot_lock {
-            Some(lock) => {
-                let locked = foot_lock(&carried.clip, &self.roles, &contacts, lock)?;
-                slide_cm.locked = slid(&locked);
-                locked
-            }
-            None => {
-                slide_cm.locked = slide_cm.carried;
-                carried.clip
-            }
+        let clip = if let Some(lock) = &options.foot_lock {
+            let locked = foot_lock(&carried.clip, &self.roles, &contacts, lock)?;
+            slide_cm.locked = slid(&locked);
+            locked
+        } else {
+            slide_cm.locked = slide_cm.carried;
+            carried.clip
         };
         Ok(EditedMotion {
             clip,

@@ -1,3 +1,4 @@
+use super::spline::unit;
 use super::{GroundSpline, PathEditError};
 use crate::math::Planar;
 use glam::DVec2;
@@ -16,6 +17,8 @@ const NODES: [(f64, f64); 5] = [
 pub(super) const LEAST_LENGTH_M: f64 = 1e-3;
 /// Parameters are found to this length, metres.
 const TOLERANCE_M: f64 = 1e-11;
+/// Lengths that are the same but for rounding, metres.
+const SAME_M: f64 = 1e-8;
 
 /// A path that knows its length: read by parameter or by metres from its start.
 ///
@@ -82,7 +85,7 @@ impl Road {
     /// Metres from the start to `parameter`, which is clamped to the path.
     #[must_use]
     pub fn length_at(&self, parameter: f64) -> f64 {
-        let u = parameter.max(0.0).min(1.0);
+        let u = unit(parameter);
         let part = part_of(&self.parameters, u);
         self.lengths[part] + length_between(&self.spline, self.parameters[part], u)
     }
@@ -106,9 +109,9 @@ impl Road {
                 break;
             }
             if missing > 0.0 {
-                left = u
+                left = u;
             } else {
-                right = u
+                right = u;
             }
             let next = u + missing / self.spline.jet(u).first.length();
             // Where the path stands the step is no number, and the middle is taken.
@@ -138,6 +141,16 @@ impl Road {
             waypoint.curvature = 0.0;
         }
         waypoint
+    }
+
+    /// [`Self::at_length`] for one who would be at `parameter` if nothing had changed: where that is as far from the start, it is the place. In the tip of a hairpin
+    /// many parameters lie within less than any tolerance on the length, and the path turns round between them.
+    pub(super) fn at_length_near(&self, along_m: f64, parameter: f64) -> Waypoint {
+        if (self.length_at(parameter) - along_m).abs() < SAME_M {
+            self.waypoint(parameter, along_m)
+        } else {
+            self.at_length(along_m)
+        }
     }
 
     fn waypoint(&self, parameter: f64, along_m: f64) -> Waypoint {

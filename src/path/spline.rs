@@ -67,7 +67,7 @@ impl GroundSpline {
     /// As [`Self::uniform`], and for knots that do not fit or come too close to each other.
     pub fn with_knots(points: Vec<DVec2>, inner_knots: &[f64]) -> Result<Self, PathEditError> {
         check_count(points.len())?;
-        if let Some(index) = points.iter().position(|point| !(point.abs().max_element() <= FARTHEST_M)) {
+        if let Some(index) = points.iter().position(|point| !is_place(*point)) {
             return Err(PathEditError::Point { index });
         }
         let knots: Vec<f64> = [0.0; DEGREE + 1]
@@ -213,8 +213,7 @@ impl GroundSpline {
 
     /// The index of the last knot at or below `parameter`, which is clamped to the path; the last piece at the end.
     fn span(&self, parameter: f64) -> (usize, f64) {
-        // NaN becomes 0: `max` returns the other operand.
-        let u = parameter.max(0.0).min(1.0);
+        let u = unit(parameter);
         let inner = self.inner_knots().partition_point(|&knot| knot <= u);
         (inner + DEGREE, u)
     }
@@ -224,6 +223,16 @@ impl GroundSpline {
 pub(super) fn uniform_knots(points: usize) -> Vec<f64> {
     let pieces = points.saturating_sub(DEGREE);
     (1..pieces).map(|k| k as f64 / pieces as f64).collect()
+}
+
+/// A parameter brought into `[0, 1]`; 0 for NaN.
+pub(super) fn unit(parameter: f64) -> f64 {
+    if parameter > 0.0 { parameter.min(1.0) } else { 0.0 }
+}
+
+fn is_place(point: DVec2) -> bool {
+    let near = -FARTHEST_M..=FARTHEST_M;
+    near.contains(&point.x) && near.contains(&point.y)
 }
 
 pub(super) fn check_count(points: usize) -> Result<(), PathEditError> {
