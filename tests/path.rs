@@ -235,8 +235,8 @@ fn speed_or_duration_are_kept() {
     let fps = speed.clip.fps();
     for frame in 1..speed.clip.frames() {
         let own = (speed.places[frame].along_m - speed.places[frame - 1].along_m) * fps;
-        let at = speed.frames[frame] as usize;
-        let original = (path.places()[at].along_m - path.places()[at.max(1) - 1].along_m) * fps;
+        let at = speed.frames[frame - 1] as usize;
+        let original = (path.places()[at + 1].along_m - path.places()[at].along_m) * fps;
         assert!((own - original).abs() < 0.1, "{frame}: {own} {original}");
     }
     // What lies away from the dragged point is not touched.
