@@ -17,6 +17,7 @@ pub mod formats;
 pub mod gait;
 pub mod math;
 pub mod metrics;
+pub mod path;
 pub mod registration;
 pub mod scene;
 pub mod session;

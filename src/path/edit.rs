@@ -1,0 +1,373 @@
+use super::fit::{FitOptions, fit_with_knots};
+use super::{GroundSpline, PathEditError, Road};
+use crate::math::wrap_angle;
+use glam::DVec2;
+use std::f64::consts::TAU;
+
+/// Ends of a path that stay where they are, whatever is done to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Pins {
+    /// The start.
+    pub start: bool,
+    /// The end.
+    pub end: bool,
+}
+
+/// One thing that is done to a path. Positions are (x, z), metres.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum PathEdit {
+    /// A control point goes elsewhere. On a closed path the ends move as one, and their neighbours with them.
+    Move {
+        /// Which.
+        index: usize,
+        /// Where to.
+        to: DVec2,
+    },
+    /// One more control point at this parameter; the path stays as it is (Boehm, Inserting New Knots into B-spline Curves, 1980).
+    Insert {
+        /// The parameter, inside 0 and 1 and not on a knot.
+        at: f64,
+    },
+    /// One control point fewer; the others move as little as they must to keep the path (least squares). Undoes [`Self::Insert`].
+    Remove {
+        /// Which; not an end.
+        index: usize,
+    },
+    /// Every point between the ends goes this share of its way to the line between its neighbours.
+    Smooth {
+        /// From 0 to 1.
+        share: f64,
+    },
+    /// Every point goes to the nearest crossing of a grid.
+    Snap {
+        /// Width of the grid, metres.
+        grid_m: f64,
+    },
+    /// The whole path moves.
+    Shift {
+        /// By how much.
+        by: DVec2,
+    },
+    /// The whole path turns about its pinned end, or its middle.
+    Rotate {
+        /// About +Y.
+        radians: f64,
+    },
+    /// The whole path grows from its pinned end, or its middle.
+    Scale {
+        /// From 0.01 to 100.
+        factor: f64,
+    },
+    /// Left becomes right: the path is mirrored at the line from its start to its end. The character is not.
+    Mirror,
+    /// Curves are bent open, the length stays; 1 makes a straight line.
+    Straighten {
+        /// From 0 to 1.
+        share: f64,
+    },
+    /// The path is bent by a whole turn, until it ends where and as it starts. The length stays nearly; a path whose ends are near each other is only joined.
+    Close,
+    /// A closed path becomes one with two ends, in the same place for the time being.
+    Open,
+}
+
+/// The largest factor of [`PathEdit::Scale`], and the inverse of the smallest.
+const MOST_SCALE: f64 = 100.0;
+/// The widest grid, metres.
+const MOST_GRID_M: f64 = 100.0;
+/// Places at which a path is measured for each control point before it is bent.
+const SAMPLES: usize = 32;
+/// Ends that are nearer to each other than this share of the length are joined without a turn.
+const NEARLY_CLOSED: f64 = 0.25;
+/// A closed path has an end, a neighbour to either side of it, and two points away from it.
+const LEAST_CLOSED: usize = 6;
+
+impl GroundSpline {
+    /// The path after an edit.
+    ///
+    /// # Errors
+    /// [`PathEditError`] says what is wrong: a point that is not there, a pinned end that would have to move, a number out of range, too few or too many points.
+    pub fn edited(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
+        let held = pins.start || pins.end;
+        let all = |f: &dyn Fn(DVec2) -> DVec2| self.with_points(self.points().iter().map(|&p| f(p)).collect());
+        match *edit {
+            PathEdit::Move { index, to } => self.with_moved(index, to, pins),
+            PathEdit::Insert { at } => self.refined(at),
+            PathEdit::Remove { index } => self.without(index),
+            PathEdit::Smooth { share } => {
+                check("smoothing", share, 0.0, 1.0)?;
+                self.smoothed(share)
+            }
+            PathEdit::Snap { grid_m } => {
+                check("grid (m)", grid_m, 1e-3, MOST_GRID_M)?;
+                let mut points: Vec<DVec2> = self.points().iter().map(|p| (p / grid_m).round() * grid_m).collect();
+                let last = points.len() - 1;
+                if pins.start {
+                    points[0] = self.points()[0];
+                }
+                if pins.end {
+                    points[last] = self.points()[last];
+                }
+                let snapped = self.with_points(points)?;
+                // The ends of a loop follow from their neighbours.
+                if self.is_closed() {
+                    snapped.held_by(self, pins)
+                } else {
+                    Ok(snapped)
+                }
+            }
+            PathEdit::Shift { by } => {
+                if held {
+                    return Err(PathEditError::Pinned);
+                }
+                all(&|p| p + by)
+            }
+            PathEdit::Rotate { radians } => {
+                check("turn (radians)", radians, -TAU * 10.0, TAU * 10.0)?;
+                let pivot = self.pivot(pins)?;
+                all(&|p| pivot + turned(p - pivot, radians))
+            }
+            PathEdit::Scale { factor } => {
+                check("scale", factor, MOST_SCALE.recip(), MOST_SCALE)?;
+                let pivot = self.pivot(pins)?;
+                all(&|p| pivot + (p - pivot) * factor)
+            }
+            PathEdit::Mirror => {
+                let start = self.points()[0];
+                let yaw = self.overall_yaw();
+                let axis = DVec2::new(yaw.sin(), yaw.cos());
+                all(&|p| start + axis * (2.0 * axis.dot(p - start)) - (p - start))
+            }
+            PathEdit::Straighten { share } => {
+                check("straightening", share, 0.0, 1.0)?;
+                let yaw = self.overall_yaw();
+                let open = Self::with_knots(self.points().to_vec(), self.inner_knots())?;
+                let straight = |heading: f64, _: f64, mean: f64| heading + (mean + wrap_angle(yaw - mean) - heading) * share;
+                open.bent(straight, false)?.held_by(self, pins)
+            }
+            PathEdit::Close => self.closed(pins),
+            PathEdit::Open => Self::with_knots(self.points().to_vec(), self.inner_knots()),
+        }
+    }
+
+    fn with_moved(&self, index: usize, to: DVec2, pins: Pins) -> Result<Self, PathEditError> {
+        let mut points = self.points().to_vec();
+        let last = points.len() - 1;
+        let Some(point) = points.get_mut(index) else {
+            return Err(PathEditError::NoSuchPoint { index, points: last + 1 });
+        };
+        let by = to - *point;
+        *point = to;
+        let end = index == 0 || index == last;
+        let pinned = (index == 0 && pins.start) || (index == last && pins.end);
+        if !self.is_closed() {
+            return if pinned {
+                Err(PathEditError::Pinned)
+            } else {
+                self.with_points(points)
+            };
+        }
+        let held = pins.start || pins.end;
+        if end && held {
+            return Err(PathEditError::Pinned);
+        }
+        if end {
+            points[1] += by;
+            points[last - 1] += by;
+        } else if held && (index == 1 || index == last - 1) {
+            // The end stays, so that its other neighbour goes the opposite way.
+            let [first_span, last_span] = self.end_spans();
+            if index == 1 {
+                points[last - 1] = points[0] - (points[1] - points[0]) * (last_span / first_span);
+            } else {
+                points[1] = points[0] - (points[last - 1] - points[0]) * (first_span / last_span);
+            }
+        }
+        self.with_points(points)
+    }
+
+    fn without(&self, index: usize) -> Result<Self, PathEditError> {
+        let count = self.points().len();
+        if index >= count {
+            return Err(PathEditError::NoSuchPoint { index, points: count });
+        }
+        let least = if self.is_closed() { LEAST_CLOSED } else { super::LEAST_POINTS };
+        if index == 0 || index == count - 1 || count <= least {
+            return Err(PathEditError::NotRemoved { index, least });
+        }
+        // The knot that is nearest to where the point has its say goes with it.
+        let at = self.greville()[index];
+        let mut knots = self.inner_knots().to_vec();
+        let nearest = (knots.iter().enumerate()).min_by(|a, b| (a.1 - at).abs().total_cmp(&(b.1 - at).abs()));
+        if let Some((knot, _)) = nearest {
+            knots.remove(knot);
+        }
+        let last = (count * SAMPLES) as f64;
+        let parameters: Vec<f64> = (0..=count * SAMPLES).map(|k| k as f64 / last).collect();
+        let points: Vec<DVec2> = parameters.iter().map(|&u| self.position(u)).collect();
+        let fitted = fit_with_knots(&points, &parameters, &knots, &pinned_fit())?;
+        if self.is_closed() { fitted.closed_in_place() } else { Ok(fitted) }
+    }
+
+    fn smoothed(&self, share: f64) -> Result<Self, PathEditError> {
+        let (g, old) = (self.greville(), self.points());
+        let mut points = old.to_vec();
+        for i in 1..old.len() - 1 {
+            let between = (g[i] - g[i - 1]) / (g[i + 1] - g[i - 1]);
+            points[i] = old[i].lerp(old[i - 1].lerp(old[i + 1], between), share);
+        }
+        self.with_points(points)
+    }
+
+    /// What a path turns about.
+    fn pivot(&self, pins: Pins) -> Result<DVec2, PathEditError> {
+        let points = self.points();
+        match (pins.start, pins.end) {
+            (true, true) if self.is_closed() => Ok(points[0]),
+            (true, true) => Err(PathEditError::Pinned),
+            (true, false) => Ok(points[0]),
+            (false, true) => Ok(points[points.len() - 1]),
+            (false, false) => Ok(points.iter().sum::<DVec2>() / points.len() as f64),
+        }
+    }
+
+    /// The direction from the start to the end; that of the start where they are one.
+    fn overall_yaw(&self) -> f64 {
+        let way = self.points()[self.points().len() - 1] - self.points()[0];
+        if way.length() > super::road::LEAST_LENGTH_M {
+            way.x.atan2(way.y)
+        } else {
+            self.heading(0.0)
+        }
+    }
+
+    /// This path with its pinned ends where they are in `before`: shifted, or where both are pinned turned and scaled as well. Ends of a path whose own ends
+    /// coincide are put in place alone.
+    fn held_by(self, before: &Self, pins: Pins) -> Result<Self, PathEditError> {
+        let ends = |spline: &Self| (spline.points()[0], spline.points()[spline.points().len() - 1]);
+        let ((start, end), (from, to)) = (ends(before), ends(&self));
+        let all = |f: &dyn Fn(DVec2) -> DVec2| self.with_points(self.points().iter().map(|&p| f(p)).collect());
+        match (pins.start, pins.end) {
+            (false, false) => Ok(self),
+            (true, false) => all(&|p| p + (start - from)),
+            (false, true) => all(&|p| p + (end - to)),
+            (true, true) => {
+                let (way, own) = (end - start, to - from);
+                if way.length() < super::road::LEAST_LENGTH_M || own.length() < super::road::LEAST_LENGTH_M {
+                    return all(&|p| p + (start - from));
+                }
+                // As complex numbers: the quotient of the two ways turns and scales.
+                let quotient = DVec2::new(way.dot(own), own.perp_dot(way)) / own.length_squared();
+                all(&|p| start + quotient.rotate(p - from))
+            }
+        }
+    }
+
+    /// The path whose direction is another function of its direction (unwrapped), the share of the length that lies before, and the mean direction. It
+    /// has the same length and start. What is missing between its ends is spread evenly if it is to be a loop.
+    fn bent(&self, heading: impl Fn(f64, f64, f64) -> f64, to_loop: bool) -> Result<Self, PathEditError> {
+        let road = Road::new(self.clone())?;
+        let steps = self.points().len() * SAMPLES;
+        let along = |k: f64| road.length_m() * k / steps as f64;
+        // Directions hold in the middle of each step.
+        let mut headings: Vec<f64> = Vec::with_capacity(steps);
+        for k in 0..steps {
+            let own = road.at_length(along(k as f64 + 0.5)).frame.yaw;
+            headings.push(headings.last().map_or(own, |before| before + wrap_angle(own - before)));
+        }
+        let mean = headings.iter().sum::<f64>() / steps as f64;
+        let mut points = vec![self.points()[0]];
+        for (k, own) in headings.into_iter().enumerate() {
+            let yaw = heading(own, (k as f64 + 0.5) / steps as f64, mean);
+            points.push(points[k] + DVec2::new(yaw.sin(), yaw.cos()) * along(1.0));
+        }
+        if to_loop {
+            let missing = points[0] - points[steps];
+            for (k, point) in points.iter_mut().enumerate() {
+                *point += missing * (k as f64 / steps as f64);
+            }
+        }
+        // Each place keeps its parameter, so that the motion keeps its places.
+        let parameters: Vec<f64> = (0..=steps).map(|k| road.parameter_at(along(k as f64))).collect();
+        fit_with_knots(&points, &parameters, self.inner_knots(), &pinned_fit())
+    }
+
+    fn closed(&self, pins: Pins) -> Result<Self, PathEditError> {
+        if self.is_closed() {
+            return Ok(self.clone());
+        }
+        let (count, last) = (self.points().len(), self.points().len() - 1);
+        if count < LEAST_CLOSED {
+            return Err(PathEditError::TooFewToClose {
+                points: count,
+                least: LEAST_CLOSED,
+            });
+        }
+        let gap = self.points()[0] - self.points()[last];
+        if pins.start && pins.end && gap.length() > super::road::LEAST_LENGTH_M {
+            return Err(PathEditError::Pinned);
+        }
+        let road = Road::new(self.clone())?;
+        let near = gap.length() < NEARLY_CLOSED * road.length_m();
+        let bent = if near {
+            let g = self.greville();
+            self.with_points(self.points().iter().zip(&g).map(|(&p, &g)| p + gap * g).collect())?
+        } else {
+            let turn = road.total_turn();
+            let whole = (turn / TAU).round();
+            let wanted = if whole == 0.0 { TAU.copysign(turn) } else { whole * TAU };
+            self.bent(|heading, along, _| heading + (wanted - turn) * along, true)?
+        };
+        bent.closed_in_place()?.held_by(
+            self,
+            Pins {
+                start: pins.start || !pins.end,
+                end: pins.end && !pins.start,
+            },
+        )
+    }
+
+    /// A path whose ends coincide, closed: the neighbours of the end are put on one line through it.
+    fn closed_in_place(&self) -> Result<Self, PathEditError> {
+        let mut points = self.points().to_vec();
+        let last = points.len() - 1;
+        let [first_span, last_span] = self.end_spans();
+        let derivative = ((points[1] - points[0]) / first_span + (points[last] - points[last - 1]) / last_span) * 0.5;
+        points[1] = points[0] + derivative * first_span;
+        points[last - 1] = points[last] - derivative * last_span;
+        Ok(Self::with_knots(points, self.inner_knots())?.joined())
+    }
+}
+
+impl Road {
+    /// How far the path turns from its start to its end, radians, positive to the left.
+    fn total_turn(&self) -> f64 {
+        let places = self.evenly(self.spline().points().len() * SAMPLES);
+        let steps = places.windows(2).map(|pair| wrap_angle(pair[1].frame.yaw - pair[0].frame.yaw));
+        steps.sum()
+    }
+}
+
+/// Through both ends.
+fn pinned_fit() -> FitOptions {
+    FitOptions {
+        pin_ends: true,
+        ..FitOptions::default()
+    }
+}
+
+/// A turn about +Y of a point of the ground.
+fn turned(p: DVec2, radians: f64) -> DVec2 {
+    crate::math::Planar::new(radians, 0.0, 0.0).apply_ground(p)
+}
+
+fn check(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), PathEditError> {
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(PathEditError::Option { what, value, least, most })
+    }
+}
+
+#[cfg(test)]
+mod tests;

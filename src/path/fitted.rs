@@ -1,0 +1,163 @@
+use super::fit::{FitOptions, chord_parameters, extent, fit_spline};
+use super::{PathEditError, Road};
+use crate::blend::Source;
+use crate::math::{Planar, wrap_angle};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// The hips sway from step to step; the way that a frame has come is measured after a Gaussian of this deviation has calmed the sway, seconds.
+const SWAY_SECS: f64 = 0.3;
+/// A motion that stays within this distance stands, metres.
+const STANDS_M: f64 = 0.2;
+
+/// A motion, the path that was fitted to its way over the ground, and where on that path each frame is.
+#[derive(Clone, Debug)]
+pub struct FittedPath {
+    source: Arc<Source>,
+    road: Road,
+    parameters: Vec<f64>,
+    places: Vec<super::Waypoint>,
+}
+
+/// How well a path follows a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FitError {
+    /// Root of the mean squared distance between root and path, centimetres.
+    pub rms_cm: f64,
+    /// The largest distance, centimetres.
+    pub most_cm: f64,
+    /// The frame that is farthest off.
+    pub frame: usize,
+}
+
+impl FittedPath {
+    /// Fits a path to the way of a motion's root over the ground.
+    ///
+    /// The parameter of a frame is the share of the way that lies before it, by chord length; sway of the hips and small steps on the spot do not count as way: it
+    /// is measured on the root's way smoothed over about one step. The fit is to the root itself.
+    ///
+    /// # Errors
+    /// [`PathEditError`] for options out of range, fewer than two frames, and a motion that stays within 20 cm.
+    pub fn new(source: Arc<Source>, options: &FitOptions) -> Result<Self, PathEditError> {
+        options.validate()?;
+        let way: Vec<DVec2> = source.frames().iter().map(|frame| frame.shift).collect();
+        if way.len() != source.clip().frames() {
+            return Err(PathEditError::Parameters);
+        }
+        if way.len() < 2 {
+            return Err(PathEditError::Frames { frames: way.len() });
+        }
+        let calm = smoothed(&way, SWAY_SECS * source.clip().fps());
+        let extent_m = extent(&calm);
+        if extent_m < STANDS_M {
+            return Err(PathEditError::Stands { extent_m });
+        }
+        let (parameters, _) = chord_parameters(&calm);
+        let road = Road::new(fit_spline(&way, &parameters, options)?)?;
+        let places = parameters.iter().map(|&u| road.at(u)).collect();
+        Ok(Self {
+            source,
+            road,
+            parameters,
+            places,
+        })
+    }
+
+    /// The motion.
+    #[must_use]
+    pub fn source(&self) -> &Arc<Source> {
+        &self.source
+    }
+
+    /// The path.
+    #[must_use]
+    pub fn road(&self) -> &Road {
+        &self.road
+    }
+
+    /// Where on the path each frame is, in its parameter; never falling.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The frame of the path that each frame of the motion rides in.
+    #[must_use]
+    pub fn places(&self) -> &[super::Waypoint] {
+        &self.places
+    }
+
+    /// What the path leaves over, frame by frame, `path_from_character`: metres to the left of the path (x) and along it (z), and the yaw against its direction.
+    pub fn residuals(&self) -> impl Iterator<Item = Planar> + '_ {
+        let frames = self.places.iter().zip(self.source.frames());
+        frames.map(|(place, character)| place.frame.inverse().after(character))
+    }
+
+    /// How far the root is from the path.
+    #[must_use]
+    pub fn error(&self) -> FitError {
+        let (mut sum, mut most, mut frame) = (0.0, 0.0, 0);
+        for (index, residual) in self.residuals().enumerate() {
+            let squared = residual.shift.length_squared();
+            sum += squared;
+            if squared > most {
+                (most, frame) = (squared, index);
+            }
+        }
+        FitError {
+            rms_cm: (sum / self.parameters.len().max(1) as f64).sqrt() * 100.0,
+            most_cm: f64::sqrt(most) * 100.0,
+            frame,
+        }
+    }
+
+    /// The parameter at a fractional frame, clamped to the motion.
+    pub(super) fn parameter(&self, frame: f64) -> f64 {
+        let (index, part) = self.between(frame);
+        let (from, to) = (self.parameters[index], self.parameters[(index + 1).min(self.parameters.len() - 1)]);
+        from + (to - from) * part
+    }
+
+    /// Where the character is at a fractional frame.
+    pub(super) fn character(&self, frame: f64) -> Planar {
+        let frames = self.source.frames();
+        let (index, part) = self.between(frame);
+        let (from, to) = (frames[index], frames[(index + 1).min(frames.len() - 1)]);
+        let shift = from.shift.lerp(to.shift, part);
+        Planar::new(from.yaw + wrap_angle(to.yaw - from.yaw) * part, shift.x, shift.y)
+    }
+
+    /// The frame before a fractional one, and the rest.
+    pub(super) fn between(&self, frame: f64) -> (usize, f64) {
+        let at = frame.max(0.0).min((self.parameters.len() - 1) as f64);
+        (at.floor() as usize, at.fract())
+    }
+}
+
+/// A Gaussian mean with the deviation given in frames. Behind the ends the way goes on as it came, turned about the end by half a turn: the ends
+/// stay where they are.
+fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
+    let (Some(&first), Some(&last)) = (way.first(), way.last()) else {
+        return vec![];
+    };
+    let count = way.len() as isize;
+    let reach = ((3.0 * deviation).ceil() as isize).min(count - 1);
+    let weights: Vec<f64> = (0..=reach)
+        .map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp())
+        .collect();
+    let sum = 2.0 * weights.iter().sum::<f64>() - 1.0;
+    let at = |index: isize| {
+        if index < 0 {
+            first * 2.0 - way[-index as usize]
+        } else if index >= count {
+            last * 2.0 - way[(2 * (count - 1) - index) as usize]
+        } else {
+            way[index as usize]
+        }
+    };
+    let mean = |index: isize| {
+        let sides = (1..=reach).map(|k| (at(index - k) + at(index + k)) * weights[k as usize]);
+        (sides.sum::<DVec2>() + at(index)) / sum
+    };
+    (0..count).map(mean).collect()
+}

@@ -1,0 +1,190 @@
+use super::spline::unit;
+use super::{GroundSpline, PathEditError};
+use crate::math::Planar;
+use glam::DVec2;
+
+/// Each polynomial piece is measured in this many parts.
+const PARTS: usize = 8;
+/// Gauss-Legendre with five points on `[-1, 1]`: exact up to degree nine.
+const NODES: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+/// A path is at least this long, metres.
+pub(super) const LEAST_LENGTH_M: f64 = 1e-3;
+/// Parameters are found to this length, metres.
+const TOLERANCE_M: f64 = 1e-11;
+/// Lengths that are the same but for rounding, metres.
+const SAME_M: f64 = 1e-8;
+
+/// A path that knows its length: read by parameter or by metres from its start.
+///
+/// Lengths are integrals of the speed by Gauss-Legendre, eight parts of five nodes to a piece: to 1e-6 of the length, and to 5e-4
+/// where the path turns back in a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Road {
+    spline: GroundSpline,
+    /// Ends of the parts.
+    parameters: Vec<f64>,
+    /// Metres from the start to these ends.
+    lengths: Vec<f64>,
+}
+
+/// The frame of a path at one place, `world_from_path`: +Z runs along the path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Waypoint {
+    /// Where, and which way the path runs.
+    pub frame: Planar,
+    /// 1/m, positive to the left.
+    pub curvature: f64,
+    /// Metres from the start of the path; may lie before it and behind its end.
+    pub along_m: f64,
+}
+
+impl Road {
+    /// Measures a path.
+    ///
+    /// # Errors
+    /// [`PathEditError::NoLength`] when it is shorter than a millimetre.
+    pub fn new(spline: GroundSpline) -> Result<Self, PathEditError> {
+        let (mut parameters, mut lengths) = (vec![0.0], vec![0.0]);
+        let mut total = 0.0;
+        for piece in spline.breaks().windows(2) {
+            for part in 0..PARTS {
+                let at = |k: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / PARTS as f64;
+                total += length_between(&spline, at(part), at(part + 1));
+                parameters.push(at(part + 1));
+                lengths.push(total);
+            }
+        }
+        if total < LEAST_LENGTH_M {
+            return Err(PathEditError::NoLength { length_m: total });
+        }
+        Ok(Self {
+            spline,
+            parameters,
+            lengths,
+        })
+    }
+
+    /// The path.
+    #[must_use]
+    pub fn spline(&self) -> &GroundSpline {
+        &self.spline
+    }
+
+    /// Its length, metres.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
+    /// Metres from the start to `parameter`, which is clamped to the path.
+    #[must_use]
+    pub fn length_at(&self, parameter: f64) -> f64 {
+        let u = unit(parameter);
+        let part = part_of(&self.parameters, u);
+        self.lengths[part] + length_between(&self.spline, self.parameters[part], u)
+    }
+
+    /// The parameter `along_m` metres from the start, clamped to the path.
+    #[must_use]
+    pub fn parameter_at(&self, along_m: f64) -> f64 {
+        let wanted = along_m.max(0.0).min(self.length_m());
+        let part = part_of(&self.lengths, wanted);
+        let (from, to) = (self.parameters[part], self.parameters[part + 1]);
+        let (low, high) = (self.lengths[part], self.lengths[part + 1]);
+        if high <= low {
+            return from;
+        }
+        // Newton's method, held between bounds that close in: the length rises.
+        let (mut left, mut right) = (from, to);
+        let mut u = from + (to - from) * (wanted - low) / (high - low);
+        for _ in 0..40 {
+            let missing = wanted - low - length_between(&self.spline, from, u);
+            if missing.abs() < TOLERANCE_M {
+                break;
+            }
+            if missing > 0.0 {
+                left = u;
+            } else {
+                right = u;
+            }
+            let next = u + missing / self.spline.jet(u).first.length();
+            // Where the path stands the step is no number, and the middle is taken.
+            u = if next > left && next < right { next } else { 0.5 * (left + right) };
+        }
+        u
+    }
+
+    /// The frame of the path at `parameter`, which is clamped to the path.
+    #[must_use]
+    pub fn at(&self, parameter: f64) -> Waypoint {
+        self.waypoint(parameter, self.length_at(parameter))
+    }
+
+    /// The frame of the path `along_m` metres from its start. Beyond its ends an open path goes straight on and a closed one round again.
+    #[must_use]
+    pub fn at_length(&self, along_m: f64) -> Waypoint {
+        let length = self.length_m();
+        if self.spline.is_closed() && !(0.0..=length).contains(&along_m) {
+            return self.waypoint(self.parameter_at(along_m.rem_euclid(length)), along_m);
+        }
+        let mut waypoint = self.waypoint(self.parameter_at(along_m), along_m);
+        let beyond = along_m - along_m.max(0.0).min(length);
+        if beyond != 0.0 {
+            let yaw = waypoint.frame.yaw;
+            waypoint.frame.shift += DVec2::new(yaw.sin(), yaw.cos()) * beyond;
+            waypoint.curvature = 0.0;
+        }
+        waypoint
+    }
+
+    /// [`Self::at_length`] for one who would be at `parameter` if nothing had changed: where that is as far from the start, it is the place. In the tip of a hairpin
+    /// many parameters lie within less than any tolerance on the length, and the path turns round between them.
+    pub(super) fn at_length_near(&self, along_m: f64, parameter: f64) -> Waypoint {
+        if (self.length_at(parameter) - along_m).abs() < SAME_M {
+            self.waypoint(parameter, along_m)
+        } else {
+            self.at_length(along_m)
+        }
+    }
+
+    fn waypoint(&self, parameter: f64, along_m: f64) -> Waypoint {
+        let jet = self.spline.jet(parameter);
+        Waypoint {
+            frame: Planar::new(self.spline.heading_of(parameter, &jet), jet.position.x, jet.position.y),
+            curvature: jet.curvature(),
+            along_m,
+        }
+    }
+
+    /// Points along the path, evenly spaced by length, for drawing and for fits: `count` of them, at least two.
+    #[must_use]
+    pub fn evenly(&self, count: usize) -> Vec<Waypoint> {
+        let last = count.max(2) - 1;
+        (0..=last)
+            .map(|k| {
+                let along = self.length_m() * k as f64 / last as f64;
+                self.waypoint(self.parameter_at(along), along)
+            })
+            .collect()
+    }
+}
+
+/// The part that holds `value`.
+fn part_of(ends: &[f64], value: f64) -> usize {
+    ends.partition_point(|&end| end <= value).clamp(1, ends.len() - 1) - 1
+}
+
+fn length_between(spline: &GroundSpline, from: f64, to: f64) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let speed = |node: f64| spline.jet(middle + half * node).first.length();
+    NODES.iter().map(|&(node, weight)| weight * speed(node)).sum::<f64>() * half
+}
+
+#[cfg(test)]
+mod tests;

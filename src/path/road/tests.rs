@@ -1,0 +1,85 @@
+use super::*;
+use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+
+fn road(points: &[(f64, f64)]) -> Road {
+    Road::new(GroundSpline::uniform(points.iter().map(|&p| DVec2::from(p)).collect()).unwrap()).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn lengths_and_parameters_are_each_others_inverse(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.0f64..1.0) {
+        let road = road(&way);
+        let along = road.length_m() * share;
+        let u = road.parameter_at(along);
+        prop_assert!((road.length_at(u) - along).abs() < 1e-9);
+        prop_assert!((road.parameter_at(road.length_at(share)) - share).abs() < 1e-6);
+        prop_assert!(road.at(u).frame.shift.distance(road.at_length(along).frame.shift) < 1e-9);
+    }
+
+    /// Beside the quadrature stand twenty thousand chords.
+    #[test]
+    fn the_length_is_that_of_many_chords(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12)) {
+        let road = road(&way);
+        let mut chords = 0.0;
+        for k in 0..20_000 {
+            let at = |k: i32| road.spline().position(f64::from(k) / 20_000.0);
+            chords += at(k).distance(at(k + 1));
+        }
+        prop_assert!((chords - road.length_m()).abs() < 5e-4 * chords, "{chords} {}", road.length_m());
+    }
+
+    /// The frame's +Z runs along the path, and the curvature is the turn per metre.
+    #[test]
+    fn frames_run_along_the_path(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.01f64..0.99) {
+        let road = road(&way);
+        let (step, along) = (1e-5 * road.length_m(), share * road.length_m());
+        let [before, here, after] = [-1.0, 0.0, 1.0].map(|k| road.at_length(along + k * step));
+        // Near the tip of a hairpin a step is long.
+        prop_assume!(here.curvature.abs() * step < 1e-3);
+        let way = after.frame.shift - before.frame.shift;
+        let forward = here.frame.forward();
+        prop_assert!(way.normalize_or_zero().distance(DVec2::new(f64::from(forward.x), f64::from(forward.z))) < 1e-3);
+        let turn = crate::math::wrap_angle(after.frame.yaw - before.frame.yaw) / (2.0 * step);
+        prop_assert!((turn - here.curvature).abs() < 0.01 * (1.0 + here.curvature.abs()), "{turn} {}", here.curvature);
+    }
+}
+
+#[test]
+fn an_open_path_goes_straight_on_and_a_closed_one_round() {
+    let line = road(&[(0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (0.0, 3.0)]);
+    assert!((line.length_m() - 3.0).abs() < 1e-12);
+    assert!(line.at_length(5.0).frame.shift.distance(DVec2::new(0.0, 5.0)) < 1e-9);
+    assert!(line.at_length(-1.0).frame.shift.distance(DVec2::new(0.0, -1.0)) < 1e-9);
+    // From +Z to the left is towards +X.
+    let left = road(&[(0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (2.0, 3.0)]);
+    assert!(left.at(0.9).curvature > 0.0 && left.at(0.9).frame.yaw > 0.0);
+
+    let ring: Vec<DVec2> = (0..9).map(|k| DVec2::from_angle(f64::from(k) * FRAC_PI_2 / 2.0) * 3.0).collect();
+    let ring = Road::new(GroundSpline::uniform(ring).unwrap().joined()).unwrap();
+    let (a, b) = (ring.at_length(1.0), ring.at_length(1.0 + 2.0 * ring.length_m()));
+    assert!(a.frame.shift.distance(b.frame.shift) < 1e-9 && b.along_m > a.along_m);
+    let (before, after) = (ring.at_length(ring.length_m() - 1e-6), ring.at_length(ring.length_m() + 1e-6));
+    assert!(before.frame.shift.distance(after.frame.shift) < 3e-6);
+    assert!(crate::math::wrap_angle(after.frame.yaw - before.frame.yaw).abs() < 1e-5);
+}
+
+/// Control points that coincide: the path stands for a moment, and has a direction all the same.
+#[test]
+fn where_a_path_stands_it_has_the_direction_behind() {
+    let doubled = road(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]);
+    assert!((doubled.at(0.0).frame.yaw - FRAC_PI_2).abs() < 1e-6);
+    assert_eq!(doubled.at(0.0).curvature, 0.0);
+    for k in 0..=40 {
+        let along = doubled.length_m() * f64::from(k) / 40.0;
+        assert!((doubled.length_at(doubled.parameter_at(along)) - along).abs() < 1e-9);
+    }
+    let point = GroundSpline::uniform(vec![DVec2::ONE; 5]).unwrap();
+    assert!(matches!(Road::new(point), Err(PathEditError::NoLength { .. })));
+    for at in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+        let place = doubled.at(at).frame.shift;
+        assert!(place.is_finite(), "{at}");
+    }
+}

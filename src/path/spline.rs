@@ -1,0 +1,275 @@
+use super::PathEditError;
+use glam::DVec2;
+
+/// The degree of every path.
+const DEGREE: usize = 3;
+/// The fewest control points that a cubic has.
+pub const LEAST_POINTS: usize = DEGREE + 1;
+/// The most control points of a path: far more than a hand can hold apart, and few enough for a link.
+pub const MOST_POINTS: usize = 256;
+/// The farthest that a control point may lie from the origin, metres.
+pub const FARTHEST_M: f64 = 10_000.0;
+/// Two knots are at least this far apart, in the parameter.
+const LEAST_SPAN: f64 = 1e-4;
+/// A new knot keeps farther away, so that the rounding of a link does not bring it too close.
+const LEAST_INSERT: f64 = 1e-3;
+/// A shorter derivative has no direction of its own, metres per unit of the parameter.
+const LEAST_SPEED: f64 = 1e-6;
+
+/// A path over the ground: a clamped cubic B-spline in (x, z), metres, over the parameter `[0, 1]`.
+///
+/// It starts in its first control point and ends in its last. Knots are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
+/// to. Position, direction and curvature are continuous (C²). A *closed* path ends where it starts, in the same direction (C¹ there).
+/// Source: de Boor, A Practical Guide to Splines, chapters IX and X.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundSpline {
+    points: Vec<DVec2>,
+    /// All knots: four at 0, the inner ones, four at 1.
+    knots: Vec<f64>,
+    closed: bool,
+}
+
+/// A place on a path, and how the path runs there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jet {
+    /// (x, z), metres.
+    pub position: DVec2,
+    /// Derivative by the parameter, metres.
+    pub first: DVec2,
+    /// Second derivative by the parameter, metres.
+    pub second: DVec2,
+}
+
+impl Jet {
+    /// The curvature, 1/m, positive to the left (about +Y); 0 where the path stands.
+    #[must_use]
+    pub fn curvature(&self) -> f64 {
+        let speed = self.first.length();
+        let turn = self.first.y * self.second.x - self.first.x * self.second.y;
+        let curvature = turn / (speed * speed * speed);
+        if curvature.is_finite() { curvature } else { 0.0 }
+    }
+}
+
+impl GroundSpline {
+    /// The path of these control points with uniform knots.
+    ///
+    /// # Errors
+    /// [`PathEditError`] for fewer than [`LEAST_POINTS`], more than [`MOST_POINTS`], or a point that is farther away than [`FARTHEST_M`] or no number.
+    pub fn uniform(points: Vec<DVec2>) -> Result<Self, PathEditError> {
+        let knots = uniform_knots(points.len());
+        Self::with_knots(points, &knots)
+    }
+
+    /// The path of these control points with these inner knots, which rise strictly between 0 and 1: four fewer than points.
+    ///
+    /// # Errors
+    /// As [`Self::uniform`], and for knots that do not fit or come too close to each other.
+    pub fn with_knots(points: Vec<DVec2>, inner_knots: &[f64]) -> Result<Self, PathEditError> {
+        check_count(points.len())?;
+        if let Some(index) = points.iter().position(|point| !is_place(*point)) {
+            return Err(PathEditError::Point { index });
+        }
+        let knots: Vec<f64> = [0.0; DEGREE + 1]
+            .iter()
+            .chain(inner_knots)
+            .chain(&[1.0; DEGREE + 1])
+            .copied()
+            .collect();
+        let apart = knots[DEGREE..knots.len() - DEGREE]
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] >= LEAST_SPAN);
+        if knots.len() != points.len() + DEGREE + 1 || !apart {
+            return Err(PathEditError::Knots);
+        }
+        let closed = false;
+        Ok(Self { points, knots, closed })
+    }
+
+    /// The control points, (x, z) in metres.
+    #[must_use]
+    pub fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// The knots between the two ends.
+    #[must_use]
+    pub fn inner_knots(&self) -> &[f64] {
+        &self.knots[DEGREE + 1..self.points.len()]
+    }
+
+    /// The path ends where it starts, and goes round.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The same knots with other points; a closed path stays closed.
+    pub(super) fn with_points(&self, points: Vec<DVec2>) -> Result<Self, PathEditError> {
+        let spline = Self::with_knots(points, self.inner_knots())?;
+        Ok(if self.closed { spline.joined() } else { spline })
+    }
+
+    /// Closed: both ends are put where the path goes on through them without a step in its derivative, between their neighbours.
+    pub(super) fn joined(mut self) -> Self {
+        let last = self.points.len() - 1;
+        let [first_span, last_span] = self.end_spans();
+        let end = (self.points[last - 1] * first_span + self.points[1] * last_span) / (first_span + last_span);
+        (self.points[0], self.points[last], self.closed) = (end, end, true);
+        self
+    }
+
+    /// The parameter that the first and the last piece take.
+    pub(super) fn end_spans(&self) -> [f64; 2] {
+        let inner = self.inner_knots();
+        [inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0)]
+    }
+
+    /// Where along the parameter each control point has its say: the mean of its three knots (Greville). A path whose points are these numbers is the
+    /// parameter itself.
+    #[must_use]
+    pub fn greville(&self) -> Vec<f64> {
+        let mean = |i: usize| (self.knots[i + 1] + self.knots[i + 2] + self.knots[i + 3]) / 3.0;
+        (0..self.points.len()).map(mean).collect()
+    }
+
+    /// The ends of the polynomial pieces, from 0 to 1.
+    pub(super) fn breaks(&self) -> &[f64] {
+        &self.knots[DEGREE..=self.points.len()]
+    }
+
+    /// Place and derivatives at `parameter`, which is clamped to the path.
+    #[must_use]
+    pub fn jet(&self, parameter: f64) -> Jet {
+        let (span, u) = self.span(parameter);
+        let t = &self.knots[span + 1 - DEGREE..=span + DEGREE];
+        let p = &self.points[span - DEGREE..=span];
+        // Differences of the control points are the control points of the derivatives, of lower degree.
+        let d = |i: usize| (p[i + 1] - p[i]) * (3.0 / (t[i + 3] - t[i]).max(f64::MIN_POSITIVE));
+        let first = [d(0), d(1), d(2)];
+        let dd = |i: usize| (first[i + 1] - first[i]) * (2.0 / (t[i + 3] - t[i + 1]).max(f64::MIN_POSITIVE));
+        let second = [dd(0), dd(1)];
+        let [a, b, c, e] = basis(t, u);
+        let linear = (u - t[2]) / (t[3] - t[2]);
+        let [q0, q1, q2] = quadratic(t, u);
+        Jet {
+            position: p[0] * a + p[1] * b + p[2] * c + p[3] * e,
+            first: first[0] * q0 + first[1] * q1 + first[2] * q2,
+            second: second[0].lerp(second[1], linear),
+        }
+    }
+
+    /// The place at `parameter`, (x, z) in metres.
+    #[must_use]
+    pub fn position(&self, parameter: f64) -> DVec2 {
+        self.jet(parameter).position
+    }
+
+    /// The first of the four control points that have a say at `parameter`, and their shares.
+    pub(super) fn shares(&self, parameter: f64) -> (usize, [f64; 4]) {
+        let (span, u) = self.span(parameter);
+        (span - DEGREE, basis(&self.knots[span + 1 - DEGREE..=span + DEGREE], u))
+    }
+
+    /// The direction of the path at `parameter`, radians about +Y, 0 along +Z. Where the path stands for a moment (control points that coincide) it is that
+    /// of the path behind, else before that place; 0 for a path without length.
+    #[must_use]
+    pub fn heading(&self, parameter: f64) -> f64 {
+        self.heading_of(parameter, &self.jet(parameter))
+    }
+
+    pub(super) fn heading_of(&self, parameter: f64, jet: &Jet) -> f64 {
+        let moves = |first: DVec2| first.length_squared() > LEAST_SPEED * LEAST_SPEED;
+        let mut first = jet.first;
+        for step in [1e-4, -1e-4, 1e-2, -1e-2] {
+            if moves(first) {
+                break;
+            }
+            first = self.jet(parameter + step).first;
+        }
+        if moves(first) { first.x.atan2(first.y) } else { 0.0 }
+    }
+
+    /// The same curve with one more control point and a knot at `parameter` (Boehm 1980).
+    pub(super) fn refined(&self, parameter: f64) -> Result<Self, PathEditError> {
+        check_count(self.points.len() + 1)?;
+        let (span, u) = self.span(parameter);
+        let near = u - self.knots[span] < LEAST_INSERT || self.knots[span + 1] - u < LEAST_INSERT;
+        // NaN compares as not near.
+        if near || !parameter.is_finite() {
+            return Err(PathEditError::Knots);
+        }
+        let mut points = self.points[..=span - DEGREE].to_vec();
+        for i in span - DEGREE + 1..=span {
+            let share = (u - self.knots[i]) / (self.knots[i + DEGREE] - self.knots[i]);
+            points.push(self.points[i - 1].lerp(self.points[i], share));
+        }
+        points.extend_from_slice(&self.points[span..]);
+        let mut knots = self.knots.clone();
+        knots.insert(span + 1, u);
+        let closed = self.closed;
+        Ok(Self { points, knots, closed })
+    }
+
+    /// The index of the last knot at or below `parameter`, which is clamped to the path; the last piece at the end.
+    fn span(&self, parameter: f64) -> (usize, f64) {
+        let u = unit(parameter);
+        let inner = self.inner_knots().partition_point(|&knot| knot <= u);
+        (inner + DEGREE, u)
+    }
+}
+
+/// Inner knots, evenly spaced, of a path of `points` control points.
+pub(super) fn uniform_knots(points: usize) -> Vec<f64> {
+    let pieces = points.saturating_sub(DEGREE);
+    (1..pieces).map(|k| k as f64 / pieces as f64).collect()
+}
+
+/// A parameter brought into `[0, 1]`; 0 for NaN.
+pub(super) fn unit(parameter: f64) -> f64 {
+    if parameter > 0.0 { parameter.min(1.0) } else { 0.0 }
+}
+
+fn is_place(point: DVec2) -> bool {
+    let near = -FARTHEST_M..=FARTHEST_M;
+    near.contains(&point.x) && near.contains(&point.y)
+}
+
+pub(super) fn check_count(points: usize) -> Result<(), PathEditError> {
+    if (LEAST_POINTS..=MOST_POINTS).contains(&points) {
+        Ok(())
+    } else {
+        Err(PathEditError::ControlPoints { points })
+    }
+}
+
+/// The corners of the box around points; zero for none.
+pub(super) fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
+    let first = points.first().copied().unwrap_or_default();
+    points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)))
+}
+
+/// Quadratic shares at u in `[t2, t3]`.
+fn quadratic(t: &[f64], u: f64) -> [f64; 3] {
+    let share = |from: f64, to: f64| (u - from) / (to - from);
+    let upper = share(t[2], t[3]);
+    let (left, right) = (share(t[1], t[3]), share(t[2], t[4]));
+    [
+        (1.0 - upper) * (1.0 - left),
+        (1.0 - upper) * left + upper * (1.0 - right),
+        upper * right,
+    ]
+}
+
+/// Cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are the three knots up to the piece and the three behind it.
+fn basis(t: &[f64], u: f64) -> [f64; 4] {
+    let share = |from: f64, to: f64| (u - from) / (to - from);
+    let [a, b, c] = quadratic(t, u);
+    let (left, middle, right) = (share(t[0], t[3]), share(t[1], t[4]), share(t[2], t[5]));
+    [
+        a * (1.0 - left),
+        a * left + b * (1.0 - middle),
+        b * middle + c * (1.0 - right),
+        c * right,
+    ]
+}

@@ -1,0 +1,364 @@
+//! Paths of motions, edited: on made motion everywhere, and on captured motion where this machine has it.
+
+#[path = "formats_common/mod.rs"]
+mod formats_common;
+
+use formats_common::shared_data;
+use glam::DVec2;
+use proptest::prelude::*;
+use segue::blend::Source;
+use segue::clip::{Clip, ContactOptions, Contacts};
+use segue::formats::{ImportOptions, import};
+use segue::math::{Planar, quat};
+use segue::path::{
+    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Orientation, PathEdit, PathEditError, PathEditor, Pins,
+    Road, Timing, carry, hard_turns,
+};
+use segue::skeleton::Roles;
+use segue::synth::{Action, Params, presets, synthesize};
+use segue::transition::FootLockOptions;
+use std::sync::Arc;
+
+const TIMINGS: [Timing; 3] = [Timing::Metres, Timing::Speed, Timing::Duration];
+const FREE: Pins = Pins { start: false, end: false };
+
+fn source(clip: Clip) -> (Arc<Source>, Roles) {
+    let roles = Roles::detect(clip.skeleton());
+    (Arc::new(Source::new(Arc::new(clip), &roles)), roles)
+}
+
+fn made(params: &Params) -> (Arc<Source>, Roles) {
+    source(synthesize(params).expect("it can be made").clip)
+}
+
+fn walk() -> (Arc<Source>, Roles) {
+    made(&Params {
+        duration_secs: 6.0,
+        ..Params::new(Action::Walk)
+    })
+}
+
+fn options(control_points: usize) -> FitOptions {
+    FitOptions {
+        control_points,
+        ..FitOptions::default()
+    }
+}
+
+fn every_option() -> impl Iterator<Item = CarryOptions> {
+    let of = |timing| [Orientation::Path, Orientation::World].map(|orientation| CarryOptions { timing, orientation });
+    TIMINGS.into_iter().flat_map(of)
+}
+
+/// The largest distance between joints, metres, and the largest angle between rotations of joints, radians.
+fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
+    assert_eq!(a.frames(), b.frames());
+    let (mut far, mut turned) = (0.0f32, 0.0f32);
+    for frame in 0..a.frames() {
+        let (one, other) = (a.world_pose(frame), b.world_pose(frame));
+        far = one
+            .positions
+            .iter()
+            .zip(&other.positions)
+            .map(|(p, q)| p.distance(*q))
+            .fold(far, f32::max);
+        let angles = one.rotations.iter().zip(&other.rotations).map(|(p, q)| quat::angle_between(*p, *q));
+        turned = angles.fold(turned, f32::max);
+    }
+    (far, turned)
+}
+
+fn captured() -> Vec<Clip> {
+    let Some(data) = shared_data() else { return vec![] };
+    let names = [
+        "games105/walkF.bvh",
+        "games105/run_forward.bvh",
+        "games105/walk_and_turn_left.bvh",
+        "cmu/01_01.bvh",
+        "cmu/run.bvh",
+    ];
+    let load = |name: &&str| {
+        let bytes = std::fs::read(data.join(name)).ok()?;
+        Some(
+            import(name, &bytes, &ImportOptions::default())
+                .ok()?
+                .clips
+                .swap_remove(0)
+                .clip
+                .with_name(*name),
+        )
+    };
+    names.iter().filter_map(load).collect()
+}
+
+fn assert_same(path: &FittedPath, what: &str) {
+    for options in every_option() {
+        let out = carry(path, path.road(), &options).expect("it is a path");
+        let (far, turned) = difference(&out.clip, path.source().clip());
+        assert!(far < 1e-4 && turned < 1e-4, "{what} {options:?}: {far} m, {turned} rad");
+        assert!(hard_turns(path, &out).is_empty(), "{what}");
+    }
+}
+
+#[test]
+fn a_path_that_is_not_edited_gives_the_motion_back() {
+    let mut stood = vec![];
+    for preset in presets() {
+        let (source, _) = made(&preset.params);
+        for control_points in [4, 8, 30] {
+            match FittedPath::new(Arc::clone(&source), &options(control_points)) {
+                Ok(path) => assert_same(&path, preset.id),
+                Err(PathEditError::Stands { extent_m }) if extent_m < 0.2 => stood.push(preset.id),
+                Err(error) => panic!("{}: {error}", preset.id),
+            }
+        }
+    }
+    stood.dedup();
+    assert!(stood.iter().all(|id| ["idle", "spin"].contains(id)), "{stood:?}");
+    for clip in captured() {
+        let (source, _) = source(clip);
+        let path = FittedPath::new(Arc::clone(&source), &options(8)).expect("it goes somewhere");
+        println!("{}: {:?}, {:.2} m", source.clip().name(), path.error(), path.road().length_m());
+        assert_same(&path, source.clip().name());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn control_points_that_move_rigidly_move_the_motion_rigidly(
+        yaw in -3.0f64..3.0, x in -20.0f64..20.0, z in -20.0f64..20.0, preset in 0usize..7, control_points in 4usize..20
+    ) {
+        let (source, _) = made(&presets()[preset].params);
+        let path = FittedPath::new(source, &options(control_points)).unwrap();
+        let planar = Planar::new(yaw, x, z);
+        let points = path.road().spline().points().iter().map(|&p| planar.apply_ground(p)).collect();
+        let moved = Road::new(GroundSpline::uniform(points).unwrap()).unwrap();
+        let expected = path.source().clip().transformed(&planar);
+        for timing in TIMINGS {
+            let out = carry(&path, &moved, &CarryOptions { timing, ..CarryOptions::default() }).unwrap();
+            let (far, turned) = difference(&out.clip, &expected);
+            prop_assert!(far < 1e-4 && turned < 1e-4, "{timing:?}: {far} m, {turned} rad");
+        }
+    }
+
+    /// Whatever is done to the path: in every frame the body is the one of the original, moved over the ground; and the same is made twice.
+    #[test]
+    fn joints_keep_their_distances(points in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..10), closed: bool) {
+        let (source, _) = walk();
+        let path = FittedPath::new(source, &options(6)).unwrap();
+        let mut spline = GroundSpline::uniform(points.into_iter().map(DVec2::from).collect()).unwrap();
+        if let Ok(ring) = spline.edited(&PathEdit::Close, FREE).and_then(|ring| Road::new(ring.clone()).map(|_| ring)) && closed {
+            spline = ring;
+        }
+        let Ok(edited) = Road::new(spline) else { return Ok(()) };
+        let original = path.source().clip();
+        for options in every_option() {
+            let out = carry(&path, &edited, &options).unwrap();
+            prop_assert_eq!(&out, &carry(&path, &edited, &options).unwrap());
+            for (frame, &at) in out.frames.iter().enumerate().step_by(17).filter(|(_, at)| at.fract() == 0.0) {
+                let (a, b) = (out.clip.world_pose(frame).positions, original.world_pose(at as usize).positions);
+                for (i, j) in (0..a.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+                    prop_assert!((a[i].distance(a[j]) - b[i].distance(b[j])).abs() < 1e-4);
+                    prop_assert!((a[i].y - b[i].y).abs() < 1e-4);
+                }
+            }
+        }
+    }
+}
+
+/// A walk, its path, and the path with its middle dragged sideways.
+fn bow(by: f64) -> (FittedPath, Roles, Road) {
+    let (source, roles) = walk();
+    let path = FittedPath::new(source, &options(8)).expect("a walk goes somewhere");
+    let spline = path.road().spline();
+    let to = spline.points()[4] + DVec2::new(by, 0.0);
+    let edited = spline.edited(&PathEdit::Move { index: 4, to }, FREE).expect("the point is there");
+    (path, roles, Road::new(edited).expect("it has a length"))
+}
+
+/// Beside the fast way stands the slow one: lengths by many chords, frames by small steps along the path.
+#[test]
+fn metres_are_kept() {
+    let (path, _, edited) = bow(1.0);
+    let out = carry(&path, &edited, &CarryOptions::default()).unwrap();
+    let samples = 200_000;
+    let walked = |spline: &GroundSpline| {
+        let mut along = vec![0.0];
+        for k in 1..=samples {
+            let step = spline
+                .position(f64::from(k) / f64::from(samples))
+                .distance(spline.position(f64::from(k - 1) / f64::from(samples)));
+            along.push(along[along.len() - 1] + step);
+        }
+        along
+    };
+    let frame_at = |spline: &GroundSpline, u: f64| {
+        let way = spline.position(u + 1e-6) - spline.position(u - 1e-6);
+        let place = spline.position(u);
+        Planar::new(way.x.atan2(way.y), place.x, place.y)
+    };
+    let (old, new) = (path.road().spline(), edited.spline());
+    let (old_along, new_along) = (walked(old), walked(new));
+    let clip = path.source().clip();
+    for frame in (1..clip.frames() - 1).step_by(13) {
+        let u = path.parameters()[frame];
+        let metres = old_along[(u * f64::from(samples)).round() as usize];
+        let v = new_along.partition_point(|&along| along < metres) as f64 / f64::from(samples);
+        let planar = frame_at(new, v).after(&frame_at(old, u).inverse());
+        let expected = planar.apply(clip.root_translations()[frame]);
+        assert!(out.clip.root_translations()[frame].distance(expected) < 1e-3, "{frame}");
+    }
+    assert!((out.taken_m().end - out.taken_m().start - path.road().length_m()).abs() < 1e-6);
+    assert_eq!(out.clip.frames(), clip.frames());
+}
+
+#[test]
+fn speed_or_duration_are_kept() {
+    let (path, _, edited) = bow(3.0);
+    assert!(edited.length_m() > 1.1 * path.road().length_m());
+    let with = |timing| {
+        let options = CarryOptions {
+            timing,
+            ..CarryOptions::default()
+        };
+        carry(&path, &edited, &options).unwrap()
+    };
+    let whole = |out: &Carried| (out.taken_m().end - edited.length_m()).abs() < 1e-6;
+    let (speed, duration) = (with(Timing::Speed), with(Timing::Duration));
+    assert!(whole(&speed) && whole(&duration));
+    assert_eq!(duration.clip.frames(), path.source().clip().frames());
+    let grown = speed.clip.frames() as f64 / duration.clip.frames() as f64;
+    assert!((grown - edited.length_m() / path.road().length_m()).abs() < 0.02, "{grown}");
+    // Step by step as fast as the original at the same moment.
+    let fps = speed.clip.fps();
+    for frame in 1..speed.clip.frames() {
+        let own = (speed.places[frame].along_m - speed.places[frame - 1].along_m) * fps;
+        let at = speed.frames[frame - 1] as usize;
+        let original = (path.places()[at + 1].along_m - path.places()[at].along_m) * fps;
+        assert!((own - original).abs() < 0.1, "{frame}: {own} {original}");
+    }
+    // What lies away from the dragged point is not touched.
+    let (far, turned) = difference(&duration.clip.crop(0..30).unwrap(), &path.source().clip().crop(0..30).unwrap());
+    assert!(far < 1e-4 && turned < 1e-4, "{far} {turned}");
+}
+
+#[test]
+fn the_body_faces_as_before_where_it_shall() {
+    let (path, roles, edited) = bow(2.0);
+    let options = CarryOptions {
+        orientation: Orientation::World,
+        ..CarryOptions::default()
+    };
+    let out = carry(&path, &edited, &options).unwrap();
+    let turned = carry(&path, &edited, &CarryOptions::default()).unwrap();
+    let clip = path.source().clip();
+    let place = |clip: &Clip| Source::new(Arc::new(clip.clone()), &roles).frames().to_vec();
+    for ((held, turned), frame) in place(&out.clip).iter().zip(place(&turned.clip)).zip(0..) {
+        assert!(quat::angle_between(out.clip.rotations(frame)[0], clip.rotations(frame)[0]) < 1e-3);
+        assert!(held.shift.distance(turned.shift) < 1e-4, "{frame}");
+    }
+}
+
+#[test]
+fn feet_stand_again() {
+    let lock = Some(FootLockOptions::default());
+    let mut checked = 0;
+    let made = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
+    for clip in made.into_iter().chain(captured()) {
+        let (source, roles) = source(clip);
+        let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
+        let path = FittedPath::new(source, &options(6)).unwrap();
+        let spline = path.road().spline();
+        // Square to the way from end to end.
+        let way = spline.points()[5] - spline.points()[0];
+        let to = spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.road().length_m();
+        let edited = Road::new(spline.edited(&PathEdit::Move { index: 3, to }, FREE).unwrap()).unwrap();
+        let name = path.source().clip().name().to_owned();
+        let editor = PathEditor::new(path, &roles, contacts);
+        for timing in TIMINGS {
+            let carry = CarryOptions {
+                timing,
+                ..CarryOptions::default()
+            };
+            let out = editor.motion(&edited, &MotionOptions { carry, foot_lock: lock }).unwrap();
+            println!("{name} {timing:?}: {:?}, {} hard turns", out.slide_cm, out.hard_turns.len());
+            let (Some(carried), Some(locked)) = (out.slide_cm.carried, out.slide_cm.locked) else {
+                continue;
+            };
+            // This one goes there and back: where it turns round, six control points are no path, and no foot can be held.
+            let limit = if name.ends_with("01_01.bvh") {
+                carried
+            } else {
+                (0.25 * carried).max(0.5)
+            };
+            assert!(locked <= limit, "{name} {timing:?}: {carried} → {locked} cm");
+            checked += 1;
+        }
+    }
+    assert!(checked >= 6);
+}
+
+#[test]
+fn turns_that_are_too_sharp_are_told() {
+    let (path, _, gentle) = bow(0.2);
+    let out = carry(&path, &gentle, &CarryOptions::default()).unwrap();
+    assert_eq!(hard_turns(&path, &out), []);
+    let (path, _, sharp) = bow(4.0);
+    let out = carry(&path, &sharp, &CarryOptions::default()).unwrap();
+    let turns = hard_turns(&path, &out);
+    assert!(!turns.is_empty());
+    for turn in turns {
+        assert!(turn.frames.contains(&turn.worst) && turn.turn_dps > turn.limit_dps, "{turn}");
+        assert!(turn.to_string().contains("widen the bend"));
+    }
+}
+
+#[test]
+fn degenerate_ways_work_or_say_why_not() {
+    let (idle, _) = made(&Params::new(Action::Idle));
+    let error = FittedPath::new(idle, &FitOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("no path to edit"), "{error}");
+    let (source_of_walk, _) = walk();
+    for frames in [0, 1] {
+        let (short, _) = source(source_of_walk.clip().crop(0..frames).unwrap());
+        assert_eq!(
+            FittedPath::new(short, &FitOptions::default()).unwrap_err(),
+            PathEditError::Frames { frames }
+        );
+    }
+    // A fifth of a second, with more control points than frames.
+    let (short, _) = source(source_of_walk.clip().crop(0..12).unwrap());
+    assert_same(&FittedPath::new(short, &options(16)).unwrap(), "short");
+    // More than a whole circle, over its own beginning.
+    let round = Params {
+        duration_secs: 9.0,
+        turn_rate_dps: 60.0,
+        ..Params::new(Action::Walk)
+    };
+    let (round, _) = made(&round);
+    let path = FittedPath::new(round, &options(12)).unwrap();
+    assert_same(&path, "round");
+    assert!(path.error().most_cm < 20.0, "{:?}", path.error());
+    // A walk on a loop goes round and round.
+    let (path, _, _) = bow(0.0);
+    let ring = path.road().spline().edited(&PathEdit::Scale { factor: 0.4 }, FREE).unwrap();
+    let ring = Road::new(ring.edited(&PathEdit::Close, FREE).unwrap()).unwrap();
+    let out = carry(&path, &ring, &CarryOptions::default()).unwrap();
+    assert!(out.taken_m().end > 2.0 * ring.length_m());
+    let steps = out.clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1]));
+    assert!(steps.fold(0.0, f32::max) < 0.06);
+    // There and back the same way.
+    let clip = source_of_walk.clip();
+    let order: Vec<usize> = (0..clip.frames()).chain((0..clip.frames() - 1).rev()).collect();
+    let back = Clip::from_poses(
+        "back",
+        clip.skeleton().clone(),
+        clip.fps(),
+        order.iter().map(|&frame| clip.pose(frame)),
+    )
+    .unwrap();
+    let (back, _) = source(back);
+    assert_same(&FittedPath::new(back, &options(16)).unwrap(), "there and back");
+}
