@@ -11,6 +11,7 @@ mod layers;
 mod looping;
 mod make;
 mod pair;
+mod register;
 mod rounds;
 mod speed;
 
@@ -21,6 +22,8 @@ pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, made_motion, made_params, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
+pub use register::{Beat, DistanceMap, Registered, write_pins};
+pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 
 /// The two places that a clip can take.
@@ -128,6 +131,8 @@ pub struct Outcome {
     pub retargeted: Option<Arc<Retargeted>>,
     /// What of it is a layer; `None` where there is none.
     pub layer: Option<LayerFacts>,
+    /// Which frames of A and B it is made of; `None` where they were not registered.
+    pub registered: Option<Arc<Registered>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -142,6 +147,7 @@ impl Outcome {
             cycle: None,
             retargeted: None,
             layer: None,
+            registered: None,
             metrics: Vec::new(),
         }
     }
