@@ -158,6 +158,19 @@ impl Outcome {
         self.motion.clip.duration_secs()
     }
 
+    /// Which time of a source goes into the result at a time of the result, and where the source lies then, standing where the result stands.
+    /// `None` where there is none of it, and where the sources are not registered: they simply play on.
+    #[must_use]
+    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
+        let beat = self.registered.as_ref()?.beat_at(secs)?;
+        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip.fps();
+        let inside = at >= 0.0 && at <= source.motion.clip.duration_secs();
+        inside.then(|| {
+            let stands = source.motion.standing_at(at);
+            (at, self.motion.standing_at(secs).after(&stands.inverse()))
+        })
+    }
+
     /// Where the character of a result that goes round stands at a time beyond its end: the time in its motion, and where that then lies. A
     /// result that has an end stays as it is.
     pub(super) fn around(&self, secs: f64) -> (f64, Planar) {

@@ -164,7 +164,7 @@ impl Registrar {
 
     fn keep(&mut self, wanted: &Wanted, found: Result<Found, String>) {
         if self.found.len() >= 2 * MAX_PANES {
-            self.found.remove(0);
+            drop(self.found.remove(0));
         }
         self.found.push((wanted.clone(), found.map(Arc::new)));
     }
