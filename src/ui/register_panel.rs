@@ -117,7 +117,8 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         pins: &pin_secs,
         now: now.filter(inside).map(secs),
     };
-    let room = 0.46 * ui.ctx().content_rect().height();
+    // All of it should be in sight at once.
+    let room = 0.85 * ui.clip_rect().height();
     for event in kit::heat_map_ui(&view, room, ui) {
         map_event(event, map, registered.first().copied(), &pins, state, out);
     }

@@ -247,9 +247,11 @@ pub(crate) fn ends_found(distance_cm: f64) -> String {
 }
 
 /// What the Register lab does, and where to look.
-pub(crate) const REGISTER_ABOUT: &str = "Bends B's time so that every frame of A meets the frame of B that is most like it. Watch the feet below: A, B and the result strike together.";
+pub(crate) const REGISTER_ABOUT: &str =
+    "Bends B's time so that alike frames meet. Watch the feet below: A, B and the result strike together.";
 /// The same over the stage.
-pub(crate) const REGISTER_HINT: &str = "A and B walk beside what is made of them. Registered, all three strike together; compare with plain, where steps double and feet slide.";
+pub(crate) const REGISTER_HINT: &str =
+    "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
 /// Opens both beside each other.
 pub(crate) const REGISTERED_AND_PLAIN: &str = "Registered beside plain";
 /// The map's name.
@@ -257,18 +259,17 @@ pub(crate) const DISTANCES: &str = "Distances between A and B";
 /// While they are computed.
 pub(crate) const COMPARING: &str = "Comparing all frames";
 /// What can be done with the map.
-pub(crate) const MAP_HELP: &str =
-    "Point to see both poses, click to go there, drag to set a pin; drag it out or double-click it to remove it.";
+pub(crate) const MAP_HELP: &str = "Point: both poses. Click: go there. Drag: a pin; drag it out or double-click it to remove it.";
 /// A button.
 pub(crate) const REMOVE_PINS: &str = "Remove pins";
 /// Of the parameters below the map.
 pub(crate) const REGISTRATION: &str = "Registration";
 /// Before the stripes of feet.
-pub(crate) const FEET_OF_A: &str = "A, both feet";
+pub(crate) const FEET_OF_A: &str = "A feet";
 /// Likewise.
-pub(crate) const FEET_OF_B: &str = "B, both feet";
+pub(crate) const FEET_OF_B: &str = "B feet";
 /// Likewise.
-pub(crate) const FEET_OF_RESULT: &str = "result";
+pub(crate) const FEET_OF_RESULT: &str = "Result";
 
 /// How far apart a pair of frames is.
 pub(crate) fn pair_apart([a, b]: [f64; 2], cm: Option<f64>) -> String {

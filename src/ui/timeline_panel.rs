@@ -8,7 +8,7 @@ use super::theme::palette_of;
 use eframe::egui::{Color32, RectAlign, Ui};
 use segue::clip::joint_curve;
 use segue::session::{
-    Command, CycleMade, Key, Kind, Motion, Outcome, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
+    Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
 };
 use segue::skeleton::{Role, Side};
 use std::sync::Arc;
@@ -82,8 +82,8 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     });
     let made = params.text(Key::Lab) == "make";
     let round = round_name(outcome, &names);
-    let tracks = if outcome.registered.is_some() && (outcome.transition.is_none() || layout == Layout::Phone) {
-        // The feet of both say more than a bar that is always full.
+    let tracks = if outcome.registered.is_some() {
+        // The feet of both say more than their bars.
         Vec::new()
     } else if made {
         vec![whole_track(Part::Result, params.text(Key::Gait), outcome)]
@@ -100,7 +100,8 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         series: &series,
     };
     let seams = seams(outcome, palette.accent);
-    let stripes = stripes(outcome);
+    let feet = feet_names(session, layout);
+    let stripes = stripes(session, &feet);
     let timeline = Timeline {
         duration: session.duration_secs(),
         now: session.now_secs(),
@@ -170,22 +171,38 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
     (1..count).map(seam).collect()
 }
 
-/// The feet of A, of B and of the result under each other, in the result's time.
-fn stripes(outcome: &Outcome) -> Vec<Stripe<'static>> {
-    let Some(registered) = &outcome.registered else {
-        return Vec::new();
+/// What stands before the stripes of each pane's feet: A, B, result. A phone has room for one pane.
+fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
+    let panes = session.panes();
+    let shown = if layout == Layout::Phone { 1 } else { panes.len() };
+    let names = |pane: &Pane| {
+        let value = pane
+            .variant
+            .as_ref()
+            .filter(|_| panes.len() > 1)
+            .map(|(key, value)| key.param().spoken(value));
+        [text::FEET_OF_A, text::FEET_OF_B, text::FEET_OF_RESULT].map(|of| match &value {
+            Some(value) => format!("{of} · {value}"),
+            None => of.to_owned(),
+        })
     };
-    let of = [
-        (Part::A, text::FEET_OF_A, Some(Slot::A)),
-        (Part::B, text::FEET_OF_B, Some(Slot::B)),
-        (Part::Result, text::FEET_OF_RESULT, None),
-    ];
-    let stripe = |(part, label, slot)| Stripe {
-        part,
-        label,
-        feet: Side::BOTH.map(|side| registered.stances(slot, side)),
-    };
-    of.into_iter().map(stripe).collect()
+    panes.iter().take(shown).map(names).collect()
+}
+
+/// The feet of A, of B and of the result under each other, in the result's time; pane by pane.
+fn stripes<'a>(session: &Session, names: &'a [[String; 3]]) -> Vec<Stripe<'a>> {
+    let of = [(Part::A, Some(Slot::A)), (Part::B, Some(Slot::B)), (Part::Result, None)];
+    let panes = session.panes().iter().zip(names);
+    let registered = panes.filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered.as_ref()?, names)));
+    registered
+        .flat_map(|(registered, names)| {
+            of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
+                part,
+                label,
+                feet: Side::BOTH.map(|side| registered.stances(slot, side)),
+            })
+        })
+        .collect()
 }
 
 /// One clip that is all there is.

@@ -435,8 +435,10 @@ impl RegisterInputs {
             roles,
             ground_m: 0.0,
         });
-        let of_these = ["seam_deg", "seam_dps", "spin_deg", "penetration_cm"];
-        metrics.extend(found.list().into_iter().filter(|metric| of_these.contains(&metric.id)));
+        // The other numbers ask what a source does in the same frame, which a bent clock does not have. A weight that stays has no seam.
+        let is_join = matches!(self.made, Made::Join { .. });
+        let of_these = |id| id == "penetration_cm" || (is_join && id == "seam_dps");
+        metrics.extend(found.list().into_iter().filter(|metric| of_these(metric.id)));
         metrics
     }
 }

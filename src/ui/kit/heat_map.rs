@@ -105,7 +105,7 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (stripes, seconds) = ((STRIPES * scale).round(), (SECONDS * scale).round());
-    let margin = vec2(seconds + stripes, seconds + stripes);
+    let margin = vec2(seconds + stripes + 4.0, seconds + stripes);
     let width = ui.available_width() - margin.x;
     // As high as the times ask for, within reason: equal speeds are a diagonal.
     let wanted = width * (map.spans[1] / map.spans[0].max(1e-9)) as f32;
@@ -202,7 +202,7 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
                 put(ui.painter(), pos2(at.x, field.bottom() + stripes), anchor, galley);
             } else {
                 let anchor = if mark == 0 { Align2::RIGHT_BOTTOM } else { Align2::RIGHT_CENTER };
-                put(ui.painter(), pos2(field.left() - stripes, at.y), anchor, galley);
+                put(ui.painter(), pos2(field.left() - stripes - 2.0, at.y), anchor, galley);
             }
         }
     }

@@ -149,7 +149,9 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         pitch,
         ..
     } = Heights::of(ui);
-    let stripe_pitch = (STRIPE * scale).round();
+    // Of several panes each has less room.
+    let crowded = timeline.stripes.len() > 3;
+    let stripe_pitch = ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round();
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
     let bars = full_width(tracks_height + timeline.stripes.len() as f32 * stripe_pitch, ui);
     let curve_height = timeline
