@@ -138,7 +138,6 @@ fn pins_are_in_the_link_and_the_curve_passes_them() {
 #[test]
 fn what_cannot_be_is_said_and_the_last_good_result_stays() {
     let mut session = opened("lab=register");
-    let good = session.main_outcome().cloned().unwrap();
     for (key, value, sentence) in [
         (
             Key::Pins,
@@ -150,6 +149,7 @@ fn what_cannot_be_is_said_and_the_last_good_result_stays() {
         (Key::Pins, "100-90,110-170", "raise the slope limit to"),
         (Key::B, "idle(make_seconds:1)", "no path with a slope limit of 1"),
     ] {
+        let good = session.main_outcome().cloned().unwrap();
         let mut values = vec![(key, Value::Text(value.into()))];
         if key == Key::B {
             values.extend([(Key::SlopeLimit, Value::Number(1.0)), (Key::Ends, Value::Choice("corner"))]);
