@@ -33,16 +33,13 @@ pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(R
             let stance = &mut stances[side.index()];
             let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
             let stands = contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
-            match stillest_step(before, &now).filter(|_| stands) {
-                Some(step) => {
-                    *slid += step;
-                    let (start, farthest) = stance.unwrap_or((frame - 1, 0.0));
-                    *stance = Some((start, farthest.max(slid.length())));
-                }
-                None => {
-                    *slid = Vec3::ZERO;
-                    slides.extend(stance.take().map(|(start, farthest)| (start..frame, farthest)));
-                }
+            if let Some(step) = stillest_step(before, &now).filter(|_| stands) {
+                *slid += step;
+                let (start, farthest) = stance.unwrap_or((frame - 1, 0.0));
+                *stance = Some((start, farthest.max(slid.length())));
+            } else {
+                *slid = Vec3::ZERO;
+                slides.extend(stance.take().map(|(start, farthest)| (start..frame, farthest)));
             }
             *before = now;
         }

@@ -326,7 +326,7 @@ parameters! {
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
     WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
     WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
-    RegistrationWindow "registration_window" "Window" Register number(1.0, 61.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
+    RegistrationWindow "registration_window" "Window" Register number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
     SlopeLimit "slope_limit" "Slope limit" Register number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
     Ends "ends" "Ends" Register Kind::Choice(ENDS), Start::Word("free"), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
     EndSlack "end_slack" "Left out at most" Register number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";

@@ -109,11 +109,12 @@ impl Session {
             return true;
         }
         if self.registrar.work() {
-            if self.registrar.progress().is_none() {
-                let held = self.held();
-                self.refresh();
-                self.go_on_from(&held);
-            }
+            return true;
+        }
+        if self.registrar.is_ready() {
+            let held = self.held();
+            self.refresh();
+            self.go_on_from(&held);
             return true;
         }
         self.make_next()

@@ -201,7 +201,7 @@ impl RegisterInputs {
             },
             weight: &weight,
         };
-        let made = registered_blend(a, &[partner]).map_err(|error| error.to_string())?;
+        let made = registered_blend(a, &[partner]).map_err(|error| sentence(&error))?;
         let contacts = made.contacts(&self.contacts());
         let RegisteredBlend { clip, instants, frames } = made;
         Ok(Draft {
@@ -248,7 +248,7 @@ impl RegisterInputs {
                 law,
                 ..DissolveOptions::default()
             };
-            let joined = dissolve(a, leave, b, enter, &options).map_err(|error| error.to_string())?;
+            let joined = dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
             let beat = |p: usize| Beat {
                 frames: [(leave + p) as f64, (enter + p) as f64],
                 weight_b: 1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64),
@@ -257,7 +257,7 @@ impl RegisterInputs {
             let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
             (joined, during, contacts)
         } else {
-            let made = registered_join(a, b, &self.found.registration, leave, arrive, law).map_err(|error| error.to_string())?;
+            let made = registered_join(a, b, &self.found.registration, leave, arrive, law).map_err(|error| sentence(&error))?;
             let contacts = made.contacts(contacts_a, contacts_b);
             (made.joined, made.during.iter().map(beat).collect(), contacts)
         };
@@ -441,6 +441,15 @@ impl RegisterInputs {
         metrics.extend(found.list().into_iter().filter(|metric| of_these(metric.id)));
         metrics
     }
+}
+
+/// An error as a sentence.
+fn sentence(error: &impl std::fmt::Display) -> String {
+    let words = error.to_string();
+    let mut letters = words.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 fn mean_weight_b(beats: &[Beat]) -> f64 {

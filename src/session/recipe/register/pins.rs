@@ -9,7 +9,7 @@ pub(in crate::session) fn read_pins(text: &str) -> Result<Vec<(usize, usize)>, S
     };
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     let pins: Vec<(usize, usize)> = words
-        .map(|pin| read(pin).ok_or_else(|| format!("pins: found `{pin}`, expected a frame of A and one of B, as in 12-30,50-71.")))
+        .map(|pin| read(pin).ok_or_else(|| format!("Pins: found `{pin}`, expected a frame of A and one of B, as in 12-30,50-71.")))
         .collect::<Result<_, _>>()?;
     if pins.len() > MOST_PINS {
         return Err(format!("{} pins are more than can be kept: use at most {MOST_PINS}.", pins.len()));

@@ -1,4 +1,4 @@
-use super::{DistanceMap, Made, RegisterInputs, read_pins};
+use super::{DistanceMap, Made, RegisterInputs, read_pins, sentence};
 use crate::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
 };
@@ -42,12 +42,15 @@ pub(in crate::session) struct Registrar {
     found: Vec<(Wanted, Result<Arc<Found>, String>)>,
     /// What panes wait for.
     wanted: Vec<Wanted>,
+    /// All of that has just been found, and nobody has asked for it yet.
+    is_ready: bool,
 }
 
 impl Registrar {
     /// Nobody waits any more: everybody is about to ask again.
     pub(in crate::session) fn ask_anew(&mut self) {
         self.wanted.clear();
+        self.is_ready = false;
     }
 
     /// Brings everything to the point where the result is a pure function. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
@@ -84,7 +87,13 @@ impl Registrar {
             return false;
         };
         self.step(&wanted);
+        self.is_ready = self.next().is_none();
         true
+    }
+
+    /// Whether what panes wait for is there, so that they should ask again.
+    pub(in crate::session) fn is_ready(&self) -> bool {
+        self.is_ready
     }
 
     fn next(&self) -> Option<&Wanted> {
@@ -118,7 +127,7 @@ impl Registrar {
         let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
         let weights = limb_weights(a.skeleton());
         let terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, stride);
-        self.terms = Some(terms.map_err(|error| error.to_string())?);
+        self.terms = Some(terms.map_err(|error| sentence(&error))?);
         self.pair = Some(Arc::clone(pair));
         Ok(())
     }
@@ -126,7 +135,7 @@ impl Registrar {
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) {
         let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
-            self.keep(wanted, Err("there are no clips to register".to_owned()));
+            self.keep(wanted, Err("There are no clips to register.".to_owned()));
             return;
         };
         let stride = terms.stride();
@@ -158,7 +167,7 @@ impl Registrar {
                 }
                 self.maps.push(Arc::new(DistanceMap::new(sweep.finish(), pair)));
             }
-            Err(error) => self.keep(wanted, Err(error.to_string())),
+            Err(error) => self.keep(wanted, Err(sentence(&error))),
         }
     }
 
@@ -249,5 +258,5 @@ fn in_frames(error: PathError, middle: usize) -> String {
         },
         other => other,
     };
-    error.to_string()
+    sentence(&error)
 }
