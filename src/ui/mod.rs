@@ -150,7 +150,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         });
     // The stripes of the feet need more room than the bars of the clips.
     let timeline = if session.params().text(Key::Lab) == "register" {
-        122.0
+        144.0
     } else {
         104.0
     };
