@@ -248,7 +248,7 @@ pub(crate) fn ends_found(distance_cm: f64) -> String {
 
 /// What the Register lab does, and where to look.
 pub(crate) const REGISTER_ABOUT: &str =
-    "Bends B's time so that alike frames meet. Watch the feet below: A, B and the result strike together.";
+    "Bends B's time so that alike frames meet. Watch the feet on the timeline: A, B and the result strike together.";
 /// The same over the stage.
 pub(crate) const REGISTER_HINT: &str =
     "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
