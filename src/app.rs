@@ -433,6 +433,7 @@ impl Segue {
         let theme = ui::theme::theme_of(ui);
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
         self.picture.mark_joint(self.panels.joints_open);
+        self.picture.show_pair(self.panels.hovered_pair);
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();

@@ -54,6 +54,11 @@ impl Picture {
         self.director.mark_joint(on);
     }
 
+    /// The pair of frames that is shown in place of the result from now on.
+    pub(crate) fn show_pair(&mut self, frames: Option<[f64; 2]>) {
+        self.director.show_pair(frames);
+    }
+
     /// Draws the session's present state into the place that was kept.
     pub(crate) fn finish(&mut self, place: Place, session: &Session, palette: &Palette, look: Look, ui: &Ui) {
         let now_ms = now_ms();

@@ -1,6 +1,7 @@
 use crate::clip::{Clip, Contacts, stillest_step};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::Vec3;
+use std::ops::Range;
 
 /// How far a planted foot slides in the worst stance of a clip, centimetres.
 ///
@@ -9,28 +10,46 @@ use glam::Vec3;
 /// feet or stances. O(frames × joints).
 #[must_use]
 pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<f64> {
+    foot_slides_cm(clip, roles, contacts)
+        .into_iter()
+        .map(|(_, slide)| slide)
+        .reduce(f64::max)
+}
+
+/// How far a planted foot slides in each stance, centimetres, as [`foot_slide_cm`] has it: the stance's frames, and the slide; in the order in which
+/// stances end. A stance of a single frame is none.
+#[must_use]
+pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(Range<usize>, f64)> {
     let points = Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side));
     let mut before: [Vec<Vec3>; 2] = Default::default();
     let mut slid = [Vec3::ZERO; 2];
-    let mut worst: Option<f32> = None;
+    let mut stances: [Option<(usize, f32)>; 2] = [None; 2];
+    let mut slides = Vec::new();
     let mut world = WorldPose::default();
     for frame in 0..clip.frames() {
         clip.world_pose_into(frame, &mut world);
         for side in Side::BOTH {
             let (points, before, slid) = (&points[side.index()], &mut before[side.index()], &mut slid[side.index()]);
+            let stance = &mut stances[side.index()];
             let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
             let stands = contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
-            match stillest_step(before, &now).filter(|_| stands) {
-                Some(step) => {
-                    *slid += step;
-                    worst = Some(worst.unwrap_or(0.0).max(slid.length()));
-                }
-                None => *slid = Vec3::ZERO,
+            if let Some(step) = stillest_step(before, &now).filter(|_| stands) {
+                *slid += step;
+                let (start, farthest) = stance.unwrap_or((frame - 1, 0.0));
+                *stance = Some((start, farthest.max(slid.length())));
+            } else {
+                *slid = Vec3::ZERO;
+                slides.extend(stance.take().map(|(start, farthest)| (start..frame, farthest)));
             }
             *before = now;
         }
     }
-    worst.map(|metres| f64::from(metres) * 100.0)
+    let last = stances.into_iter().flatten();
+    slides.extend(last.map(|(start, farthest)| (start..clip.frames(), farthest)));
+    slides
+        .into_iter()
+        .map(|(frames, metres)| (frames, f64::from(metres) * 100.0))
+        .collect()
 }
 
 #[cfg(test)]

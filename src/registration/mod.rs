@@ -33,7 +33,7 @@ pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
-pub use sweep::Sweep;
+pub use sweep::{PausedSweep, Sweep};
 pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 

@@ -68,8 +68,20 @@ pub struct RegistrationPath {
 /// [`PathError`] says what excludes every path.
 pub fn optimal_path(matrix: &DistanceMatrix, options: &PathOptions) -> Result<RegistrationPath, PathError> {
     let columns = matrix.columns();
-    search(matrix, options, |_| 0..columns)
+    let is_free = options.start != PathEnd::Corner || options.end != PathEnd::Corner;
+    // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a path that is nearly the best saves most of them.
+    let nearly = (is_free && matrix.rows().min(columns) >= WORTH_A_CORRIDOR)
+        .then(|| path_in_corridor(matrix, options, 8, 12).ok())
+        .flatten()
+        .map(|path| {
+            let (cost, weight) = weigh(matrix, &path.cells, options.side_step_m);
+            cost / weight
+        });
+    search(matrix, options, |_| 0..columns, nearly)
 }
+
+/// From so many rows and columns on, a path in a corridor is found before the best one.
+const WORTH_A_CORRIDOR: usize = 256;
 
 /// [`optimal_path`] for long clips: the path is sought in a matrix with cells of `factor` × `factor` first (their mean), then in a
 /// corridor of `radius` cells to either side of it.
@@ -108,10 +120,16 @@ pub fn path_in_corridor(
             open(r, column + factor + radius);
         }
     }
-    search(matrix, options, |row| spans.get(row).cloned().unwrap_or_default())
+    search(matrix, options, |row| spans.get(row).cloned().unwrap_or_default(), None)
 }
 
-fn search(matrix: &DistanceMatrix, options: &PathOptions, spans: impl Fn(usize) -> Range<usize>) -> Result<RegistrationPath, PathError> {
+/// `bias` is the mean of a path that there is; it only saves time.
+fn search(
+    matrix: &DistanceMatrix,
+    options: &PathOptions,
+    spans: impl Fn(usize) -> Range<usize>,
+    mut bias: Option<f64>,
+) -> Result<RegistrationPath, PathError> {
     let (rows, columns) = (matrix.rows(), matrix.columns());
     let slope_limit = options.slope_limit;
     if rows == 0 || columns == 0 {
@@ -126,7 +144,6 @@ fn search(matrix: &DistanceMatrix, options: &PathOptions, spans: impl Fn(usize) 
         last = None;
     }
     let anchors: Vec<(usize, usize)> = pins.iter().copied().chain(last).collect();
-    let mut bias: Option<f64> = None;
     // Dinkelbach: the best path at the mean of the best path so far, until it is no better. A handful of rounds; the limit is for NaN.
     for _ in 0..32 {
         let found = sweep(matrix, options, &spans, &anchors, bias.unwrap_or(0.0))?;

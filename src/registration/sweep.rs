@@ -10,6 +10,36 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     terms: &'a PairTerms,
+    sums: Sums,
+}
+
+/// A [`Sweep`] that lets go of the terms until it goes on.
+#[derive(Clone, Debug)]
+pub struct PausedSweep(Sums);
+
+impl PausedSweep {
+    /// Goes on where it was left. `terms` are those that the sweep was made of.
+    #[must_use]
+    pub fn resume(self, terms: &PairTerms) -> Sweep<'_> {
+        Sweep { terms, sums: self.0 }
+    }
+
+    /// How far it had come.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        self.0.progress()
+    }
+
+    /// Frames of the windows.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.0.window
+    }
+}
+
+/// What a sweep holds besides the terms.
+#[derive(Clone, Debug)]
+struct Sums {
     window: usize,
     rows: Range<usize>,
     columns: Range<usize>,
@@ -59,8 +89,7 @@ impl<'a> Sweep<'a> {
     pub(super) fn new(terms: &'a PairTerms, window: usize, rows: Range<usize>, columns: Range<usize>) -> Self {
         let samples = terms.samples_in(window);
         let diagonals = rows.len() + columns.len();
-        Self {
-            terms,
+        let sums = Sums {
             window,
             done: 0,
             dot: vec![0.0; diagonals],
@@ -71,46 +100,63 @@ impl<'a> Sweep<'a> {
             rms_m: vec![0.0; rows.len() * columns.len()],
             rows,
             columns,
-        }
+        };
+        Self { terms, sums }
     }
 
     /// Does up to `rows` more rows, and says how far it has come.
     pub fn advance(&mut self, rows: usize) -> Progress {
-        let total = if self.columns.is_empty() { 0 } else { self.rows.len() };
-        let end = self.done.saturating_add(rows).min(total);
-        let samples = self.terms.samples_in(self.window);
-        for row in self.done..end {
-            self.enter_row(row, samples);
-            self.distances(row, samples);
+        let sums = &mut self.sums;
+        let end = sums.done.saturating_add(rows).min(sums.progress().total);
+        let samples = self.terms.samples_in(sums.window);
+        for row in sums.done..end {
+            sums.enter_row(self.terms, row, samples);
+            sums.distances(row, samples);
         }
-        self.done = self.done.max(end);
-        Progress { done: self.done, total }
+        sums.done = sums.done.max(end);
+        sums.progress()
+    }
+
+    /// Lets go of the terms, so that the rest can be done later.
+    #[must_use]
+    pub fn pause(self) -> PausedSweep {
+        PausedSweep(self.sums)
     }
 
     /// The rest, and the matrix.
     #[must_use]
     pub fn finish(mut self) -> DistanceMatrix {
         self.advance(usize::MAX);
-        let stride = self.terms.stride();
+        let Self { terms, sums } = self;
+        let stride = terms.stride();
         DistanceMatrix {
             stride,
-            window: self.window,
-            source_start: self.terms.source.start + self.rows.start * stride,
-            target_start: self.terms.target.start + self.columns.start * stride,
-            rows: self.rows.len(),
-            columns: self.columns.len(),
-            rms_m: self.rms_m,
+            window: sums.window,
+            source_start: terms.source.start + sums.rows.start * stride,
+            target_start: terms.target.start + sums.columns.start * stride,
+            rows: sums.rows.len(),
+            columns: sums.columns.len(),
+            rms_m: sums.rms_m,
+        }
+    }
+}
+
+impl Sums {
+    fn progress(&self) -> Progress {
+        Progress {
+            done: self.done,
+            total: if self.columns.is_empty() { 0 } else { self.rows.len() },
         }
     }
 
     /// Brings the sums to `row` (counted from the first row that is swept).
-    fn enter_row(&mut self, row: usize, samples: usize) {
+    fn enter_row(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let (first, shift) = (self.rows.start + row, self.rows.len() - 1 - row);
         let columns = self.columns.len();
         if row == 0 {
             for k in 0..samples {
-                let centre = self.terms.source.centre(first + k);
-                let entering = self.entering(self.terms.row(first + k), k, columns);
+                let centre = terms.source.centre(first + k);
+                let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, columns);
                 let sums = self.dot[shift..]
                     .iter_mut()
                     .zip(&mut self.cross[shift..])
@@ -127,16 +173,15 @@ impl<'a> Sweep<'a> {
         // The first column's windows have none before them.
         let (mut dot, mut cross, mut height) = (0.0, 0.0, 0.0);
         for k in 0..samples {
-            let entering = self.entering(self.terms.row(first + k), k, 1);
-            let (d, x) = centre_product(self.terms.source.centre(first + k), DVec2::new(entering.x[0], entering.z[0]));
+            let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, 1);
+            let (d, x) = centre_product(terms.source.centre(first + k), DVec2::new(entering.x[0], entering.z[0]));
             dot += f64::from(entering.terms.dot[0]) + d;
             cross += f64::from(entering.terms.cross[0]) + x;
             height += f64::from(entering.terms.height[0]);
         }
         (self.dot[shift], self.cross[shift], self.height[shift]) = (dot, cross, height);
         let n = columns - 1;
-        let (p, q) = (self.terms.source.centre(first + samples - 1), self.terms.source.centre(first - 1));
-        let terms = self.terms;
+        let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
         let new = Entering::new(terms, terms.row(first + samples - 1), self.columns.start + samples, n);
         let old = Entering::new(terms, terms.row(first - 1), self.columns.start, n);
         let dot = &mut self.dot[shift + 1..][..n];
@@ -149,11 +194,6 @@ impl<'a> Sweep<'a> {
                 + ((p.x * new.z[c] - p.y * new.x[c]) - (q.x * old.z[c] - q.y * old.x[c]));
             height[c] += f64::from(new.terms.height[c]) - f64::from(old.terms.height[c]);
         }
-    }
-
-    /// The `n` pairs that are the `k`-th of the windows from the first column on.
-    fn entering(&self, row: TermRow<'a>, k: usize, n: usize) -> Entering<'a> {
-        Entering::new(self.terms, row, self.columns.start + k, n)
     }
 
     fn distances(&mut self, row: usize, samples: usize) {

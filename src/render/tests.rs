@@ -303,6 +303,41 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
 }
 
 #[test]
+fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
+    let Some(mut gpu) = gpu() else { return };
+    let (size, look) = ([1400, 560], Look::DARK);
+    let colors = Colors {
+        a: rgb(0xf2_a3_5e),
+        b: rgb(0x5f_a8_f5),
+        result: rgb(0x58_d6_a9),
+        bad: rgb(0xff_7a_6b),
+        ghost_alpha: 0.42,
+    };
+    for (name, link, pair) in [
+        ("registered", "lab=register&t=1.1&compare=warp_with:registered,plain", None),
+        (
+            "registered-join",
+            "lab=register&warp_mode=join&t=1.3&compare=warp_with:registered,plain",
+            None,
+        ),
+        ("registered-pair", "lab=register&t=1.1", Some([60.0, 100.0])),
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.to_owned())).unwrap();
+        while session.work() {}
+        let panes = session.panes().len() as u32;
+        let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
+        let mut director = Director::default();
+        director.show_pair(pair);
+        let stage = director.stage(&session, &shown, 1.0, look, &colors, 0.0);
+        let ghosts = stage.panes[0].figures.iter().filter(|figure| figure.ghost).count();
+        let bodies = stage.panes[0].figures.len() - ghosts;
+        assert_eq!((ghosts, bodies), (2, usize::from(pair.is_none())), "{name}");
+        gpu.draw(name, &stage, size);
+    }
+}
+
+#[test]
 fn the_mannequin_from_all_sides() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();

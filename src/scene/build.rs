@@ -1,7 +1,7 @@
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::math::Planar;
-use crate::session::{self, Key, Motion, Outcome, Params, Session, Slot, joint_of};
+use crate::session::{self, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, joint_of};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
 use glam::Vec3;
 use std::sync::{Arc, Weak};
@@ -27,6 +27,7 @@ pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
     marks_joint: bool,
+    pair: Option<[f64; 2]>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
@@ -38,6 +39,10 @@ const CLAY_SHARE: f32 = 0.3;
 const SLIDE_MPS: f32 = 0.08;
 /// The ring about the chosen joint, as a share of the distance that it is seen from: it is of one size wherever the camera stands.
 const MARK_RADIUS: f32 = 0.011;
+/// The sources of a registered result walk this far to its left and right.
+const BESIDE_METRES: f64 = 0.8;
+/// The poses of a pair are more than ghosts: they are all there is.
+const PAIR_ALPHA: f32 = 1.8;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
 /// A camera that nothing is followed with comes to a new view this fast.
@@ -79,7 +84,10 @@ impl Director {
                     place,
                     world,
                 };
-                self.draw(&shown, params, &look, colors, pane);
+                match self.pair.zip(session.distance_map()) {
+                    Some((frames, map)) => self.draw_pair(&shown, frames, map, params, colors, pane),
+                    None => self.draw(&shown, params, &look, colors, pane),
+                }
                 self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
@@ -96,6 +104,11 @@ impl Director {
     /// Whether the chosen joint is marked from now on.
     pub fn mark_joint(&mut self, on: bool) {
         self.marks_joint = on;
+    }
+
+    /// The pair of frames of A and B (at A's rate) that is shown in place of the result from now on, aligned; `None` for the result itself.
+    pub fn show_pair(&mut self, frames: Option<[f64; 2]>) {
+        self.pair = frames;
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -177,9 +190,57 @@ impl Director {
         }
     }
 
+    /// A frame of A with one of B laid on it, where the result stands.
+    fn draw_pair(&mut self, shown: &Shown<'_>, frames: [f64; 2], map: &DistanceMap, params: &Params, colors: &Colors, pane: &mut Pane) {
+        let [a, b] = map.motions();
+        let secs = frames.map(|frame| frame / map.fps());
+        let stands = shown.place.after(&shown.outcome.motion.standing_at(shown.now));
+        let world_from_a = stands.after(&a.standing_at(secs[0]).inverse());
+        let world_from_b = world_from_a.after(&map.b_on_a(frames).unwrap_or(Planar::IDENTITY));
+        for (motion, secs, place, color) in [(a, secs[0], world_from_a, colors.a), (b, secs[1], world_from_b, colors.b)] {
+            if let Some(world) = pose_at(motion, secs, &place) {
+                let body = self.body(motion);
+                pane.add_ghost(&body, &world, with_alpha(color, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)));
+            }
+        }
+        if params.is_on(Key::Trail) {
+            add_ground_path(shown.outcome, &shown.place, colors, pane);
+        }
+    }
+
+    /// Both sources beside a registered result, in the frames that it is made of.
+    fn draw_beside(&mut self, shown: &Shown<'_>, visible: f32, colors: &Colors, pane: &mut Pane) {
+        for source in &shown.outcome.sources {
+            let (color, side) = match source.slot {
+                Slot::A => (colors.a, BESIDE_METRES),
+                Slot::B => (colors.b, -BESIDE_METRES),
+            };
+            let Some((at, place)) = shown.outcome.source_at(source, shown.now) else {
+                continue;
+            };
+            let aside = Planar::new(0.0, side, 0.0);
+            let stands = shown.outcome.motion.standing_at(shown.now);
+            let beside = shown.place.after(&stands).after(&aside).after(&stands.inverse()).after(&place);
+            if let Some(world) = pose_at(&source.motion, at, &beside) {
+                let body = self.body(&source.motion);
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * visible));
+            }
+        }
+    }
+
     /// Both sources about the transition, as far as they differ from the result: A appears as its weight falls, B vanishes as its weight rises.
     fn draw_sources(&mut self, shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
         let (outcome, now) = (shown.outcome, shown.now);
+        if outcome.registered.is_some() {
+            let away = outcome.transition.map_or(0.0, |transition| {
+                (transition.start_secs - now).max(now - transition.end_secs).max(0.0) / GHOST_FADE_SECS
+            });
+            let visible = (1.0 - away).max(0.0) as f32;
+            if visible > 0.02 {
+                self.draw_beside(shown, visible, colors, pane);
+            }
+            return;
+        }
         let Some(transition) = outcome.transition else { return };
         let length = transition.end_secs - transition.start_secs;
         let inside = ((now - transition.start_secs) / length.max(1e-6)).clamp(0.0, 1.0);
@@ -289,8 +350,9 @@ fn followed_point(shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
     let (motion, world) = match source {
         None => (&outcome.motion, &shown.world),
         Some(source) => {
-            let world_from_clip = shown.place.after(&source.world_from_clip);
-            source_pose = pose_at(&source.motion, shown.now - source.starts_at_secs, &world_from_clip)?;
+            let (at, world_from_clip) =
+                (outcome.source_at(source, shown.now)).unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
+            source_pose = pose_at(&source.motion, at, &shown.place.after(&world_from_clip))?;
             (&source.motion, &source_pose)
         }
     };

@@ -19,6 +19,7 @@ pub enum Group {
     Speed,
     Loop,
     Layers,
+    Register,
 }
 
 impl Group {
@@ -37,6 +38,7 @@ impl Group {
             Self::Speed => "speed",
             Self::Loop => "loop",
             Self::Layers => "layers",
+            Self::Register => "register",
         }
     }
 
@@ -209,6 +211,7 @@ const LABS: &[Choice] = &[
     choice("speed", "Speed"),
     choice("loop", "Loop"),
     choice("layers", "Layers"),
+    choice("register", "Register"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -256,6 +259,9 @@ const MASKS: &[Choice] = &[
 ];
 const LAYER_FITS: &[Choice] = &[choice("step", "in step"), choice("loop", "loop"), choice("hold", "hold")];
 const REFERENCES: &[Choice] = &[choice("mean", "mean"), choice("first", "first frame"), choice("rest", "rest pose")];
+const WARPS: &[Choice] = &[choice("registered", "registered"), choice("plain", "plain")];
+const WARP_MODES: &[Choice] = &[choice("blend", "blend"), choice("join", "join")];
+const ENDS: &[Choice] = &[choice("free", "free"), choice("corner", "corner")];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -319,6 +325,18 @@ parameters! {
     LayerStart "layer_start" "B begins at" Layers number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
     KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
+
+    WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
+    WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
+    WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
+    WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
+    WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
+    RegistrationWindow "registration_window" "Window" Register number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
+    SlopeLimit "slope_limit" "Slope limit" Register number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
+    Ends "ends" "Ends" Register Kind::Choice(ENDS), Start::Word("free"), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
+    EndSlack "end_slack" "Left out at most" Register number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
+    WarpSmoothing "warp_smoothing" "Smoothing" Register auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
+    Pins "pins" "Pins" Register Kind::Text, Start::Word(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

@@ -12,6 +12,7 @@ mod layers;
 mod looping;
 mod make;
 mod pair;
+mod register;
 mod rounds;
 mod speed;
 
@@ -23,6 +24,8 @@ pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
+pub use register::{Beat, DistanceMap, Registered, write_pins};
+pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 
 /// The two places that a clip can take.
@@ -130,6 +133,8 @@ pub struct Outcome {
     pub retargeted: Option<Arc<Retargeted>>,
     /// What of it is a layer; `None` where there is none.
     pub layer: Option<LayerFacts>,
+    /// Which frames of A and B it is made of; `None` where they were not registered.
+    pub registered: Option<Arc<Registered>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -144,6 +149,7 @@ impl Outcome {
             cycle: None,
             retargeted: None,
             layer: None,
+            registered: None,
             metrics: Vec::new(),
         }
     }
@@ -152,6 +158,19 @@ impl Outcome {
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.motion.clip.duration_secs()
+    }
+
+    /// Which time of a source goes into the result at a time of the result, and where the source lies then, standing where the result stands.
+    /// `None` where there is none of it, and where the sources are not registered: they simply play on.
+    #[must_use]
+    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
+        let beat = self.registered.as_ref()?.beat_at(secs)?;
+        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip.fps();
+        let inside = at >= 0.0 && at <= source.motion.clip.duration_secs();
+        inside.then(|| {
+            let stands = source.motion.standing_at(at);
+            (at, self.motion.standing_at(secs).after(&stands.inverse()))
+        })
     }
 
     /// Where the character of a result that goes round stands at a time beyond its end: the time in its motion, and where that then lies. A

@@ -10,6 +10,7 @@ mod library_panel;
 mod out;
 mod overlays;
 mod param_row;
+mod register_panel;
 mod save_rows;
 mod shortcuts;
 mod stage_panel;
@@ -49,6 +50,7 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
 pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCache, paint: Paint<'_>, ui: &mut Ui) -> Out {
     let mut out = Out::default();
     state.joints_open = false;
+    state.hovered_pair = None;
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     if session.params().is_on(Key::Embed) {
@@ -146,8 +148,14 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         .show(ui, |ui| {
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
+    // The stripes of the feet need more room than the bars of the clips.
+    let timeline = if session.params().text(Key::Lab) == "register" {
+        144.0
+    } else {
+        104.0
+    };
     Panel::top("timeline")
-        .exact_size(104.0 * scale)
+        .exact_size(timeline * scale)
         .frame(panel_frame(ui, space::L, space::S))
         .show(ui, |ui| {
             timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);

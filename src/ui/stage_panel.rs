@@ -44,9 +44,16 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     }
     camera_buttons_ui(session, stage, state, out, ui);
     let roomy = stage.height() > 420.0 * theme_of(ui).scale();
-    if state.hint && roomy && is_welcome(session) && layout != Layout::Phone {
+    let hint = if is_welcome(session) {
+        text::WELCOME_HINT
+    } else if session.params().text(Key::Lab) == "register" {
+        text::REGISTER_HINT
+    } else {
+        ""
+    };
+    if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
         let above_numbers = stage.with_max_y(numbers_top - space::S);
-        kit::caption_ui(text::WELCOME_HINT, above_numbers, ui);
+        kit::caption_ui(hint, above_numbers, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
         }
@@ -72,7 +79,7 @@ fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
     })
 }
 
-/// The best and the worst pane, by the jump of angular velocity at the seam: what an eye calls smooth and rough.
+/// The best and the worst pane, by the jump of angular velocity at the seam: what an eye calls smooth and rough. Of registered clips by how far feet slide.
 #[derive(Clone, Copy, Debug, Default)]
 struct Verdicts {
     best: Option<usize>,
@@ -89,8 +96,14 @@ fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
     let of = |id| ranking(panes, id);
-    let (transition, cycle) = (of("seam_dps"), of("loop_seam_dps"));
-    if transition.best.is_some() { transition } else { cycle }
+    let (registered, transition, cycle) = (of("skate_mean_cm"), of("seam_dps"), of("loop_seam_dps"));
+    if registered.best.is_some() {
+        registered
+    } else if transition.best.is_some() {
+        transition
+    } else {
+        cycle
+    }
 }
 
 /// Differences below this are nobody's verdict.
@@ -288,6 +301,19 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             strong: name(Key::A),
             text: format!("+ {}", name(Key::B)),
             secondary: Key::Mask.param().spoken(session.params().get(Key::Mask)),
+        },
+        "register" => Words {
+            strong: name(Key::A),
+            text: format!(
+                "{} {}",
+                if session.params().text(Key::WarpMode) == "join" {
+                    "→"
+                } else {
+                    "+"
+                },
+                name(Key::B)
+            ),
+            secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),

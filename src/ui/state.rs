@@ -68,6 +68,8 @@ pub(crate) struct UiState {
     pub(crate) details: Option<String>,
     /// A tree of joints was shown in the last frame: the chosen one is marked on the stage.
     pub(crate) joints_open: bool,
+    /// The pair of frames of A and B, at A's rate, that the pointer is at on the map of distances.
+    pub(crate) hovered_pair: Option<[f64; 2]>,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -93,6 +95,7 @@ impl Default for UiState {
             typed_fps: None,
             details: None,
             joints_open: false,
+            hovered_pair: None,
             export: ExportOptions::default(),
             saved_pane: 0,
             filming: Filming::default(),

@@ -168,6 +168,8 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("weight_percent", "B %"),
     ("loop_seam_deg", "seam"),
     ("loop_seam_dps", "seam °/s"),
+    ("apart_cm", "apart cm"),
+    ("skate_mean_cm", "skate cm"),
     ("seam_dps", "seam °/s"),
     ("skate_cm", "skate cm"),
     ("skate_before_cm", "unlocked cm"),
@@ -242,6 +244,49 @@ pub(crate) fn loop_method(method: &str) -> &'static str {
 /// How the ends of a cycle were found.
 pub(crate) fn ends_found(distance_cm: f64) -> String {
     format!("{FOUND}: the ends that fit best, {distance_cm:.1} cm apart.")
+}
+
+/// What the Register lab does, and where to look.
+pub(crate) const REGISTER_ABOUT: &str =
+    "Bends B's time so that alike frames meet. Watch the feet on the timeline: A, B and the result strike together.";
+/// The same over the stage.
+pub(crate) const REGISTER_HINT: &str =
+    "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
+/// Opens both beside each other.
+pub(crate) const REGISTERED_AND_PLAIN: &str = "Registered beside plain";
+/// The map's name.
+pub(crate) const DISTANCES: &str = "Distances between A and B";
+/// While they are computed.
+pub(crate) const COMPARING: &str = "Comparing all frames";
+/// What can be done with the map.
+pub(crate) const MAP_HELP: &str = "Point: both poses. Click: go there. Drag: a pin; drag it out or double-click it to remove it.";
+/// A button.
+pub(crate) const REMOVE_PINS: &str = "Remove pins";
+/// Of the parameters below the map.
+pub(crate) const REGISTRATION: &str = "Registration";
+/// Before the stripes of feet.
+pub(crate) const FEET_OF_A: &str = "A feet";
+/// Likewise.
+pub(crate) const FEET_OF_B: &str = "B feet";
+/// Likewise.
+pub(crate) const FEET_OF_RESULT: &str = "Result";
+
+/// How far apart a pair of frames is.
+pub(crate) fn pair_apart([a, b]: [f64; 2], cm: Option<f64>) -> String {
+    match cm {
+        Some(cm) => format!("A {a:.2} s, B {b:.2} s: {cm:.1} cm per joint"),
+        None => format!("A {a:.2} s, B {b:.2} s"),
+    }
+}
+
+/// The ends of the colours.
+pub(crate) fn heat_ends([low, high]: [f64; 2]) -> [String; 2] {
+    [format!("{low:.0}"), format!("{high:.0} cm per joint")]
+}
+
+/// How many pins there are.
+pub(crate) fn pins(count: usize) -> String {
+    if count == 1 { "1 pin".to_owned() } else { format!("{count} pins") }
 }
 
 /// What the student will see of a mistake of the Transition lab; empty for none.

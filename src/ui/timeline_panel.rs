@@ -1,6 +1,6 @@
 //! The bottom panel: what happens in time.
 
-use super::kit::{self, Curves, Moment, Part, Series, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track, Transport, TransportEvent};
 use super::lab_panel::value_in_words;
 use super::out::Out;
 use super::state::Layout;
@@ -8,8 +8,10 @@ use super::text;
 use super::theme::palette_of;
 use eframe::egui::{Color32, RectAlign, Ui};
 use segue::clip::joint_curve;
-use segue::session::{Command, CycleMade, Key, Kind, Motion, Outcome, Session, Slot, Value, curve_kind, frame_at, joint_of};
-use segue::skeleton::Role;
+use segue::session::{
+    Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
+};
+use segue::skeleton::{Role, Side};
 use std::sync::Arc;
 
 /// The curves of the chosen joint, of every pane over each other, kept until a result or the choice changes.
@@ -98,7 +100,10 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     });
     let made = params.text(Key::Lab) == "make";
     let round = round_name(outcome, &names);
-    let tracks = if made {
+    let tracks = if outcome.registered.is_some() {
+        // The feet of both say more than their bars.
+        Vec::new()
+    } else if made {
         vec![whole_track(Part::Result, params.text(Key::Gait), outcome)]
     } else if outcome.cycle.is_some() {
         vec![whole_track(Part::Result, &round, outcome)]
@@ -113,11 +118,14 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         series: &series,
     };
     let seams = seams(outcome, palette.accent);
+    let feet = feet_names(session, layout);
+    let stripes = stripes(session, &feet);
     let timeline = Timeline {
         duration: session.duration_secs(),
         now: session.now_secs(),
         fps: clip.fps(),
         tracks: &tracks,
+        stripes: &stripes,
         transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
         transition_editable: session.panes().len() == 1,
         in_point: params.optional(Key::In),
@@ -137,6 +145,13 @@ fn timeline_event(event: TimelineEvent, outcome: &Outcome, out: &mut Out) {
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
+        TimelineEvent::SetTransitionStart(secs) if outcome.registered.is_some() => out.set(Key::WarpFrom, Value::Number(secs.max(0.0))),
+        TimelineEvent::SetTransitionEnd(secs) if outcome.registered.is_some() => {
+            // The end is a time of A, whose clock is bent until then.
+            if let Some(beat) = outcome.registered.as_ref().and_then(|registered| registered.beat_at(secs)) {
+                out.set(Key::WarpTo, Value::Number((beat.frames[0] / fps).max(0.0)));
+            }
+        }
         TimelineEvent::SetTransitionStart(secs) => {
             // The result runs on A's time up to the window.
             out.set(Key::LeaveA, Value::Number(secs.max(0.0)));
@@ -172,6 +187,40 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
         name: text::CYCLE_BEGINS,
     };
     (1..count).map(seam).collect()
+}
+
+/// What stands before the stripes of each pane's feet: A, B, result. A phone has room for one pane.
+fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
+    let panes = session.panes();
+    let shown = if layout == Layout::Phone { 1 } else { panes.len() };
+    let names = |pane: &Pane| {
+        let value = pane
+            .variant
+            .as_ref()
+            .filter(|_| panes.len() > 1)
+            .map(|(key, value)| key.param().spoken(value));
+        [text::FEET_OF_A, text::FEET_OF_B, text::FEET_OF_RESULT].map(|of| match &value {
+            Some(value) => format!("{of} · {value}"),
+            None => of.to_owned(),
+        })
+    };
+    panes.iter().take(shown).map(names).collect()
+}
+
+/// The feet of A, of B and of the result under each other, in the result's time; pane by pane.
+fn stripes<'a>(session: &Session, names: &'a [[String; 3]]) -> Vec<Stripe<'a>> {
+    let of = [(Part::A, Some(Slot::A)), (Part::B, Some(Slot::B)), (Part::Result, None)];
+    let panes = session.panes().iter().zip(names);
+    let registered = panes.filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered.as_ref()?, names)));
+    registered
+        .flat_map(|(registered, names)| {
+            of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
+                part,
+                label,
+                feet: Side::BOTH.map(|side| registered.stances(slot, side)),
+            })
+        })
+        .collect()
 }
 
 /// One clip that is all there is.
@@ -252,6 +301,13 @@ impl CurveCache {
         let end = main.duration_secs();
         for source in &main.sources {
             let part = if source.slot == Slot::A { Part::A } else { Part::B };
+            if let Some(registered) = &main.registered {
+                self.lines.push(Curve {
+                    of: CurveOf::Source(part),
+                    points: registered_curve(source, registered, joint, quantity),
+                });
+                continue;
+            }
             // Sources are shown where they can be compared with the result.
             let window = main.transition.map_or(0.0..end, |transition| {
                 let margin = (transition.end_secs - transition.start_secs).max(0.25);
@@ -282,6 +338,24 @@ fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> V
         .enumerate()
         .step_by(stride)
         .map(|(frame, &value)| [starts_at_secs + frame as f64 / fps, f64::from(value)])
+        .collect()
+}
+
+/// The curve of a source in the result's time: what it has in the frames that the result is made of.
+fn registered_curve(source: &Source, registered: &Registered, joint: &str, quantity: &str) -> Vec<[f64; 2]> {
+    let Some(joint) = joint_of(&source.motion, joint) else {
+        return Vec::new();
+    };
+    let values = joint_curve(&source.motion.clip, joint, curve_kind(quantity));
+    let (fps, clip) = (registered.map.fps(), usize::from(source.slot == Slot::B));
+    let stride = registered.beats.len().div_ceil(CURVE_POINTS).max(1);
+    let beats = registered.beats.iter().enumerate().step_by(stride);
+    beats
+        .filter(|(_, beat)| beat.frames[clip] > -0.5)
+        .filter_map(|(frame, beat)| {
+            let value = values.get(beat.frames[clip].round() as usize)?;
+            Some([frame as f64 / fps, f64::from(*value)])
+        })
         .collect()
 }
 

@@ -227,3 +227,23 @@ fn the_corridor_finds_what_the_whole_matrix_gives() {
     let whole = optimal_path(&matrix, &PathOptions::default()).unwrap();
     assert!(narrow.mean_m >= whole.mean_m && narrow.mean_m < 1.1 * whole.mean_m);
 }
+
+#[test]
+fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
+    let field = matrix(300, 280, |row, column| {
+        let (i, j) = (row as f32, column as f32);
+        0.1 + 0.05 * ((0.11 * i - 0.13 * j).sin() + (0.02 * i).cos() * (0.031 * j).sin())
+            + 1e-4 * (row * 31 + column * 17).rem_euclid(23) as f32
+    });
+    for slack in [0.1, 0.4] {
+        let options = PathOptions {
+            start: PathEnd::Border { slack },
+            end: PathEnd::Border { slack },
+            ..PathOptions::default()
+        };
+        let plain = search(&field, &options, |_| 0..280, None).unwrap();
+        let quick = optimal_path(&field, &options).unwrap();
+        assert!((plain.mean_m - quick.mean_m).abs() < 1e-9, "{} {}", plain.mean_m, quick.mean_m);
+        assert_eq!(plain.cells, quick.cells);
+    }
+}

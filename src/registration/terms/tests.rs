@@ -124,6 +124,10 @@ fn slices_add_up_to_the_whole() {
     );
     let mut sweep = whole.sweep(5, &(0..67), &(0..53)).unwrap();
     let rows = sweep.advance(7);
+    // It may let go of the terms in between.
+    let paused = sweep.pause();
+    assert_eq!((paused.progress(), paused.window()), (rows, 5));
+    let sweep = paused.resume(&whole);
     assert_eq!((rows.done, rows.is_complete()), (7, false));
     assert_eq!(sweep.finish(), whole.distances(5, &(0..67), &(0..53)).unwrap());
 }

@@ -16,7 +16,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, GaitFinder, Layerer, Outcome, Pairs, Slot};
+use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -89,6 +89,7 @@ pub struct Session {
     gaits: GaitFinder,
     cycles: CycleFinder,
     layerer: Layerer,
+    registrar: Registrar,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -117,6 +118,7 @@ impl Session {
             gaits: GaitFinder::default(),
             cycles: CycleFinder::default(),
             layerer: Layerer::default(),
+            registrar: Registrar::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -361,10 +363,31 @@ impl Session {
             Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
             Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
             Key::GaitSpeed => Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps)),
+            Key::WarpFrom => Some(outcome.registered.as_ref()?.part_secs[0]),
+            Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
+            Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
         }
+    }
+
+    /// The distances that the Register lab looks at: those of the first pane, newer ones where it has no result for them.
+    #[must_use]
+    pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
+        if self.params.text(Key::Lab) != "register" {
+            return None;
+        }
+        let pane = self.panes.first()?;
+        let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered.as_ref());
+        let shown = shown.filter(|_| pane.problem.is_none()).map(|registered| &registered.map);
+        shown.or_else(|| self.registrar.last_map())
+    }
+
+    /// Pairs of frames of A and B, at A's rate, that must meet; none where they cannot be read.
+    #[must_use]
+    pub fn pins(&self) -> Vec<(usize, usize)> {
+        read_pins(self.params.text(Key::Pins)).unwrap_or_default()
     }
 
     /// The frame of a slot's clip at a time, at its own rate.
@@ -629,5 +652,7 @@ fn clip_info(entry: &Entry) -> ClipInfo {
 mod going_round_tests;
 #[cfg(test)]
 mod loading_tests;
+#[cfg(test)]
+mod registering_tests;
 #[cfg(test)]
 mod tests;

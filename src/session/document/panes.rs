@@ -8,8 +8,8 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, Slot, SpeedInputs};
-use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_params};
+use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs};
+use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -64,7 +64,7 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, or the file that is read.
+    /// What it is: `matching`, `registering`, or the file that is read.
     pub name: String,
     /// How much is done, 0 to 1.
     pub progress: f64,
@@ -81,6 +81,7 @@ pub(super) enum Inputs {
     Speed(SpeedInputs),
     Loop(LoopInputs),
     Layers(LayerInputs),
+    Register(RegisterInputs),
 }
 
 impl PartialEq for Inputs {
@@ -92,6 +93,7 @@ impl PartialEq for Inputs {
             (Self::Speed(a), Self::Speed(b)) => a == b,
             (Self::Loop(a), Self::Loop(b)) => a == b,
             (Self::Layers(a), Self::Layers(b)) => a == b,
+            (Self::Register(a), Self::Register(b)) => a == b,
             _ => false,
         }
     }
@@ -106,12 +108,27 @@ impl Session {
             }
             return true;
         }
+        if self.registrar.work() {
+            return true;
+        }
+        if self.registrar.is_ready() {
+            let held = self.held();
+            self.refresh();
+            self.go_on_from(&held);
+            return true;
+        }
         self.make_next()
     }
 
     /// Makes one built-in clip that was not needed yet, so that the library can tell what it is. `false` when all are made.
     pub(super) fn make_next(&mut self) -> bool {
-        let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && matches!(entry.origin, Origin::Preset | Origin::Made);
+        // What another lab made takes its time, and is made when it is used.
+        let is_quick = |entry: &Entry| match entry.origin {
+            Origin::Preset => true,
+            Origin::Made => recipe_params(&entry.id).is_some_and(|params| params.text(Key::Lab) == "make"),
+            _ => false,
+        };
+        let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && is_quick(entry);
         let next = self.library.entries().iter().find(unmade).map(|entry| entry.id.clone());
         next.is_some_and(|id| self.motion_of(&id).is_ok())
     }
@@ -125,7 +142,13 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
-        self.reading_jobs().chain(matching).collect()
+        let registering = self.registrar.progress().map(|progress| Job {
+            task: None,
+            name: "registering".into(),
+            progress: f64::from(progress),
+            size: None,
+        });
+        self.reading_jobs().chain(matching).chain(registering).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
@@ -194,7 +217,7 @@ impl Session {
         self.refresh_pane(&mut pane, params, widest_window(params, None));
         match (pane.outcome, pane.problem) {
             (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
-            (None, problem) => Err(problem.unwrap_or_default()),
+            (None, problem) => Err(problem.unwrap_or_else(|| format!("{} is being made.", recipe_name(params)))),
         }
     }
 
@@ -222,6 +245,7 @@ impl Session {
             None => vec![None],
         };
         let mut old = std::mem::take(&mut self.panes).into_iter();
+        self.registrar.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
@@ -239,8 +263,13 @@ impl Session {
         self.pairs.of(&a, &b)
     }
 
-    fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
+    /// What a pane's result depends on; `None` while that is still being computed.
+    fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
         let inputs = match params.text(Key::Lab) {
+            "register" => {
+                let pair = self.pair_of(params)?;
+                return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
+            }
             "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
             "make" => Ok(Inputs::Make(made_id(params))),
             "loop" => (self.motion_of(params.text(Key::A)))
@@ -252,9 +281,15 @@ impl Session {
                 _ => self.blender.inputs(&pair, params, match_window).map(Inputs::Blend),
             }),
         };
-        match inputs {
-            Ok(inputs) if pane.inputs.as_ref() == Some(&inputs) => {}
-            Ok(inputs) => {
+        inputs.map(Some)
+    }
+
+    fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
+        match self.inputs(params, match_window) {
+            // The last good result stays until there is a newer one.
+            Ok(None) => pane.problem = None,
+            Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
+            Ok(Some(inputs)) => {
                 let outcome = match &inputs {
                     Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
                     Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
@@ -262,6 +297,7 @@ impl Session {
                     Inputs::Speed(speed) => speed.run(),
                     Inputs::Loop(cycle) => cycle.run(),
                     Inputs::Layers(layers) => layers.run(),
+                    Inputs::Register(register) => register.run(),
                 };
                 match outcome {
                     Ok(outcome) => {

@@ -255,6 +255,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
             "loop(a:run,loop_from:0.5,loop_to:1.5,loop_method:linear)",
         ),
         ("lab=layers&mask=arms&foot_lock=on", "layers(a:walk,b:run,foot_lock:on,mask:arms)"),
+        ("lab=register&warp_weight=0.3", "register(a:walk,b:run,warp_weight:0.3)"),
         ("lab=speed&speed=2", "speed(a:walk,b:run,speed:2)"),
         (
             "lab=transition&method=cubic&mix_frame_a=70&mix_frame_b=20",

@@ -364,6 +364,7 @@ impl BlendInputs {
             cycle: None,
             retargeted: pair.retargeted.clone(),
             layer: None,
+            registered: None,
             metrics,
         })
     }

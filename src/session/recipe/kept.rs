@@ -22,6 +22,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "speed" => group == Group::Speed || key == Key::FootLock,
         "loop" => group == Group::Loop || matches!(key, Key::HalfLife | Key::FootLock),
         "layers" => group == Group::Layers || key == Key::FootLock,
+        "register" => group == Group::Register || key == Key::FootLock,
         _ => false,
     }
 }
@@ -31,6 +32,8 @@ fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
         Key::A => true,
         Key::B => lab != "loop",
+        // Looked at, and not made from.
+        Key::MaskColors => false,
         _ => belongs_to(key, lab),
     }
 }

@@ -305,6 +305,7 @@ impl LayerInputs {
                 fit: timed.fit,
                 has_no_steps: timed.has_no_steps,
             }),
+            registered: None,
             metrics,
         })
     }

@@ -179,6 +179,7 @@ impl LoopInputs {
             }),
             retargeted: None,
             layer: None,
+            registered: None,
             metrics,
         })
     }

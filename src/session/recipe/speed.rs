@@ -149,6 +149,7 @@ impl SpeedInputs {
             }),
             retargeted: pair.retargeted.clone(),
             layer: None,
+            registered: None,
             metrics,
         })
     }

@@ -493,6 +493,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         now: mock.now,
         fps: 120.0,
         tracks: &tracks,
+        stripes: &[],
         transition: Some(from..to),
         transition_editable: true,
         in_point: None,

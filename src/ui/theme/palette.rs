@@ -66,6 +66,8 @@ pub(crate) struct Palette {
     pub(crate) on_handle: Color32,
     /// Under raised things. Translucent.
     pub(crate) shadow: Color32,
+    /// Distances, from alike to far apart: what is alike has the ground's colour, so that curves stand out in the valleys.
+    pub(crate) heat: [Color32; 5],
     /// How much of a ghost's colour covers what is behind it, 0..=1.
     pub(crate) ghost_alpha: f32,
     /// Colours of the 3D stage that are not those of a panel.
@@ -142,6 +144,7 @@ pub(crate) const DARK: Palette = Palette {
     handle: hex(0xe8_eaf0),
     on_handle: hex(0x15_181e),
     shadow: wash(0x00_0000, 110),
+    heat: [hex(0x0c_0e13), hex(0x20_2b45), hex(0x47_4a80), hex(0x8f_6496), hex(0xd9_a394)],
     ghost_alpha: 0.42,
     stage: StagePalette {
         sky: hex(0x0f_1115),
@@ -186,6 +189,7 @@ pub(crate) const LIGHT: Palette = Palette {
     handle: hex(0x1b_2030),
     on_handle: hex(0xff_ffff),
     shadow: wash(0x1b_2030, 44),
+    heat: [hex(0xff_ffff), hex(0xd6_e0f2), hex(0xa8_a9d8), hex(0x8b_62a4), hex(0x55_2a5b)],
     ghost_alpha: 0.34,
     stage: StagePalette {
         sky: hex(0xf4_f6f9),

@@ -1,7 +1,7 @@
 //! How the timeline looks: bars, seconds, the playhead, what a loop leaves out.
 
 use super::super::paint::{Run, gradient_bar, line_of, put};
-use super::{Moment, TimeAxis, Timeline, Track};
+use super::{Moment, Part, Stripe, TimeAxis, Timeline, Track};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -114,6 +114,26 @@ pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui
         .animate_bool(scrub.id.with("hot"), scrub.hovered() || scrub.is_pointer_button_down_on());
     ui.painter()
         .circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
+}
+
+/// The feet of a motion: a bar wherever one stands.
+pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui: &Ui) {
+    let palette = palette_of(ui);
+    let color = if stripe.part == Part::Result {
+        palette.accent
+    } else {
+        stripe.part.fill(palette).0
+    };
+    let half = 0.5 * (row.span() - 1.0);
+    for (foot, stances) in stripe.feet.iter().enumerate() {
+        let top = row.min + foot as f32 * (half + 1.0);
+        let lane = Rect::from_x_y_ranges(axis.x, top..=top + half);
+        ui.painter().rect_filled(lane, 1.0, palette.track.gamma_multiply(0.5));
+        for stance in stances {
+            let bar = Rect::from_x_y_ranges(axis.x_of(stance.start)..=axis.x_of(stance.end.min(axis.duration)), lane.y_range());
+            ui.painter().rect_filled(bar, 1.0, color);
+        }
+    }
 }
 
 /// A moment: a small diamond that says its name under the pointer.

@@ -5,7 +5,7 @@ mod look;
 mod scrub;
 
 use self::handles::Handles;
-use self::look::{moment_ui, outside_loop, paint_playhead, paint_ruler, paint_track};
+use self::look::{moment_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track};
 use self::scrub::scrub_ui;
 use super::chip::Part;
 use super::curves::{Curves, curves_ui, hover_ui, key_ui};
@@ -36,6 +36,17 @@ pub(crate) struct Track<'a> {
     pub(crate) fade_out: f64,
 }
 
+/// When the feet of a motion stand: the left one in the upper line, the right one in the lower.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Stripe<'a> {
+    /// Whose feet: gives the colour.
+    pub(crate) part: Part,
+    /// What stands before them.
+    pub(crate) label: &'a str,
+    /// From and to, seconds: left, right.
+    pub(crate) feet: [Vec<Range<f64>>; 2],
+}
+
 /// A moment worth a mark: a foot planted, a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment<'a> {
@@ -58,6 +69,8 @@ pub(crate) struct Timeline<'a> {
     pub(crate) fps: f64,
     /// The clips, from top to bottom.
     pub(crate) tracks: &'a [Track<'a>],
+    /// When feet stand, below the clips, from top to bottom.
+    pub(crate) stripes: &'a [Stripe<'a>],
     /// When the transition begins and ends, in seconds.
     pub(crate) transition: Option<Range<f64>>,
     /// Its edges can be dragged.
@@ -136,7 +149,11 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         pitch,
         ..
     } = Heights::of(ui);
-    let bars = full_width(head + timeline.tracks.len() as f32 * pitch, ui);
+    // Of several panes each has less room.
+    let crowded = timeline.stripes.len() > 3;
+    let stripe_pitch = ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round();
+    let tracks_height = head + timeline.tracks.len() as f32 * pitch;
+    let bars = full_width(tracks_height + timeline.stripes.len() as f32 * stripe_pitch, ui);
     let curve_height = timeline
         .curves
         .as_ref()
@@ -180,6 +197,15 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
             put(ui.painter(), pos2(bars.left(), row.center()), Align2::LEFT_CENTER, label);
         }
         paint_track(track, row, axis, timeline.duration, ui);
+    }
+    for (index, stripe) in timeline.stripes.iter().enumerate() {
+        let y = bars.top() + tracks_height + index as f32 * stripe_pitch;
+        let row = Rangef::new(y, y + stripe_pitch - 2.0);
+        if gutter > 0.0 {
+            let label = line_of(&[Run::new(stripe.label, Type::Small, palette.muted)], gutter - space::S, ui);
+            put(ui.painter(), pos2(bars.left(), row.center()), Align2::LEFT_CENTER, label);
+        }
+        paint_stripe(stripe, row, axis, ui);
     }
     if let Some(curves) = &timeline.curves {
         curves_ui(curves, axis, plot, gutter > 0.0, ui);
@@ -252,6 +278,9 @@ impl Heights {
         }
     }
 }
+
+/// Height of a stripe of feet, at a desk.
+const STRIPE: f32 = 15.0;
 
 /// Height of the line with the seconds, at a desk.
 const RULER: f32 = 18.0;

@@ -1,0 +1,462 @@
+//! The Register lab: two clips laid on each other in time, blended or joined along it.
+
+mod map;
+mod pins;
+mod registrar;
+
+pub use map::DistanceMap;
+pub(in crate::session) use pins::read_pins;
+pub use pins::write_pins;
+pub(in crate::session) use registrar::Registrar;
+
+use super::pair::{Pair, with_feet};
+use super::rounds::fact;
+use super::{Outcome, Slot, Source, Transition};
+use crate::blend::{
+    self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
+};
+use crate::clip::{Clip, ContactOptions, Contacts};
+use crate::math::Planar;
+use crate::metrics::{Better, Metric, Subject, TransitionMetrics, foot_slides_cm};
+use crate::registration::Registration;
+use crate::session::motion::Motion;
+use crate::session::params::{Key, Params};
+use crate::skeleton::Side;
+use registrar::Found;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What a frame of a registered result is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beat {
+    /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or has not begun.
+    pub frames: [f64; 2],
+    /// How much of B there is, 0 to 1.
+    pub weight_b: f64,
+}
+
+/// How a result follows from the registration of A and B.
+#[derive(Clone, Debug)]
+pub struct Registered {
+    /// The distances that were looked at.
+    pub map: Arc<DistanceMap>,
+    /// Path and curves through them: those that the result follows, or the ones that it leaves out where it is plain.
+    pub registration: Arc<Registration>,
+    /// Both clips run at their own speed.
+    pub is_plain: bool,
+    /// What each frame of the result is made of.
+    pub beats: Vec<Beat>,
+    /// When the feet of the result stand, by its own motion.
+    pub steps: Contacts,
+    /// The part of A that can be registered, or that a join takes to go over: from and to, seconds in A.
+    pub part_secs: [f64; 2],
+}
+
+impl Registered {
+    fn fps(&self) -> f64 {
+        self.map.fps()
+    }
+
+    /// What the result is made of at a time, which may lie between two frames.
+    #[must_use]
+    pub fn beat_at(&self, secs: f64) -> Option<Beat> {
+        let last = self.beats.len().checked_sub(1)?;
+        // `max` takes NaN to 0.
+        let at = (secs * self.fps()).max(0.0).min(last as f64);
+        let (here, next) = (
+            self.beats.get(at.floor() as usize)?,
+            self.beats.get((at.floor() as usize + 1).min(last))?,
+        );
+        let mixed = |from: f64, to: f64| from + (to - from) * at.fract();
+        Some(Beat {
+            frames: [0, 1].map(|clip| mixed(here.frames[clip], next.frames[clip])),
+            weight_b: mixed(here.weight_b, next.weight_b),
+        })
+    }
+
+    /// The time of the result that comes nearest to a pair of frames.
+    #[must_use]
+    pub fn secs_near(&self, frames: [f64; 2]) -> Option<f64> {
+        let off = |beat: &Beat| (beat.frames[0] - frames[0]).hypot(beat.frames[1] - frames[1]);
+        let nearest = (self.beats.iter().enumerate()).min_by(|x, y| off(x.1).total_cmp(&off(y.1)));
+        nearest.map(|(frame, _)| frame as f64 / self.fps())
+    }
+
+    /// When a foot of a source stands, in the result's time; of the result itself where there is none.
+    #[must_use]
+    pub fn stances(&self, of: Option<Slot>, side: Side) -> Vec<Range<f64>> {
+        let secs = |frames: Range<usize>| frames.start as f64 / self.fps()..frames.end as f64 / self.fps();
+        let Some(slot) = of else {
+            return self.steps.intervals(side).into_iter().map(secs).collect();
+        };
+        let clip = usize::from(slot == Slot::B);
+        let contacts = &self.map.motions()[clip].contacts;
+        let flags = self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
+        let in_result = Contacts::from_flags([flags, Vec::new()]);
+        in_result.intervals(Side::BOTH[0]).into_iter().map(secs).collect()
+    }
+}
+
+fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
+    frame > -0.5 && contacts.planted(side, frame.round() as usize)
+}
+
+/// What is made of two registered clips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Made {
+    /// Both at once.
+    Blend {
+        /// The weight of B.
+        weight: f64,
+    },
+    /// A goes over into B.
+    Join {
+        /// Where it begins and ends, seconds in A.
+        part_secs: [Option<f64>; 2],
+    },
+}
+
+impl Made {
+    fn of(params: &Params) -> Self {
+        if params.text(Key::WarpMode) == "join" {
+            Self::Join {
+                part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
+            }
+        } else {
+            Self::Blend {
+                weight: params.number(Key::WarpWeight),
+            }
+        }
+    }
+}
+
+/// What a registered result depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(in crate::session) struct RegisterInputs {
+    pair: Arc<Pair>,
+    found: Arc<Found>,
+    made: Made,
+    is_plain: bool,
+    foot_lock: bool,
+}
+
+impl PartialEq for RegisterInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && Arc::ptr_eq(&self.found, &other.found)
+            && self.made == other.made
+            && (self.is_plain, self.foot_lock) == (other.is_plain, other.foot_lock)
+    }
+}
+
+/// A motion made of two, before its feet are held and measured.
+struct Draft {
+    clip: Clip,
+    /// Where the character stands.
+    frames: Vec<Planar>,
+    beats: Vec<Beat>,
+    contacts: Contacts,
+    /// The frames in which both clips are mixed.
+    mixed: Range<usize>,
+    /// Where B lies behind them.
+    world_from_b: Planar,
+}
+
+fn beat(instant: &Instant) -> Beat {
+    let of = |values: &[f64], at: usize| values.get(at).copied().unwrap_or_default();
+    Beat {
+        frames: [of(&instant.frames, 0), of(&instant.frames, 1)],
+        weight_b: of(&instant.weights, 1),
+    }
+}
+
+impl RegisterInputs {
+    fn sources(&self) -> [&blend::Source; 2] {
+        [0, 1].map(|clip| &**self.pair.profiles[clip].source())
+    }
+
+    fn contacts(&self) -> [&Contacts; 2] {
+        [&self.pair.a.contacts, &self.pair.incoming.contacts]
+    }
+
+    /// The frames of A that are registered: first and last.
+    fn span(&self) -> [f64; 2] {
+        let warp = self.found.registration.warp();
+        let [last_a, last_b] = self.sources().map(|source| source.clip().frames() as f64 - 1.0);
+        [
+            warp.first().0.max(0.0).max(warp.inverse(0.0)),
+            warp.last().0.min(last_a).min(warp.inverse(last_b)),
+        ]
+    }
+
+    fn blend(&self, weight: f64) -> Result<Draft, String> {
+        let [a, b] = self.sources();
+        let weight = WeightCurve::constant(weight);
+        let partner = Partner {
+            source: b,
+            registration: if self.is_plain {
+                &self.found.lockstep
+            } else {
+                &self.found.registration
+            },
+            weight: &weight,
+        };
+        let made = registered_blend(a, &[partner]).map_err(|error| sentence(&error))?;
+        let contacts = made.contacts(&self.contacts());
+        let RegisteredBlend { clip, instants, frames } = made;
+        Ok(Draft {
+            mixed: 0..clip.frames(),
+            clip,
+            frames,
+            beats: instants.iter().map(beat).collect(),
+            contacts,
+            world_from_b: Planar::IDENTITY,
+        })
+    }
+
+    /// From and to in frames of A: what was asked for, inside of what is registered; the middle half of it where nothing was.
+    fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], String> {
+        let [from, to] = self.span();
+        let fps = self.pair.a.clip.fps();
+        let asked = |secs: Option<f64>, share: f64| {
+            let frame = secs.map_or(from + share * (to - from), |secs| secs * fps);
+            (frame.round() as usize).clamp(from.ceil() as usize, (to.floor() as usize).max(from.ceil() as usize))
+        };
+        let [leave, arrive] = [asked(part_secs[0], 0.25), asked(part_secs[1], 0.75)];
+        if leave + 2 > arrive {
+            return Err(format!(
+                "The join begins at {:.2} s and ends at {:.2} s of A, of which {:.2} to {:.2} s are registered: move its end behind its beginning.",
+                leave as f64 / fps,
+                arrive as f64 / fps,
+                from / fps,
+                to / fps
+            ));
+        }
+        Ok([leave, arrive])
+    }
+
+    fn join(&self, [leave, arrive]: [usize; 2]) -> Result<Draft, String> {
+        let [a, b] = self.sources();
+        let [contacts_a, contacts_b] = self.contacts();
+        let warp = self.found.registration.warp();
+        let law = WeightLaw::Smooth;
+        let (joined, during, contacts) = if self.is_plain {
+            let enter = (warp.at(leave as f64).round().max(0.0)) as usize;
+            let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
+            let options = DissolveOptions {
+                window,
+                law,
+                ..DissolveOptions::default()
+            };
+            let joined = dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
+            let beat = |p: usize| Beat {
+                frames: [(leave + p) as f64, (enter + p) as f64],
+                weight_b: 1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64),
+            };
+            let during: Vec<Beat> = (0..joined.transition.len()).map(beat).collect();
+            let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
+            (joined, during, contacts)
+        } else {
+            let made = registered_join(a, b, &self.found.registration, leave, arrive, law).map_err(|error| sentence(&error))?;
+            let contacts = made.contacts(contacts_a, contacts_b);
+            (made.joined, made.during.iter().map(beat).collect(), contacts)
+        };
+        let before = (0..leave).map(|frame| Beat {
+            frames: [frame as f64, warp.at(frame as f64)],
+            weight_b: 0.0,
+        });
+        let last = during.last().map_or([arrive as f64, 0.0], |last| last.frames);
+        let left = joined.clip.frames().saturating_sub(joined.transition.end);
+        let after = (1..=left).map(|step| {
+            let in_b = last[1] + step as f64;
+            let in_a = if self.is_plain { last[0] + step as f64 } else { warp.inverse(in_b) };
+            Beat {
+                frames: [in_a, in_b],
+                weight_b: 1.0,
+            }
+        });
+        Ok(Draft {
+            beats: before.chain(during).chain(after).collect(),
+            clip: joined.clip,
+            frames: joined.frames,
+            contacts,
+            mixed: joined.transition,
+            world_from_b: joined.world_from_b,
+        })
+    }
+
+    /// The blend or the join.
+    pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
+        let pair = &self.pair;
+        let fps = pair.a.clip.fps();
+        let (draft, part, is_join) = match self.made {
+            Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
+            Made::Join { part_secs } => {
+                let part = self.part(part_secs)?;
+                (self.join(part)?, part.map(|frame| frame as f64), true)
+            }
+        };
+        let Draft {
+            clip: free,
+            frames,
+            beats,
+            contacts,
+            mixed,
+            world_from_b,
+        } = draft;
+        let roles = pair.a.roles.clone();
+        let sign = if is_join { "→" } else { "+" };
+        let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), pair.b.clip.name())));
+        let clip = with_feet(&free, &roles, &contacts, self.foot_lock)?;
+        let distance_cm = mean(
+            beats
+                .get(mixed.clone())
+                .unwrap_or_default()
+                .iter()
+                .filter_map(|beat| self.found.map.cm_at(beat.frames)),
+        );
+        let secs = |frame: usize| frame as f64 / fps;
+        let entered = beats.get(mixed.start).map_or(0.0, |beat| beat.frames[1] / fps);
+        let left = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1] / fps);
+        let transition = is_join.then(|| Transition {
+            start_secs: secs(mixed.start),
+            end_secs: secs(mixed.end),
+            leave_a_secs: secs(mixed.start),
+            enter_b_secs: entered,
+            window_frames: mixed.len(),
+            distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
+        });
+        let metrics = self.measured(&clip, &free, &beats, &mixed, distance_cm);
+        let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        };
+        let sources = vec![
+            source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            source(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
+        ];
+        Ok(Outcome {
+            registered: Some(Arc::new(Registered {
+                map: Arc::clone(&self.found.map),
+                registration: Arc::clone(&self.found.registration),
+                is_plain: self.is_plain,
+                beats,
+                steps: Contacts::detect(&clip, &roles, &ContactOptions::default()),
+                part_secs: part.map(|frame| frame / fps),
+            })),
+            motion: Arc::new(Motion {
+                clip,
+                roles,
+                contacts,
+                ground_frames: frames,
+            }),
+            sources,
+            transition,
+            cycle: None,
+            retargeted: pair.retargeted.clone(),
+            layer: None,
+            metrics,
+        })
+    }
+
+    /// How far feet slide in the frames that are mixed while they stand in A or in B. A stance counts as much as its clip is in the result.
+    fn slide_cm(&self, clip: &Clip, beats: &[Beat], mixed: &Range<usize>) -> Option<f64> {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for (of, contacts) in self.contacts().into_iter().enumerate() {
+            let flags = Side::BOTH.map(|side| {
+                let frames = beats.iter().enumerate();
+                frames
+                    .map(|(frame, beat)| mixed.contains(&frame) && stands(contacts, side, beat.frames[of]))
+                    .collect()
+            });
+            for (stance, slide) in foot_slides_cm(clip, &self.pair.a.roles, &Contacts::from_flags(flags)) {
+                let of_b = mean_weight_b(beats.get(stance).unwrap_or_default());
+                let share = if of == 1 { of_b } else { 1.0 - of_b };
+                sum += share * slide;
+                weight += share;
+            }
+        }
+        (weight > 0.0).then(|| sum / weight)
+    }
+
+    /// How far apart the mixed frames are, what feet do where the heavier clip stands, and the seams.
+    fn measured(&self, clip: &Clip, free: &Clip, beats: &[Beat], mixed: &Range<usize>, distance_cm: Option<f64>) -> Vec<Metric> {
+        let [a, b] = &self.pair.profiles;
+        let roles = &self.pair.a.roles;
+        let slide = |clip: &Clip| self.slide_cm(clip, beats, mixed);
+        let lower = |id, label, value, unit, help| Metric {
+            id,
+            label,
+            value,
+            unit,
+            better: Better::Lower,
+            help,
+        };
+        let mut metrics = vec![
+            lower(
+                "apart_cm",
+                "Distance",
+                distance_cm,
+                "cm",
+                "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
+            ),
+            lower(
+                "skate_mean_cm",
+                "Foot slide",
+                slide(clip),
+                "cm",
+                "How far a foot slides in the result while it stands in A or in B: the mean of all stances, each with its clip's weight.",
+            ),
+        ];
+        if self.foot_lock {
+            metrics.push(Metric {
+                value: slide(free),
+                ..fact(
+                    "skate_before_cm",
+                    "Foot slide before the lock",
+                    0.0,
+                    "cm",
+                    "The same without the foot lock.",
+                )
+            });
+        }
+        let handover = beats.iter().position(|beat| beat.weight_b > 0.5).unwrap_or(usize::MAX);
+        let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
+        let found = TransitionMetrics::measure(&Subject {
+            result: clip,
+            start: mixed.start,
+            end: mixed.end,
+            handover,
+            enter: (behind.max(0.0).round() as usize).saturating_sub(mixed.len()),
+            a,
+            b,
+            roles,
+            ground_m: 0.0,
+        });
+        // The other numbers ask what a source does in the same frame, which a bent clock does not have. A weight that stays has no seam.
+        let is_join = matches!(self.made, Made::Join { .. });
+        let of_these = |id| id == "penetration_cm" || (is_join && id == "seam_dps");
+        metrics.extend(found.list().into_iter().filter(|metric| of_these(metric.id)));
+        metrics
+    }
+}
+
+/// An error as a sentence.
+fn sentence(error: &impl std::fmt::Display) -> String {
+    let words = error.to_string();
+    let mut letters = words.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+fn mean_weight_b(beats: &[Beat]) -> f64 {
+    mean(beats.iter().map(|beat| beat.weight_b)).unwrap_or_default()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0_usize), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / count as f64)
+}

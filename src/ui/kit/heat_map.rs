@@ -1,0 +1,303 @@
+//! How far apart every moment of one clip is from every moment of another: a field of colours with curves and pins on it.
+
+use super::paint::{Run, focus_ring, line_of, put};
+use super::timeline::nice_step;
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{
+    Align2, Color32, CornerRadius, CursorIcon, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextureId, Ui,
+    WidgetInfo, pos2, vec2,
+};
+use std::ops::Range;
+
+/// A curve over both times, seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MapCurve<'a> {
+    /// Its points: time in the first clip, time in the second.
+    pub(crate) points: &'a [[f64; 2]],
+    /// Its colour.
+    pub(crate) color: Color32,
+    /// Its width, points.
+    pub(crate) width: f32,
+    /// Broken into dashes.
+    pub(crate) dashed: bool,
+}
+
+/// When the feet of one clip stand, left and right, seconds.
+pub(crate) type Feet = [Vec<Range<f64>>; 2];
+
+/// All that the map shows. The first clip's time runs to the right, the second's upwards.
+#[derive(Clone, Debug)]
+pub(crate) struct HeatMap<'a> {
+    /// The accessible name.
+    pub(crate) label: &'a str,
+    /// The colours, of the part `field` of both times; none while they are unknown.
+    pub(crate) texture: Option<TextureId>,
+    /// From and to of what the texture shows, of both clips, seconds.
+    pub(crate) field: [[f64; 2]; 2],
+    /// How long both clips are, seconds.
+    pub(crate) spans: [f64; 2],
+    /// The names of both axes.
+    pub(crate) names: [&'a str; 2],
+    /// When feet stand.
+    pub(crate) feet: &'a [Feet; 2],
+    /// Curves, the most important last.
+    pub(crate) curves: &'a [MapCurve<'a>],
+    /// Points that hold a curve, seconds.
+    pub(crate) pins: &'a [[f64; 2]],
+    /// What is shown now, seconds.
+    pub(crate) now: Option<[f64; 2]>,
+}
+
+/// What was asked of the map. Times are in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum HeatMapEvent {
+    /// The pointer is here.
+    Hover([f64; 2]),
+    /// Show this.
+    Seek([f64; 2]),
+    /// A pin is wanted here; if it was somewhere else until now, it moves from there.
+    Pin {
+        /// Where it was.
+        from: Option<[f64; 2]>,
+        /// Where it is wanted.
+        to: [f64; 2],
+    },
+    /// The pin is taken away.
+    Unpin([f64; 2]),
+    /// The pin was let go: what was done since it was taken is one step.
+    Settled,
+}
+
+/// Where times lie on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axes {
+    rect: Rect,
+    spans: [f64; 2],
+}
+
+impl Axes {
+    fn at(&self, secs: [f64; 2]) -> Pos2 {
+        let share = |axis: usize| (secs[axis] / self.spans[axis].max(1e-9)) as f32;
+        pos2(
+            self.rect.left() + share(0) * self.rect.width(),
+            self.rect.bottom() - share(1) * self.rect.height(),
+        )
+    }
+
+    fn secs(&self, pos: Pos2) -> [f64; 2] {
+        let x = f64::from((pos.x - self.rect.left()) / self.rect.width().max(1.0));
+        let y = f64::from((self.rect.bottom() - pos.y) / self.rect.height().max(1.0));
+        [x.clamp(0.0, 1.0) * self.spans[0], y.clamp(0.0, 1.0) * self.spans[1]]
+    }
+}
+
+/// Room beside the field for the stripes of the feet, and for the seconds.
+const STRIPES: f32 = 12.0;
+const SECONDS: f32 = 16.0;
+/// A pin is taken hold of within this distance, points.
+const REACH: f32 = 11.0;
+/// A pin that is dragged this far out of the field is taken away, points.
+const OUT: f32 = 14.0;
+
+/// Draws the map as wide as there is room, at most `most_height` points high. Press to go there, drag to set or move a pin, drag it out or double-click it
+/// to take it away.
+pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> Vec<HeatMapEvent> {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let scale = theme.scale();
+    let (stripes, seconds) = ((STRIPES * scale).round(), (SECONDS * scale).round());
+    let margin = vec2(seconds + stripes + 4.0, seconds + stripes);
+    let width = ui.available_width() - margin.x;
+    // As high as the times ask for, within reason: equal speeds are a diagonal.
+    let wanted = width * (map.spans[1] / map.spans[0].max(1e-9)) as f32;
+    let height = wanted
+        .clamp(0.55 * width, 1.1 * width)
+        .min(most_height - margin.y)
+        .max(60.0)
+        .round();
+    let (_, whole) = ui.allocate_space(vec2(ui.available_width(), height + margin.y));
+    let field = Rect::from_min_size(pos2(whole.left() + margin.x, whole.top()), vec2(width, height));
+    let axes = Axes {
+        rect: field,
+        spans: map.spans,
+    };
+    let id = ui.make_persistent_id(map.label);
+    let response = ui.interact(field, id, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, map.label));
+    let events = events(map, &axes, &response, ui);
+
+    let painter = ui.painter_at(field.expand(1.0));
+    painter.rect_filled(field, 0.0, palette.heat[4].lerp_to_gamma(palette.heat[0], 0.8));
+    if let Some(texture) = map.texture {
+        let [[from_a, to_a], [from_b, to_b]] = map.field;
+        let place = Rect::from_two_pos(axes.at([from_a, from_b]), axes.at([to_a, to_b]));
+        painter.image(texture, place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+    }
+    for curve in map.curves {
+        let points: Vec<Pos2> = curve.points.iter().map(|&secs| axes.at(secs)).collect();
+        let stroke = Stroke::new(curve.width * scale, curve.color);
+        if curve.dashed {
+            painter.extend(Shape::dashed_line(&points, stroke, 4.0 * scale, 4.0 * scale));
+        } else {
+            painter.add(Shape::line(points, stroke));
+        }
+    }
+    if let Some(now) = map.now {
+        let at = axes.at(now);
+        let hair = Stroke::new(theme.hairline(), palette.handle.gamma_multiply(0.45));
+        painter.vline(at.x, field.y_range(), hair);
+        painter.hline(field.x_range(), at.y, hair);
+        painter.circle(at, 4.0 * scale, palette.handle, Stroke::new(1.5, palette.on_handle));
+    }
+    for &pin in map.pins {
+        let at = axes.at(pin);
+        painter.circle(at, 5.0 * scale, palette.warning, Stroke::new(1.5 * scale, palette.on_handle));
+    }
+    if let (Some(pos), false) = (response.hover_pos(), response.dragged()) {
+        let hair = Stroke::new(theme.hairline(), palette.text.gamma_multiply(0.35));
+        painter.vline(pos.x, field.y_range(), hair);
+        painter.hline(field.x_range(), pos.y, hair);
+    }
+    ui.painter()
+        .rect_stroke(field, 0.0, Stroke::new(theme.hairline(), palette.line_strong), StrokeKind::Outside);
+    sides_ui(map, &axes, stripes, ui);
+    focus_ring(field, radius::S, &response, ui);
+    events
+}
+
+/// The stripes of the feet and the seconds: of the first clip below the field, of the second to its left.
+fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
+    let palette = palette_of(ui);
+    let scale = theme_of(ui).scale();
+    let field = axes.rect;
+    let thick = (0.5 * (stripes - 4.0)).floor();
+    for (clip, color) in [(0, palette.a), (1, palette.b)] {
+        for (foot, stances) in map.feet[clip].iter().enumerate() {
+            let lane = 2.0 + foot as f32 * (thick + 1.0);
+            for stance in stances {
+                let ends = [stance.start, stance.end].map(|secs| axes.at([secs.min(map.spans[0]), secs.min(map.spans[1])]));
+                let bar = if clip == 0 {
+                    Rect::from_x_y_ranges(
+                        ends[0].x..=ends[1].x,
+                        Rangef::new(field.bottom() + lane, field.bottom() + lane + thick),
+                    )
+                } else {
+                    Rect::from_x_y_ranges(Rangef::new(field.left() - lane - thick, field.left() - lane), ends[1].y..=ends[0].y)
+                };
+                ui.painter().rect_filled(bar, 1.0, color);
+            }
+        }
+    }
+    for clip in [0, 1] {
+        let length = if clip == 0 { field.width() } else { field.height() };
+        let step = nice_step(map.spans[clip], f64::from(length / (44.0 * scale)));
+        let ink = [palette.a_ink, palette.b_ink][clip];
+        for mark in 0..=(map.spans[clip] / step) as usize {
+            let secs = mark as f64 * step;
+            let words = if mark == 0 { map.names[clip].to_owned() } else { format!("{secs}") };
+            let color = if mark == 0 { ink } else { palette.muted };
+            let galley = line_of(&[Run::new(&words, Type::Small, color)], 60.0, ui);
+            let at = axes.at([secs, secs]);
+            if clip == 0 {
+                let anchor = if mark == 0 { Align2::LEFT_TOP } else { Align2::CENTER_TOP };
+                put(ui.painter(), pos2(at.x, field.bottom() + stripes), anchor, galley);
+            } else {
+                let anchor = if mark == 0 { Align2::RIGHT_BOTTOM } else { Align2::RIGHT_CENTER };
+                put(ui.painter(), pos2(field.left() - stripes - 2.0, at.y), anchor, galley);
+            }
+        }
+    }
+}
+
+/// The pin that is held, where it was last.
+#[derive(Clone, Copy, Debug)]
+struct Held(Option<[f64; 2]>);
+
+fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<HeatMapEvent> {
+    let mut events = Vec::new();
+    let held_id: Id = response.id.with("held pin");
+    let near = |pos: Pos2| {
+        let off = |pin: &&[f64; 2]| axes.at(**pin).distance(pos);
+        let nearest = map.pins.iter().min_by(|x, y| off(x).total_cmp(&off(y)));
+        nearest.copied().filter(|pin| axes.at(*pin).distance(pos) <= REACH)
+    };
+    let reach = near(response.interact_pointer_pos().or(response.hover_pos()).unwrap_or(Pos2::ZERO));
+    if response.hovered() {
+        ui.ctx()
+            .set_cursor_icon(if reach.is_some() { CursorIcon::Grab } else { CursorIcon::Crosshair });
+    }
+    if response.drag_started() {
+        let origin = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
+        ui.data_mut(|data| data.insert_temp(held_id, Held(origin.and_then(near))));
+    }
+    if let (true, Some(pos)) = (response.dragged(), response.interact_pointer_pos()) {
+        let Held(from) = ui.data(|data| data.get_temp(held_id)).unwrap_or(Held(None));
+        let to = axes.secs(pos);
+        let stays = axes.rect.expand(OUT).contains(pos);
+        match (stays, from) {
+            (true, _) if from != Some(to) => {
+                events.push(HeatMapEvent::Pin { from, to });
+                ui.data_mut(|data| data.insert_temp(held_id, Held(Some(to))));
+            }
+            (false, Some(from)) => {
+                events.push(HeatMapEvent::Unpin(from));
+                ui.data_mut(|data| data.insert_temp(held_id, Held(None)));
+            }
+            _ => {}
+        }
+        events.push(HeatMapEvent::Hover(to));
+    } else if let Some(pos) = response.hover_pos() {
+        events.push(HeatMapEvent::Hover(axes.secs(pos)));
+    }
+    if response.drag_stopped() {
+        events.push(HeatMapEvent::Settled);
+    }
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+    if let Some(pos) = clicked {
+        match near(pos) {
+            Some(pin) if response.double_clicked() => events.extend([HeatMapEvent::Unpin(pin), HeatMapEvent::Settled]),
+            Some(pin) => events.push(HeatMapEvent::Seek(pin)),
+            None => events.push(HeatMapEvent::Seek(axes.secs(pos))),
+        }
+    }
+    events
+}
+
+/// What the colours mean: from alike to far apart.
+pub(crate) fn heat_legend_ui(low: &str, high: &str, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let height = (14.0 * theme.scale()).round();
+    let row = super::paint::full_width(height, ui);
+    let low = line_of(&[Run::new(low, Type::Small, palette.muted)], row.width(), ui);
+    let high = line_of(&[Run::new(high, Type::Small, palette.muted)], row.width(), ui);
+    let left = put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, low).right() + space::S;
+    let right = put(ui.painter(), row.right_center(), Align2::RIGHT_CENTER, high).left() - space::S;
+    if right > left {
+        let bar = Rect::from_x_y_ranges(left..=right, row.center().y - 4.0..=row.center().y + 4.0);
+        let count = palette.heat.len() as f32 - 1.0;
+        let stops: Vec<(f32, Color32)> = palette
+            .heat
+            .iter()
+            .enumerate()
+            .map(|(k, &color)| (k as f32 / count, color))
+            .collect();
+        super::paint::gradient_bar(bar, 2.0, &stops, ui.painter());
+        let line = Stroke::new(theme.hairline(), palette.line_strong);
+        ui.painter().rect_stroke(bar, CornerRadius::same(2), line, StrokeKind::Outside);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_places_are_inverse_and_stay_inside() {
+        let axes = Axes {
+            rect: Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 100.0)),
+            spans: [4.0, 2.0],
+        };
+        assert_eq!(axes.at([1.0, 0.5]), pos2(60.0, 95.0));
+        assert_eq!(axes.secs(pos2(60.0, 95.0)), [1.0, 0.5]);
+        assert_eq!(axes.secs(pos2(900.0, 900.0)), [4.0, 0.0]);
+    }
+}

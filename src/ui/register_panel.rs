@@ -1,0 +1,327 @@
+//! The Register lab: the map of distances with the path on it, and what is made along it.
+
+use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, MapCurve};
+use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
+use super::out::Out;
+use super::param_row::{Detail, param_row_ui};
+use super::state::UiState;
+use super::text;
+use super::theme::{Palette, Type, palette_of, space, theme_of};
+use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
+use segue::session::{Command, DistanceMap, Key, Registered, Session, Slot, Value, write_pins};
+use segue::skeleton::Side;
+use std::sync::Arc;
+
+/// All rows of the lab.
+pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
+    pair_ui(session, out, ui);
+    map_ui(session, state, out, ui);
+    let params = session.params();
+    let plain = Detail::default();
+    param_row_ui(Key::WarpWith, &plain, session, out, ui);
+    let on = session.compare().is_some_and(|compare| compare.key == Key::WarpWith);
+    if kit::button_ui(Button::new(text::REGISTERED_AND_PLAIN).selected(on), ui).clicked() {
+        compare_warps(session, out);
+    }
+    ui.add_space(space::XS);
+    param_row_ui(Key::WarpMode, &plain, session, out, ui);
+    let modes = session.compare().filter(|compare| compare.key == Key::WarpMode);
+    let shown = |mode: &str| modes.is_some() || params.text(Key::WarpMode) == mode;
+    if shown("blend") {
+        param_row_ui(Key::WarpWeight, &plain, session, out, ui);
+        compare_ui(Key::WarpWeight, session, out, ui);
+    }
+    if shown("join") {
+        let last = |slot| {
+            let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
+            motion.map(|motion| motion.clip.duration_secs())
+        };
+        let detail = Detail {
+            max: last(Slot::A),
+            ..Detail::default()
+        };
+        param_row_ui(Key::WarpFrom, &detail, session, out, ui);
+        param_row_ui(Key::WarpTo, &detail, session, out, ui);
+    }
+    param_row_ui(Key::FootLock, &plain, session, out, ui);
+    ui.add_space(space::S);
+    kit::section_header_ui(text::REGISTRATION, ui);
+    let fps = session.distance_map().map_or(60.0, |map| map.fps());
+    let window = Detail {
+        secondary: format!("{:.2} s", params.number(Key::RegistrationWindow) / fps),
+        ..Detail::default()
+    };
+    param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
+    param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
+    param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
+    ui.label(RichText::new(Key::Ends.param().label).font(theme_of(ui).font(Type::Label)));
+    param_row_ui(Key::Ends, &plain, session, out, ui);
+    if params.text(Key::Ends) == "free" {
+        param_row_ui(Key::EndSlack, &plain, session, out, ui);
+    }
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// The timewarp beside none, or back to one pane.
+pub(super) fn compare_warps(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::WarpWith);
+    let query = if on { "" } else { "warp_with:registered,plain" };
+    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+}
+
+/// The map, its legend, and what is known of the pair under the pointer, else of the one that is shown.
+fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let job = session.jobs().into_iter().find(|job| job.name == "registering");
+    let waits = job.map(|job| format!("{}… {:.0} %", text::COMPARING, 100.0 * job.progress));
+    let Some(map) = session.distance_map() else {
+        note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);
+        return;
+    };
+    let picture = picture_of(map, ui);
+    let fps = map.fps();
+    let secs = |frames: [f64; 2]| frames.map(|frame| frame / fps);
+    let spans = [0, 1].map(|clip: usize| map.motions()[clip].clip.duration_secs());
+    let matrix = map.matrix();
+    let (first, last) = (
+        secs(map.pair_of((0, 0))),
+        secs(map.pair_of((matrix.rows().saturating_sub(1), matrix.columns().saturating_sub(1)))),
+    );
+    // A cell is as wide as the frames from one to the next.
+    let half = 0.5 * matrix.stride() as f64 / fps;
+    let field = [0, 1].map(|clip| [first[clip] - half, last[clip] + half]);
+    let feet = [0, 1].map(|clip: usize| feet_of(map, clip));
+    let registered: Vec<&Registered> = (session.panes().iter())
+        .filter_map(|pane| pane.outcome.as_ref()?.registered.as_deref())
+        .filter(|registered| same_clips(&registered.map, map))
+        .collect();
+    let lines = lines(&registered, palette);
+    let curves: Vec<MapCurve<'_>> = lines.iter().map(Line::curve).collect();
+    let pins = session.pins();
+    let pin_secs: Vec<[f64; 2]> = pins.iter().map(|&(a, b)| secs([a as f64, b as f64])).collect();
+    let now = (registered.first())
+        .and_then(|registered| registered.beat_at(session.now_secs()))
+        .map(|beat| beat.frames);
+    let inside = |frames: &[f64; 2]| (0..2).all(|clip| (0.0..=spans[clip]).contains(&secs(*frames)[clip]));
+    let view = HeatMap {
+        label: text::DISTANCES,
+        texture: picture.as_ref().map(|picture| picture.texture.id()),
+        field,
+        spans,
+        names: ["A, s", "B"],
+        feet: &feet,
+        curves: &curves,
+        pins: &pin_secs,
+        now: now.filter(inside).map(secs),
+    };
+    // All of it should be in sight at once.
+    let room = 0.85 * ui.clip_rect().height();
+    for event in kit::heat_map_ui(&view, room, ui) {
+        map_event(event, map, registered.first().copied(), &pins, state, out);
+    }
+    ui.add_space(space::XS);
+    if let Some(picture) = &picture {
+        let [low, high] = text::heat_ends(picture.range_cm);
+        kit::heat_legend_ui(&low, &high, ui);
+    }
+    let pair = state.hovered_pair.or(now.filter(inside));
+    let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
+    note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
+    if session.params().text(Key::Pins).is_empty() {
+        note_ui(text::MAP_HELP, palette.muted, ui);
+    } else {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(text::pins(pins.len())).font(theme_of(ui).font(Type::Label)));
+            if kit::button_ui(Button::new(text::REMOVE_PINS), ui).clicked() {
+                out.set_once(Key::Pins, Value::Text(String::new()));
+            }
+        });
+    }
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
+        note_ui(problem, palette.warning, ui);
+    }
+    ui.add_space(space::S);
+}
+
+fn same_clips(one: &DistanceMap, other: &DistanceMap) -> bool {
+    let pairs = one.motions().iter().zip(other.motions());
+    pairs.into_iter().all(|(a, b)| Arc::ptr_eq(a, b))
+}
+
+fn map_event(
+    event: HeatMapEvent,
+    map: &DistanceMap,
+    registered: Option<&Registered>,
+    pins: &[(usize, usize)],
+    state: &mut UiState,
+    out: &mut Out,
+) {
+    let frames = |secs: [f64; 2]| secs.map(|secs| secs * map.fps());
+    let pin = |secs: [f64; 2]| {
+        let [a, b] = frames(secs).map(|frame| frame.round().max(0.0) as usize);
+        (a, b)
+    };
+    let others = |taken: Option<[f64; 2]>| pins.iter().copied().filter(move |known| taken.map(pin) != Some(*known));
+    match event {
+        HeatMapEvent::Hover(at) => state.hovered_pair = Some(frames(at)),
+        HeatMapEvent::Seek(at) => {
+            if let Some(secs) = registered.and_then(|registered| registered.secs_near(frames(at))) {
+                out.set(Key::Play, Value::Switch(false));
+                out.commands.push(Command::Seek(secs));
+            }
+        }
+        HeatMapEvent::Pin { from, to } => {
+            let wanted: Vec<(usize, usize)> = others(from).chain([pin(to)]).collect();
+            out.set(Key::Pins, Value::Text(write_pins(&wanted)));
+        }
+        HeatMapEvent::Unpin(from) => {
+            let left: Vec<(usize, usize)> = others(Some(from)).collect();
+            out.set(Key::Pins, Value::Text(write_pins(&left)));
+        }
+        HeatMapEvent::Settled => out.commands.push(Command::Settle),
+    }
+}
+
+fn feet_of(map: &DistanceMap, clip: usize) -> Feet {
+    let contacts = &map.motions()[clip].contacts;
+    Side::BOTH.map(|side| {
+        let stances = contacts.intervals(side).into_iter();
+        stances
+            .map(|stance| stance.start as f64 / map.fps()..stance.end as f64 / map.fps())
+            .collect()
+    })
+}
+
+/// A curve on the map, with its points.
+struct Line {
+    points: Vec<[f64; 2]>,
+    color: Color32,
+    width: f32,
+    dashed: bool,
+}
+
+impl Line {
+    fn curve(&self) -> MapCurve<'_> {
+        MapCurve {
+            points: &self.points,
+            color: self.color,
+            width: self.width,
+            dashed: self.dashed,
+        }
+    }
+}
+
+/// Points of a curve: as many as a map is wide.
+const CURVE_POINTS: usize = 300;
+
+/// The path of the first pane, and what every pane follows: its timewarp, or none.
+fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let Some(first) = registered.first() else { return lines };
+    let fps = first.map.fps();
+    let secs = |frames: [f64; 2]| frames.map(|frame| frame / fps);
+    lines.push(Line {
+        points: first
+            .registration
+            .path()
+            .cells
+            .iter()
+            .map(|&cell| secs(first.map.pair_of(cell)))
+            .collect(),
+        color: palette.text.gamma_multiply(0.75),
+        width: 1.2,
+        dashed: false,
+    });
+    for registered in registered.iter().rev().filter(|registered| registered.is_plain) {
+        let points = registered.beats.iter().filter(|beat| beat.frames.iter().all(|frame| *frame >= 0.0));
+        lines.push(Line {
+            points: points.map(|beat| secs(beat.frames)).collect(),
+            color: palette.bad,
+            width: 1.6,
+            dashed: true,
+        });
+    }
+    for (index, registered) in registered.iter().enumerate().rev().filter(|(_, registered)| !registered.is_plain) {
+        let warp = registered.registration.warp();
+        let ((from, _), (to, _)) = (warp.first(), warp.last());
+        let points = (0..=CURVE_POINTS).map(|k| {
+            let at = from + (to - from) * k as f64 / CURVE_POINTS as f64;
+            secs([at, warp.at(at)])
+        });
+        lines.push(Line {
+            points: points.collect(),
+            color: palette.accent,
+            width: if index == 0 { 2.4 } else { 1.2 },
+            dashed: false,
+        });
+    }
+    lines
+}
+
+/// The colours of the map, on the graphics card.
+#[derive(Clone)]
+struct Picture {
+    map: Arc<DistanceMap>,
+    heat: [Color32; 5],
+    texture: TextureHandle,
+    /// The distances at the ends of the colours, centimetres.
+    range_cm: [f64; 2],
+}
+
+/// More texels than a map has points only cost time.
+const MOST_TEXELS: usize = 512;
+
+/// The picture of these distances, made when they or the theme have changed; none where there are none.
+fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
+    let heat = palette_of(ui).heat;
+    let id = Id::unique("distances");
+    let known: Option<Picture> = ui.data(|data| data.get_temp(id));
+    if let Some(known) = known
+        && Arc::ptr_eq(&known.map, map)
+        && known.heat == heat
+    {
+        return Some(known);
+    }
+    let matrix = map.matrix();
+    let factor = matrix.rows().max(matrix.columns()).div_ceil(MOST_TEXELS).max(1);
+    let pooled = matrix.pooled(factor);
+    let (rows, columns) = (pooled.rows(), pooled.columns());
+    if rows == 0 || columns == 0 {
+        return None;
+    }
+    let mut sorted: Vec<f32> = pooled.rms_m().to_vec();
+    sorted.sort_by(f32::total_cmp);
+    // The few worst pairs would take all contrast from the others.
+    let (low, high) = (sorted[0], sorted[(sorted.len() - 1) * 98 / 100]);
+    let span = (high - low).max(1e-6);
+    let mut pixels = Vec::with_capacity(rows * columns);
+    for column in (0..columns).rev() {
+        pixels.extend((0..rows).map(|row| {
+            let share = (pooled.get(row, column).unwrap_or(high) - low) / span;
+            heat_at(share.clamp(0.0, 1.0), &heat)
+        }));
+    }
+    let image = ColorImage::new([rows, columns], pixels);
+    let picture = Picture {
+        map: Arc::clone(map),
+        heat,
+        texture: ui.ctx().load_texture("distances", image, TextureOptions::LINEAR),
+        range_cm: [low, high].map(|rms| f64::from(rms) * map.cm_scale()),
+    };
+    ui.data_mut(|data| data.insert_temp(id, picture.clone()));
+    Some(picture)
+}
+
+fn heat_at(share: f32, heat: &[Color32; 5]) -> Color32 {
+    let at = share * (heat.len() - 1) as f32;
+    let index = (at as usize).min(heat.len() - 2);
+    heat[index].lerp_to_gamma(heat[index + 1], at - index as f32)
+}
+
+/// A sentence in small type.
+fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+}
