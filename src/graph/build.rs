@@ -341,7 +341,13 @@ impl MotionGraph {
     /// The strongly connected components, largest first (by frames, then by the first node): inside one, every node can be reached from every other.
     #[must_use]
     pub fn components(&self) -> Vec<Vec<NodeIndex>> {
-        let frames = |nodes: &[NodeIndex]| -> usize { nodes.iter().filter_map(|&node| self.graph.node_weight(node)).map(|s| s.end - s.start).sum() };
+        let frames = |nodes: &[NodeIndex]| -> usize {
+            nodes
+                .iter()
+                .filter_map(|&node| self.graph.node_weight(node))
+                .map(|s| s.end - s.start)
+                .sum()
+        };
         let mut components = kosaraju_scc(&self.graph);
         for nodes in &mut components {
             nodes.sort_unstable();
@@ -397,6 +403,8 @@ impl MotionGraph {
     #[must_use]
     pub fn node_at(&self, place: Place) -> Option<NodeIndex> {
         let holds = |stretch: &Stretch| stretch.clip == place.clip && (stretch.start..stretch.end).contains(&place.frame);
-        self.graph.node_indices().find(|&node| self.graph.node_weight(node).is_some_and(holds))
+        self.graph
+            .node_indices()
+            .find(|&node| self.graph.node_weight(node).is_some_and(holds))
     }
 }

@@ -1,8 +1,12 @@
 use super::{AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place};
+use crate::clip::jolts;
 use crate::math::Planar;
 
 /// More are not held: of these many the closest are kept.
 const MOST_CANDIDATES: usize = 400_000;
+
+/// A frame in which a joint's turning changes so many times as much as in all but one in a hundred frames is not left or entered.
+const MOST_JOLT: f32 = 4.0;
 
 /// A place where one may go from one stretch of motion into another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +35,8 @@ impl Candidates {
     /// The places that the options ask for: starts and ends of segments, or local minima of the distance; no farther than the threshold.
     ///
     /// A place is left out where one could not go: the window would cross the end of its clip, nothing of the outgoing clip would play before
-    /// it, or nothing of the incoming one behind it; and where one would jump less than the shortest jump inside a clip.
+    /// it, or nothing of the incoming one behind it; where one would jump less than the shortest jump inside a clip; and, of
+    /// minima, where a joint jolts.
     ///
     /// # Errors
     /// [`GraphError`] when the options do not fit the clips, or the distances are those of another window.
@@ -112,6 +117,8 @@ pub(super) struct Picker<'a> {
     set: &'a FrameSet,
     options: &'a GraphOptions,
     min_jump: usize,
+    /// Per clip and frame, how much the joints jolt.
+    jolts: Vec<Vec<f32>>,
     /// Metres of the clips' own body.
     threshold_m: f32,
     nearest_m: f32,
@@ -124,6 +131,7 @@ impl<'a> Picker<'a> {
         Self {
             set,
             options,
+            jolts: set.clips().iter().map(|source| jolts(source.clip())).collect(),
             min_jump: (options.min_jump_secs * set.fps()).round().max(1.0) as usize,
             // A little more than the threshold; what is above it is told by the rounded distance.
             threshold_m: ((options.edge_threshold_cm + 0.001) / set.cm_per_m()) as f32,
@@ -178,9 +186,13 @@ impl<'a> Picker<'a> {
         if !there && !back {
             return Ok(());
         }
-        self.nearest_m = self.nearest_m.min(distance);
         let distance_cm = self.set.rounded_cm(distance);
-        if distance_cm > self.options.edge_threshold_cm || !is_minimum() {
+        let is_near = distance_cm <= self.options.edge_threshold_cm;
+        if !(is_near || distance < self.nearest_m) || !is_minimum() {
+            return Ok(());
+        }
+        self.nearest_m = self.nearest_m.min(distance);
+        if !is_near {
             return Ok(());
         }
         let (leave, enter) = (a, b);
@@ -211,11 +223,16 @@ impl<'a> Picker<'a> {
             && leave.frame + window <= self.set.frames_of(leave.clip)
             && enter.frame + window < self.set.frames_of(enter.clip);
         fits && match self.options.construction {
-            Construction::Minima => true,
-            Construction::Segments { .. } => {
-                self.options.is_left_at(self.set, leave) && self.options.is_entered_at(self.set, enter)
-            }
+            Construction::Minima => self.is_calm(leave) && self.is_calm(enter),
+            Construction::Segments { .. } => self.options.is_left_at(self.set, leave) && self.options.is_entered_at(self.set, enter),
         }
+    }
+
+    /// No joint jolts around a frame: a capture that trembles has velocities there that nobody had, and a transition would carry them on.
+    fn is_calm(&self, place: Place) -> bool {
+        let around = place.frame.saturating_sub(1)..=place.frame;
+        let jolts = self.jolts.get(place.clip).and_then(|jolts| jolts.get(around));
+        jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= MOST_JOLT))
     }
 
     fn thin_out(&mut self) {

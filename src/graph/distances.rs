@@ -343,7 +343,11 @@ impl FrameDistances {
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
         let last = counts.len() - 1;
-        let scale = if bin_cm > 0.0 { (self.set.cm_per_m() / bin_cm) as f32 } else { f32::MAX };
+        let scale = if bin_cm > 0.0 {
+            (self.set.cm_per_m() / bin_cm) as f32
+        } else {
+            f32::MAX
+        };
         for block in &self.blocks {
             for row in 0..block.size().0 {
                 let (_, distances) = block.row(row);

@@ -42,7 +42,9 @@ pub enum GraphError {
         window: usize,
     },
     /// No clip is as long as a segment.
-    #[error("a segment of {segment} frames is longer than the longest clip ({longest} frames): lower it to {longest}, or add a longer clip")]
+    #[error(
+        "a segment of {segment} frames is longer than the longest clip ({longest} frames): lower it to {longest}, or add a longer clip"
+    )]
     SegmentTooLong {
         /// Frames of a segment.
         segment: usize,
@@ -69,7 +71,9 @@ pub enum GraphError {
         expected: usize,
     },
     /// No transition is good enough.
-    #[error("no two windows are closer than {threshold_cm} cm: raise the threshold above {nearest_cm:.2} cm, where the best transition lies")]
+    #[error(
+        "no two windows are closer than {threshold_cm} cm: raise the threshold above {nearest_cm:.2} cm, where the best transition lies"
+    )]
     NoTransition {
         /// The threshold, centimetres.
         threshold_cm: f64,
@@ -77,10 +81,14 @@ pub enum GraphError {
         nearest_cm: f64,
     },
     /// There is nowhere to go.
-    #[error("there are no two windows far enough from each other to go between: use shorter segments, a shorter minimum jump, or more clips")]
+    #[error(
+        "there are no two windows far enough from each other to go between: use shorter segments, a shorter minimum jump, or more clips"
+    )]
     NowhereToGo,
     /// The transitions lead to an end, each of them.
-    #[error("every way through the graph of {transitions} transitions comes to an end: raise the threshold above {threshold_cm} cm, or add clips")]
+    #[error(
+        "every way through the graph of {transitions} transitions comes to an end: raise the threshold above {threshold_cm} cm, or add clips"
+    )]
     NoCycle {
         /// Transitions in the graph.
         transitions: usize,

@@ -59,7 +59,11 @@ impl GroundPath {
     #[must_use]
     pub fn at(&self, metres: f64) -> DVec2 {
         let next = self.lengths.partition_point(|&length| length <= metres);
-        match (next.checked_sub(1).and_then(|last| Some((self.points.get(last)?, self.lengths.get(last)?))), self.points.get(next)) {
+        match (
+            next.checked_sub(1)
+                .and_then(|last| Some((self.points.get(last)?, self.lengths.get(last)?))),
+            self.points.get(next),
+        ) {
             (Some((from, start)), Some(to)) => from.lerp(*to, (metres - start) / from.distance(*to)),
             (Some((from, _)), None) => *from,
             (None, first) => first.copied().unwrap_or(DVec2::ZERO),

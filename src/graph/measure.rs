@@ -1,5 +1,5 @@
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
-use crate::clip::{Clip, Contacts, stillest_step};
+use crate::clip::{Clip, Contacts, stillest_step, turn_change};
 use crate::math::{Planar, quat, stats, wrap_angle};
 use crate::metrics::{Better, Metric};
 use crate::skeleton::{Roles, Side, WorldPose};
@@ -76,7 +76,9 @@ impl WalkProfile {
     /// The character's step into a frame of a clip; behind its end, the last one.
     fn step_into(&self, place: Place) -> Planar {
         let last = self.set.frames_of(place.clip).saturating_sub(1);
-        self.set.clip(place.clip).map_or(Planar::IDENTITY, |source| source.step_into(place.frame.min(last)))
+        self.set
+            .clip(place.clip)
+            .map_or(Planar::IDENTITY, |source| source.step_into(place.frame.min(last)))
     }
 }
 
@@ -87,14 +89,17 @@ pub struct Seam {
     pub at: usize,
     /// Frames that it takes.
     pub frames: usize,
-    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the clips, degrees.
+    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the clips or what they do in the very frame, degrees.
     pub turn_deg: f32,
     /// Likewise the largest change of a joint's angular velocity from one step to the next, degrees per second.
     pub change_dps: f32,
     /// The most yaw in 0.2 s or less that neither clip turns meanwhile, degrees.
     pub spin_deg: f64,
-    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips' own.
+    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips' own, or what they do in the very frame if that is
+    /// more: a jump that was recorded is none of the walk's.
     pub flash: f32,
+    /// The joint of it; none where it is the root's step.
+    pub flash_joint: Option<usize>,
     /// How far a foot slides in the worst stance that touches it, centimetres; none where no foot stands.
     pub skate_cm: Option<f32>,
     /// Seconds until the velocity has come 90 % of the way to the entered clip's; none where the two are alike.
@@ -120,7 +125,7 @@ struct Walked {
     steps: Vec<Planar>,
     turns: Vec<f32>,
     changes: Vec<f32>,
-    flashes: Vec<f32>,
+    flashes: Vec<(f32, Option<usize>)>,
     /// (first frame, last frame, slide in metres)
     stances: Vec<(usize, usize, f32)>,
 }
@@ -132,9 +137,17 @@ impl WalkMetrics {
         let fps = profile.set.fps();
         let walked = Walked::of(pieces, profile);
         let first = pieces.first().map_or(0, |piece| piece.start);
-        let seams = pieces.iter().filter_map(|piece| seam(piece, first, &walked, profile, fps)).collect::<Vec<_>>();
+        let seams = pieces
+            .iter()
+            .filter_map(|piece| seam(piece, first, &walked, profile, fps))
+            .collect::<Vec<_>>();
         let touches = |stance: &(usize, usize, f32)| seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1);
-        let own: Vec<f32> = walked.stances.iter().filter(|stance| !touches(stance)).map(|stance| stance.2 * 100.0).collect();
+        let own: Vec<f32> = walked
+            .stances
+            .iter()
+            .filter(|stance| !touches(stance))
+            .map(|stance| stance.2 * 100.0)
+            .collect();
         let mut seen = vec![false; graph.set().frames()];
         for stay in pieces.iter().map(|piece| piece.stay) {
             let number = |frame| graph.set().number(Place { clip: stay.clip, frame });
@@ -180,7 +193,14 @@ impl WalkMetrics {
         let skates = self.seams.iter().filter_map(|seam| seam.skate_cm).collect();
         let lags = self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
         [
-            metric("seams_per_min", "Seams", per_minute, "/min", neutral, "How many transitions a minute of the walk has."),
+            metric(
+                "seams_per_min",
+                "Seams",
+                per_minute,
+                "/min",
+                neutral,
+                "How many transitions a minute of the walk has.",
+            ),
             metric(
                 "walk_seam_deg",
                 "Seam angle",
@@ -266,7 +286,10 @@ impl Walked {
                     for points in &mut feet {
                         points.iter_mut().for_each(|point| *point = here_from_last.apply(*point));
                     }
-                    turned.first_mut().into_iter().for_each(|turn| *turn = here_from_last.apply_vector(*turn));
+                    turned
+                        .first_mut()
+                        .into_iter()
+                        .for_each(|turn| *turn = here_from_last.apply_vector(*turn));
                     for (_, _, slid) in stances.iter_mut().flatten() {
                         *slid = here_from_last.apply_vector(*slid);
                     }
@@ -278,12 +301,16 @@ impl Walked {
                 }
                 let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
                 let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
-                walked.step(before.as_ref(), &standing, rotations, root, &mut turned, profile);
+                let sources = Sources::of(piece, frame, &profile.set);
+                walked.step(before.as_ref(), (&standing, rotations, root), &mut turned, profile, &sources);
                 before = Some((standing, rotations.to_vec(), root));
                 piece.clip.world_pose_into(frame, &mut world);
                 let number = walked.steps.len() - 1;
                 for side in Side::BOTH {
-                    let now: Vec<Vec3> = points[side.index()].iter().map(|&(joint, point)| world.point(joint, point)).collect();
+                    let now: Vec<Vec3> = points[side.index()]
+                        .iter()
+                        .map(|&(joint, point)| world.point(joint, point))
+                        .collect();
                     let stands = profile.planted(shown(piece, frame), side);
                     let (feet, stance) = (&mut feet[side.index()], &mut stances[side.index()]);
                     match (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
@@ -301,7 +328,9 @@ impl Walked {
             }
         }
         let last = walked.steps.len().saturating_sub(1);
-        walked.stances.extend(stances.into_iter().flatten().map(|(first, most, _)| (first, last, most)));
+        walked
+            .stances
+            .extend(stances.into_iter().flatten().map(|(first, most, _)| (first, last, most)));
         walked
     }
 
@@ -309,26 +338,35 @@ impl Walked {
     fn step(
         &mut self,
         before: Option<&(Planar, Vec<Quat>, Vec3)>,
-        standing: &Planar,
-        rotations: &[Quat],
-        root: Vec3,
+        (standing, rotations, root): (&Planar, &[Quat], Vec3),
         turned: &mut Vec<Vec3>,
         profile: &WalkProfile,
+        sources: &Sources<'_>,
     ) {
-        let (mut turn_excess, mut change_excess, mut flash) = (0.0_f32, 0.0_f32, 0.0_f32);
+        let (mut turn_excess, mut change_excess, mut flash) = (0.0_f32, 0.0_f32, (0.0_f32, None));
         let mut step = Planar::IDENTITY;
         if let Some((stood, were, root_was)) = before {
             step = stood.inverse().after(standing);
-            flash = root.distance(*root_was) / profile.step.max(STILL_M);
+            flash.0 = root.distance(*root_was) / profile.step.max(STILL_M).max(sources.step());
             let turns: Vec<Vec3> = were.iter().zip(rotations).map(|(&from, &to)| turn(from, to)).collect();
             for (joint, turn) in turns.iter().enumerate() {
                 let (Some([p99, p999]), Some(change)) = (profile.turns.get(joint), profile.changes.get(joint)) else {
                     continue;
                 };
-                flash = flash.max(turn.length() / p999.max(STILL_RADIANS));
-                turn_excess = turn_excess.max(turn.length() - p99);
-                let changed = turned.get(joint).map_or(0.0, |before| before.distance(*turn));
-                change_excess = change_excess.max(changed - change);
+                let (length, changed) = (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
+                // What the clips do themselves is looked at only where it matters.
+                if length / p999.max(STILL_RADIANS) > flash.0 {
+                    let unusual = length / p999.max(STILL_RADIANS).max(sources.turn(joint));
+                    if unusual > flash.0 {
+                        flash = (unusual, Some(joint));
+                    }
+                }
+                if length - p99 > turn_excess {
+                    turn_excess = turn_excess.max(length - p99.max(sources.turn(joint)));
+                }
+                if changed - change > change_excess {
+                    change_excess = change_excess.max(changed - change.max(sources.change(joint)));
+                }
             }
             *turned = turns;
         }
@@ -336,6 +374,53 @@ impl Walked {
         self.turns.push(turn_excess);
         self.changes.push(change_excess);
         self.flashes.push(flash);
+    }
+}
+
+/// The frames of the clips that play in a frame of a walk: one, or two in a transition.
+struct Sources<'a>([Option<(&'a Clip, usize)>; 2]);
+
+impl<'a> Sources<'a> {
+    fn of(piece: &WalkPiece, frame: usize, set: &'a FrameSet) -> Self {
+        let clip = |place: Place| {
+            let clip = set.clip(place.clip)?.clip();
+            (place.frame < clip.frames()).then_some((clip.as_ref(), place.frame))
+        };
+        let entered = Place {
+            clip: piece.stay.clip,
+            frame: piece.stay.from + frame,
+        };
+        let left = piece.seam.filter(|seam| frame <= seam.frames).map(|seam| Place {
+            frame: seam.leave.frame + frame,
+            ..seam.leave
+        });
+        Self([clip(entered), left.and_then(clip)])
+    }
+
+    fn most(&self, of: impl Fn(&Clip, usize) -> Option<f32>) -> f32 {
+        let found = self.0.iter().flatten().filter_map(|&(clip, frame)| of(clip, frame));
+        found.fold(0.0, f32::max)
+    }
+
+    /// The root's step into the frame, metres.
+    fn step(&self) -> f32 {
+        self.most(|clip, frame| {
+            let roots = clip.root_translations();
+            Some(roots.get(frame.checked_sub(1)?)?.distance(*roots.get(frame)?))
+        })
+    }
+
+    /// A joint's turn in the step into the frame, radians.
+    fn turn(&self, joint: usize) -> f32 {
+        self.most(|clip, frame| {
+            let at = |frame: usize| clip.rotations(frame).get(joint).copied();
+            Some(turn(at(frame.checked_sub(1)?)?, at(frame)?).length())
+        })
+    }
+
+    /// How much that turn changes from the step before, radians.
+    fn change(&self, joint: usize) -> f32 {
+        self.most(|clip, frame| turn_change(clip, frame.checked_sub(1)?, joint))
     }
 }
 
@@ -368,6 +453,8 @@ fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile,
             [walked.steps[frame], source(of.leave), source(of.enter)]
         })
         .collect();
+    let flashes = walked.flashes.get(at..=end).unwrap_or_default().iter();
+    let (flash, flash_joint) = flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
     let stances = walked.stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
     Some(Seam {
         at,
@@ -375,7 +462,8 @@ fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile,
         turn_deg: most(&walked.turns).to_degrees(),
         change_dps: most(&walked.changes).to_degrees() * fps as f32,
         spin_deg: spin(&steps, (SPIN_SECS * fps).round().max(1.0) as usize).to_degrees(),
-        flash: most(&walked.flashes),
+        flash,
+        flash_joint,
         skate_cm: stances.map(|stance| stance.2 * 100.0).max_by(f32::total_cmp),
         lag_s: lag(&steps, fps),
     })

@@ -30,7 +30,7 @@ pub struct WeightOptions {
 impl Default for WeightOptions {
     fn default() -> Self {
         Self {
-            continuity: 0.8,
+            continuity: 0.95,
             law: DistanceLaw::Inverse,
         }
     }

@@ -129,9 +129,7 @@ impl PairTerms {
                 .div_ceil(stride)
                 .saturating_mul(target_frames.len().div_ceil(stride))
         };
-        check_pairs(pairs(stride), || {
-            (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1
-        })?;
+        check_pairs(pairs(stride), || (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1)?;
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
         let source = Arc::new(Cloud::new(source, source_frames, stride, &shares, level)?);
@@ -140,15 +138,7 @@ impl PairTerms {
     }
 
     /// Nothing is compared yet. The pairs are few enough.
-    fn of(
-        source: Arc<Cloud>,
-        target: Arc<Cloud>,
-        shares: Shares,
-        frame_weight: f64,
-        stride: usize,
-        band: usize,
-        triangle: bool,
-    ) -> Self {
+    fn of(source: Arc<Cloud>, target: Arc<Cloud>, shares: Shares, frame_weight: f64, stride: usize, band: usize, triangle: bool) -> Self {
         let width = target.groups() * LANES;
         let mut terms = Self {
             stride,
