@@ -63,7 +63,7 @@ fn graph(c: &mut Criterion) {
     group.bench_function("all pairs of 6,000 frames", |bench| bench.iter(terms));
     let all = terms();
     group.bench_function("a new window", |bench| {
-        bench.iter(|| all.distances(black_box(WINDOW)).expect("complete"))
+        bench.iter(|| all.distances(black_box(WINDOW)).expect("complete"));
     });
     let distances = all.distances(WINDOW).expect("complete");
     group.bench_function("a new threshold", |bench| {

@@ -220,12 +220,12 @@ impl MotionGraph {
                 frame: jump.leave.frame + made.departure(),
                 ..jump.leave
             };
-            if let (Some(&from), Some(&to)) = (by_end.get(&leaves), by_start.get(&arrives)) {
-                if ways_out[from.index()] < options.most_ways_out {
-                    ways_out[from.index()] += 1;
-                    made.graph.add_edge(from, to, Way::Jump(made.jumps.len()));
-                    made.jumps.push(jump);
-                }
+            if let (Some(&from), Some(&to)) = (by_end.get(&leaves), by_start.get(&arrives))
+                && ways_out[from.index()] < options.most_ways_out
+            {
+                ways_out[from.index()] += 1;
+                made.graph.add_edge(from, to, Way::Jump(made.jumps.len()));
+                made.jumps.push(jump);
             }
         }
         Ok(made)

@@ -284,7 +284,9 @@ impl Walked {
                 // What is known of the last piece is brought into this one: nothing is compared far from the origin.
                 if let Some(here_from_last) = next.take() {
                     for points in &mut feet {
-                        points.iter_mut().for_each(|point| *point = here_from_last.apply(*point));
+                        for point in points.iter_mut() {
+                            *point = here_from_last.apply(*point);
+                        }
                     }
                     turned
                         .first_mut()
@@ -313,15 +315,12 @@ impl Walked {
                         .collect();
                     let stands = profile.planted(shown(piece, frame), side);
                     let (feet, stance) = (&mut feet[side.index()], &mut stances[side.index()]);
-                    match (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
-                        (Some(step), Some((_, most, slid))) => {
-                            *slid += step;
-                            *most = most.max(slid.length());
-                        }
-                        _ => {
-                            walked.stances.extend(stance.take().map(|(first, most, _)| (first, number, most)));
-                            *stance = stands.then_some((number, 0.0, Vec3::ZERO));
-                        }
+                    if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
+                        *slid += step;
+                        *most = most.max(slid.length());
+                    } else {
+                        walked.stances.extend(stance.take().map(|(first, most, _)| (first, number, most)));
+                        *stance = stands.then_some((number, 0.0, Vec3::ZERO));
                     }
                     *feet = now;
                 }

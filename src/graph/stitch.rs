@@ -90,7 +90,7 @@ pub struct PieceSeam {
 pub struct Stitcher {
     set: Arc<FrameSet>,
     options: StitchOptions,
-    tail: Option<Tail>,
+    playing: Option<Tail>,
     made: usize,
 }
 
@@ -100,7 +100,7 @@ struct Tail {
     source: Source,
     /// The first of its frames that has not been given out.
     leave: usize,
-    world_from_tail: Planar,
+    world_from_here: Planar,
     /// The frame of its clip that it would show next.
     place: Place,
 }
@@ -112,7 +112,7 @@ impl Stitcher {
         Self {
             set,
             options: *options,
-            tail: None,
+            playing: None,
             made: 0,
         }
     }
@@ -129,7 +129,7 @@ impl Stitcher {
         let ahead = (AHEAD_SECS * self.set.fps()).round() as usize;
         let until = stay.to + ahead.max(graph.options().blend_window).min(frames - stay.to);
         let jump = stay.jump.and_then(|index| graph.jumps().get(index));
-        let (made, entered, world_from_piece, seam) = match (self.tail.take(), jump) {
+        let (made, entered, world_from_piece, seam) = match (self.playing.take(), jump) {
             (Some(tail), Some(jump)) => {
                 let from = stay.from.saturating_sub(1);
                 let incoming = part(source, from..until)?;
@@ -143,7 +143,7 @@ impl Stitcher {
                 (
                     joined.source,
                     tail.leave,
-                    tail.world_from_tail.after(&joined.tail_from_piece),
+                    tail.world_from_here.after(&joined.tail_from_piece),
                     Some(seam),
                 )
             }
@@ -163,10 +163,10 @@ impl Stitcher {
         };
         let tail = part(&made, kept..made.clip().frames())?;
         let renamed = tail.clip().as_ref().clone().with_name(name);
-        self.tail = Some(Tail {
+        self.playing = Some(Tail {
             source: tail.with_motion(renamed, tail.frames().to_vec()),
             leave: leave - kept,
-            world_from_tail: world_from_piece,
+            world_from_here: world_from_piece,
             place: Place {
                 clip: stay.clip,
                 frame: stay.to,
@@ -179,7 +179,7 @@ impl Stitcher {
     /// Where the walk would go on in its present clip; none before the first piece.
     #[must_use]
     pub fn place(&self) -> Option<Place> {
-        self.tail.as_ref().map(|tail| tail.place)
+        self.playing.as_ref().map(|tail| tail.place)
     }
 
     fn joined(&self, tail: &Tail, incoming: &Source, enter: usize) -> Result<Joined, GraphError> {
@@ -226,7 +226,7 @@ fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
     let (Some(here), Some(there)) = (tail.source.frames().get(tail.leave), incoming.frames().get(enter)) else {
         return Planar::IDENTITY;
     };
-    let turned = Planar::new(wrap_angle(-tail.world_from_tail.yaw), 0.0, 0.0);
+    let turned = Planar::new(wrap_angle(-tail.world_from_here.yaw), 0.0, 0.0);
     let shift = here.shift - turned.apply_ground(there.shift);
     Planar { shift, ..turned }
 }

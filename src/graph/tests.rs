@@ -1,11 +1,11 @@
 use super::*;
 use crate::blend::{Source, align_onto};
-use crate::clip::{ContactOptions, Contacts};
+use crate::clip::{Clip, ContactOptions, Contacts, JointTranslations};
 use crate::math::Planar;
 use crate::registration::fixtures::Walk;
 use crate::registration::rms_cm;
-use crate::skeleton::Roles;
-use glam::DVec2;
+use crate::skeleton::{Joint, Roles, Skeleton};
+use glam::{DVec2, Quat, Vec3};
 use petgraph::graph::NodeIndex;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -182,11 +182,10 @@ proptest! {
                 prop_assert!(here <= threshold && a.frame >= 1 && b.frame + window < set.frames_of(b.clip));
                 for (da, db) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1), (1, -1), (-1, 1)] {
                     let moved = |place: Place, by: i64| Place { frame: (place.frame as i64 + by) as usize, ..place };
-                    if a.frame as i64 + da >= 0 && b.frame as i64 + db >= 0 {
-                        if let Some(there) = distances.cm(moved(a, da), moved(b, db)) {
+                    if a.frame as i64 + da >= 0 && b.frame as i64 + db >= 0
+ && let Some(there) = distances.cm(moved(a, da), moved(b, db)) {
                             prop_assert!(there >= here, "{:?} {} {}", found, here, there);
-                        }
-                    }
+ }
                 }
             }
         }
@@ -460,7 +459,7 @@ fn a_clip_can_be_gone_to_and_what_was_seen_can_be_avoided() {
     assert!(!walker.go_to_clip(99));
     let unseen = |factor: f64| {
         let mut walker = self::walker(&graph, &weights, 4).with_visited_discount(factor).unwrap();
-        (0..300).for_each(|_| drop(walker.next_edge()));
+        assert!((0..300).all(|_| walker.next_edge().is_some()));
         walker.visits().iter().filter(|visits| **visits == 0).count()
     };
     assert!(unseen(0.3) < unseen(1.0), "{} {}", unseen(0.3), unseen(1.0));
@@ -630,4 +629,75 @@ fn pictures_and_histograms_count_every_pair() {
         .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
         .unwrap()
         .transform;
+}
+
+/// Distance, centimetres; clip and frame that are left; clip and frame that are entered.
+type GoldenJump = (f64, (usize, usize), (usize, usize));
+
+#[derive(serde::Deserialize)]
+struct Golden {
+    window: usize,
+    threshold_cm: f64,
+    min_jump: usize,
+    height: f64,
+    continuity: f64,
+    seed: u64,
+    clips: Vec<Vec<Vec<[f32; 3]>>>,
+    jumps: Vec<GoldenJump>,
+    nodes: Vec<(usize, usize, usize)>,
+    kept: Vec<(usize, usize, usize)>,
+    stays: Vec<(usize, usize, usize)>,
+}
+
+/// A clip whose joints hang from the root and go where they are told.
+fn points_as_clip(skeleton: &Arc<Skeleton>, frames: &[Vec<[f32; 3]>]) -> Arc<Source> {
+    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from(frame[joint]);
+    let roots: Vec<Vec3> = frames.iter().map(|frame| at(frame, 0)).collect();
+    let rotations = vec![Quat::IDENTITY; frames.len() * skeleton.len()];
+    let tracks = (1..skeleton.len()).map(|joint| JointTranslations {
+        joint,
+        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
+    });
+    let clip = Clip::new("points", Arc::clone(skeleton), 60.0, rotations, roots).unwrap();
+    let clip = clip.with_translations(tracks.collect()).unwrap();
+    Arc::new(Source::new(Arc::new(clip), &Roles::detect(skeleton)))
+}
+
+#[test]
+fn graph_and_walk_are_those_of_numpy() {
+    let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/graph.json")).unwrap();
+    let joint = |index: usize| Joint {
+        name: format!("p{index}"),
+        parent: (index > 0).then_some(0),
+        offset: Vec3::ZERO,
+        end_site: None,
+        channels: vec![],
+    };
+    let skeleton = Arc::new(Skeleton::new((0..4).map(joint).collect()).unwrap());
+    let sources = golden.clips.iter().map(|frames| points_as_clip(&skeleton, frames));
+    let set = Arc::new(FrameSet::new(sources.collect(), golden.height).unwrap());
+    let options = GraphOptions {
+        min_jump_secs: golden.min_jump as f64 / 60.0,
+        ..options(Construction::Minima, golden.window, golden.threshold_cm)
+    };
+    let graph = built(&set, &options).unwrap();
+    let pair = |place: Place| (place.clip, place.frame);
+    assert_eq!(graph.jumps().len(), golden.jumps.len());
+    for (jump, wanted) in graph.jumps().iter().zip(&golden.jumps) {
+        assert!((jump.distance_cm - wanted.0).abs() < 0.0021, "{jump:?} {wanted:?}");
+        assert_eq!((pair(jump.leave), pair(jump.enter)), (wanted.1, wanted.2));
+    }
+    let nodes = |graph: &MotionGraph| graph.graph().node_weights().map(|s| (s.clip, s.start, s.end)).collect::<Vec<_>>();
+    assert_eq!(nodes(&graph), golden.nodes);
+    let graph = Arc::new(graph.pruned().unwrap());
+    assert_eq!(nodes(&graph), golden.kept);
+    let weights = WeightOptions {
+        continuity: golden.continuity,
+        law: DistanceLaw::Inverse,
+    };
+    let mut walker = walker(&graph, &weights, golden.seed);
+    for wanted in &golden.stays {
+        let stay = walker.next_stay().unwrap();
+        assert_eq!((stay.clip, stay.from, stay.to), *wanted);
+    }
 }

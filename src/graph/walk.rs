@@ -123,12 +123,11 @@ impl Walker {
     /// The next edge; `None` in a dead end.
     pub fn next_edge(&mut self) -> Option<EdgeIndex> {
         let leads_from_here = |edge: &EdgeIndex| self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at);
-        let edge = match self.ahead.pop_front().filter(leads_from_here) {
-            Some(edge) => edge,
-            None => {
-                self.ahead.clear();
-                self.chosen()?
-            }
+        let edge = if let Some(edge) = self.ahead.pop_front().filter(leads_from_here) {
+            edge
+        } else {
+            self.ahead.clear();
+            self.chosen()?
         };
         let (_, to) = self.graph.graph.edge_endpoints(edge)?;
         if let Some(visits) = self.visits.get_mut(self.at.index()) {

@@ -57,9 +57,12 @@ impl Choices {
     /// # Errors
     /// [`GraphError::Setting`] when the continuity is not from 0 to 1, or σ not above 0.
     pub fn new(graph: &MotionGraph, options: &WeightOptions) -> Result<Self, GraphError> {
-        let setting = |what, value: f64, least: f64, most: f64| match (least..=most).contains(&value) {
-            true => Ok(()),
-            false => Err(GraphError::Setting { what, value, least, most }),
+        let setting = |what, value: f64, least: f64, most: f64| {
+            if (least..=most).contains(&value) {
+                Ok(())
+            } else {
+                Err(GraphError::Setting { what, value, least, most })
+            }
         };
         setting("a continuity", options.continuity, 0.0, 1.0)?;
         if let DistanceLaw::Exponential { sigma_cm } = options.law {
