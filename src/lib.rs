@@ -15,6 +15,7 @@ pub mod blend;
 pub mod clip;
 pub mod formats;
 pub mod gait;
+pub mod graph;
 pub mod math;
 pub mod metrics;
 pub mod path;

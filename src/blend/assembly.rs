@@ -23,7 +23,7 @@ impl Assembly {
     }
 
     /// Likewise for frames that are made of any number of clips.
-    pub(super) fn of<'a>(first: &Clip, clips: impl IntoIterator<Item = &'a Clip>, frames: usize) -> Self {
+    pub(crate) fn of<'a>(first: &Clip, clips: impl IntoIterator<Item = &'a Clip>, frames: usize) -> Self {
         let tracks = moving_joints_of(clips).into_iter().map(|joint| JointTranslations {
             joint,
             values: Vec::with_capacity(frames),

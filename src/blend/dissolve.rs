@@ -83,6 +83,17 @@ impl Source {
         }
     }
 
+    /// Another motion of the same body, carried by the same joint, where the character's frames are known.
+    #[must_use]
+    pub(crate) fn with_motion(&self, clip: Clip, frames: Vec<Planar>) -> Self {
+        Self {
+            clip: Arc::new(clip),
+            frames,
+            motion_root: self.motion_root,
+            weights: self.weights.clone(),
+        }
+    }
+
     /// The clip.
     #[must_use]
     pub fn clip(&self) -> &Arc<Clip> {

@@ -14,6 +14,7 @@
 
 mod align;
 mod cloud;
+mod clouds;
 mod curves;
 mod distance;
 #[cfg(test)]
@@ -22,18 +23,22 @@ mod path;
 mod path_error;
 mod points;
 mod pose;
+mod self_terms;
 mod sweep;
 mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
+pub use clouds::PointClouds;
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_path, path_in_corridor};
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
+pub use self_terms::{SelfSweep, SelfTerms, SymmetricDistances};
 pub use sweep::{PausedSweep, Sweep};
+pub(crate) use terms::MOST_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 

@@ -97,7 +97,14 @@ impl<'a> Sweep<'a> {
             height: vec![0.0; diagonals],
             source: Moments::new(&terms.source, &rows, samples),
             target: Moments::new(&terms.target, &columns, samples),
-            rms_m: vec![0.0; rows.len() * columns.len()],
+            rms_m: vec![
+                0.0;
+                if terms.is_triangle() {
+                    packed_start(rows.len(), rows.len())
+                } else {
+                    rows.len() * columns.len()
+                }
+            ],
             rows,
             columns,
         };
@@ -111,7 +118,7 @@ impl<'a> Sweep<'a> {
         let samples = self.terms.samples_in(sums.window);
         for row in sums.done..end {
             sums.enter_row(self.terms, row, samples);
-            sums.distances(row, samples);
+            sums.distances(self.terms, row, samples);
         }
         sums.done = sums.done.max(end);
         sums.progress()
@@ -139,6 +146,17 @@ impl<'a> Sweep<'a> {
             rms_m: sums.rms_m,
         }
     }
+
+    /// Likewise where a clip is compared with itself: rows are as long as it is from them to the end, one behind the other.
+    pub(super) fn finish_packed(mut self) -> Vec<f32> {
+        self.advance(usize::MAX);
+        self.sums.rms_m
+    }
+}
+
+/// The first column that is summed in a row.
+fn first_column(terms: &PairTerms, row: usize) -> usize {
+    if terms.is_triangle() { row } else { 0 }
 }
 
 impl Sums {
@@ -170,23 +188,18 @@ impl Sums {
             }
             return;
         }
-        // The first column's windows have none before them.
-        let (mut dot, mut cross, mut height) = (0.0, 0.0, 0.0);
-        for k in 0..samples {
-            let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, 1);
-            let (d, x) = centre_product(terms.source.centre(first + k), DVec2::new(entering.x[0], entering.z[0]));
-            dot += f64::from(entering.terms.dot[0]) + d;
-            cross += f64::from(entering.terms.cross[0]) + x;
-            height += f64::from(entering.terms.height[0]);
+        if !terms.is_triangle() {
+            self.enter_first_column(terms, first, shift, samples);
         }
-        (self.dot[shift], self.cross[shift], self.height[shift]) = (dot, cross, height);
-        let n = columns - 1;
+        // Below the diagonal nothing is summed: there the first column has windows before it, too.
+        let from = first_column(terms, row).max(1);
+        let n = columns - from;
         let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
-        let new = Entering::new(terms, terms.row(first + samples - 1), self.columns.start + samples, n);
-        let old = Entering::new(terms, terms.row(first - 1), self.columns.start, n);
-        let dot = &mut self.dot[shift + 1..][..n];
-        let cross = &mut self.cross[shift + 1..][..n];
-        let height = &mut self.height[shift + 1..][..n];
+        let new = Entering::new(terms, terms.row(first + samples - 1), self.columns.start + from + samples - 1, n);
+        let old = Entering::new(terms, terms.row(first - 1), self.columns.start + from - 1, n);
+        let dot = &mut self.dot[shift + from..][..n];
+        let cross = &mut self.cross[shift + from..][..n];
+        let height = &mut self.height[shift + from..][..n];
         for c in 0..n {
             dot[c] += f64::from(new.terms.dot[c]) - f64::from(old.terms.dot[c])
                 + ((p.x * new.x[c] + p.y * new.z[c]) - (q.x * old.x[c] + q.y * old.z[c]));
@@ -196,14 +209,34 @@ impl Sums {
         }
     }
 
-    fn distances(&mut self, row: usize, samples: usize) {
-        let n = self.columns.len();
-        let shift = self.rows.len() - 1 - row;
+    /// The first column's windows have none before them.
+    fn enter_first_column(&mut self, terms: &PairTerms, first: usize, shift: usize, samples: usize) {
+        let (mut dot, mut cross, mut height) = (0.0, 0.0, 0.0);
+        for k in 0..samples {
+            let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, 1);
+            let (d, x) = centre_product(terms.source.centre(first + k), DVec2::new(entering.x[0], entering.z[0]));
+            dot += f64::from(entering.terms.dot[0]) + d;
+            cross += f64::from(entering.terms.cross[0]) + x;
+            height += f64::from(entering.terms.height[0]);
+        }
+        (self.dot[shift], self.cross[shift], self.height[shift]) = (dot, cross, height);
+    }
+
+    fn distances(&mut self, terms: &PairTerms, row: usize, samples: usize) {
+        let from = first_column(terms, row);
+        let n = self.columns.len() - from;
+        let shift = self.rows.len() - 1 - row + from;
         let inverse = (samples as f64).recip();
         let (x, z, spread) = (self.source.x[row] * inverse, self.source.z[row] * inverse, self.source.spread[row]);
-        let out = &mut self.rms_m[row * n..][..n];
+        let start = if terms.is_triangle() {
+            packed_start(self.rows.len(), row)
+        } else {
+            row * n
+        };
+        let out = &mut self.rms_m[start..][..n];
         let (dot, cross, height) = (&self.dot[shift..][..n], &self.cross[shift..][..n], &self.height[shift..][..n]);
-        let (tx, tz, ts) = (&self.target.x[..n], &self.target.z[..n], &self.target.spread[..n]);
+        let target = &self.target;
+        let (tx, tz, ts) = (&target.x[from..][..n], &target.z[from..][..n], &target.spread[from..][..n]);
         for c in 0..n {
             let a = cross[c] - (x * tz[c] - z * tx[c]);
             let b = dot[c] - (x * tx[c] + z * tz[c]);
@@ -212,6 +245,11 @@ impl Sums {
             out[c] = ((left * inverse) as f32).max(0.0).sqrt();
         }
     }
+}
+
+/// Where row `row` begins in a packed triangle of `rows` rows.
+pub(super) fn packed_start(rows: usize, row: usize) -> usize {
+    row * rows - row * row.saturating_sub(1) / 2
 }
 
 /// A stretch of a row of terms, with the centres of its columns.
@@ -223,9 +261,10 @@ struct Entering<'a> {
 
 impl<'a> Entering<'a> {
     fn new(terms: &'a PairTerms, row: TermRow<'a>, from: usize, n: usize) -> Self {
-        let part = |of: &'a [f32]| &of[from..][..n];
+        let part = |of: &'a [f32]| &of[from - row.first..][..n];
         Self {
             terms: TermRow {
+                first: from,
                 dot: part(row.dot),
                 cross: part(row.cross),
                 height: part(row.height),

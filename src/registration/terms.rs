@@ -2,10 +2,11 @@ use super::align::{Alignment, PairMoments};
 use super::cloud::{Cloud, LANES, Shares, Spread, tile};
 use super::points::checked_sum;
 use super::sweep::Sweep;
-use super::{DistanceMatrix, RegistrationError, align};
+use super::{DistanceMatrix, PointClouds, RegistrationError, align};
 use crate::clip::Clip;
 use glam::DVec2;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// How far a computation in slices has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +26,7 @@ impl Progress {
 }
 
 /// The most pairs that are held: 768 MiB of terms.
-const MOST_PAIRS: usize = 1 << 26;
+pub(crate) const MOST_PAIRS: usize = 1 << 26;
 
 /// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are `f32`.
 const ROUNDING: f64 = 1e-6;
@@ -53,10 +54,12 @@ pub struct PairTerms {
     shares: Shares,
     /// Σw of one frame.
     frame_weight: f64,
-    pub(super) source: Cloud,
-    pub(super) target: Cloud,
+    pub(super) source: Arc<Cloud>,
+    pub(super) target: Arc<Cloud>,
     /// Only pairs with |row - column| ≤ band are multiplied.
     band: usize,
+    /// A clip with itself: only pairs with column ≥ row are multiplied and held, to the whole group.
+    triangle: bool,
     done: usize,
     /// Per row: the products of [`tile`], `width` of each.
     terms: Vec<f32>,
@@ -65,9 +68,10 @@ pub struct PairTerms {
     spread: Vec<Spread>,
 }
 
-/// One row of terms: dot, cross and height products with every target sample.
+/// One row of terms: dot, cross and height products with every target sample from `first` on.
 #[derive(Clone, Copy)]
 pub(super) struct TermRow<'a> {
+    pub(super) first: usize,
     pub(super) dot: &'a [f32],
     pub(super) cross: &'a [f32],
     pub(super) height: &'a [f32],
@@ -125,31 +129,65 @@ impl PairTerms {
                 .div_ceil(stride)
                 .saturating_mul(target_frames.len().div_ceil(stride))
         };
-        if pairs(stride) > MOST_PAIRS {
-            let coarser = (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1;
-            return Err(RegistrationError::TooManyPairs {
-                pairs: pairs(stride),
-                most: MOST_PAIRS,
-                stride: coarser,
-            });
-        }
+        check_pairs(pairs(stride), || (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1)?;
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
-        let source = Cloud::new(source, source_frames, stride, &shares, level)?;
-        let target = Cloud::new(target, target_frames, stride, &shares, level)?;
+        let source = Arc::new(Cloud::new(source, source_frames, stride, &shares, level)?);
+        let target = Arc::new(Cloud::new(target, target_frames, stride, &shares, level)?);
+        Ok(Self::of(source, target, shares, frame_weight, stride, band, false))
+    }
+
+    /// Nothing is compared yet. The pairs are few enough.
+    fn of(source: Arc<Cloud>, target: Arc<Cloud>, shares: Shares, frame_weight: f64, stride: usize, band: usize, triangle: bool) -> Self {
         let width = target.groups() * LANES;
-        Ok(Self {
+        let mut terms = Self {
             stride,
             shares,
             frame_weight,
             band,
+            triangle,
             done: 0,
-            terms: vec![0.0; source.samples * 3 * width],
+            terms: Vec::new(),
             width,
             source,
             target,
             spread: Vec::new(),
-        })
+        };
+        terms.terms = vec![0.0; terms.row_start(terms.source.samples)];
+        terms
+    }
+
+    /// The frames of two clips whose points are known. Both clouds are of one skeleton and were made with the same weights, stride and level.
+    ///
+    /// # Errors
+    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for (67 million).
+    pub fn of_clouds(source: &PointClouds, target: &PointClouds) -> Result<Self, RegistrationError> {
+        let pairs = source.cloud.samples.saturating_mul(target.cloud.samples);
+        check_pairs(pairs, || source.stride * 2)?;
+        Ok(Self::of(
+            Arc::clone(&source.cloud),
+            Arc::clone(&target.cloud),
+            source.shares.clone(),
+            source.frame_weight,
+            source.stride,
+            usize::MAX,
+            false,
+        ))
+    }
+
+    /// A clip with itself: the pairs with column ≥ row alone.
+    pub(super) fn of_itself(of: &PointClouds) -> Result<Self, RegistrationError> {
+        let samples = of.cloud.samples;
+        check_pairs(samples.saturating_mul(samples + 1) / 2, || of.stride * 2)?;
+        Ok(Self::of(
+            Arc::clone(&of.cloud),
+            Arc::clone(&of.cloud),
+            of.shares.clone(),
+            of.frame_weight,
+            of.stride,
+            usize::MAX,
+            true,
+        ))
     }
 
     /// Compares at least `rows` more frames of the source with all frames of the target (rows come in fours), and says how far it has come.
@@ -187,41 +225,73 @@ impl PairTerms {
 
     fn multiply(&mut self, groups: Range<usize>) {
         let rows = groups.start * LANES..groups.end * LANES;
-        let first = rows.start.saturating_sub(self.band) / LANES;
+        let first = if self.triangle {
+            groups.start
+        } else {
+            rows.start.saturating_sub(self.band) / LANES
+        };
         let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.target.groups());
         self.spread.clear();
-        for group in groups {
+        for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);
         }
         for column in first..last {
             let columns = self.target.group(column);
             let tiles = self.spread.chunks_exact(self.shares.len()).map(|rows| tile(rows, columns));
             for (tile_row, [dot, cross, height]) in tiles.enumerate() {
+                let first = self.first_column((groups.start + tile_row) * LANES);
+                if column * LANES < first {
+                    continue;
+                }
                 for lane in 0..LANES {
                     let row = rows.start + tile_row * LANES + lane;
                     if row >= self.source.samples {
                         break;
                     }
-                    let at = row * 3 * self.width + column * LANES;
+                    let (at, width) = (self.row_start(row) + column * LANES - first, self.width - first);
                     for (term, sums) in [dot, cross, height].into_iter().enumerate() {
-                        sums[lane].write_to_slice(&mut self.terms[at + term * self.width..][..LANES]);
+                        sums[lane].write_to_slice(&mut self.terms[at + term * width..][..LANES]);
                     }
                 }
             }
         }
     }
 
+    /// The first column that is held of a row.
+    fn first_column(&self, row: usize) -> usize {
+        if self.triangle { row / LANES * LANES } else { 0 }
+    }
+
+    /// Where a row's terms begin.
+    fn row_start(&self, row: usize) -> usize {
+        let (groups, lane) = (row / LANES, row % LANES);
+        // Every group of rows is one group of columns shorter than the one above.
+        let missing = if self.triangle {
+            LANES * LANES * (groups * groups.saturating_sub(1) / 2) + lane * groups * LANES
+        } else {
+            0
+        };
+        3 * (row * self.width - missing)
+    }
+
     pub(super) fn row(&self, row: usize) -> TermRow<'_> {
-        let row = &self.terms[row * 3 * self.width..(row + 1) * 3 * self.width];
+        let first = self.first_column(row);
+        let (start, width) = (self.row_start(row), self.width - first);
+        let row = &self.terms[start..start + 3 * width];
         TermRow {
-            dot: &row[..self.width],
-            cross: &row[self.width..2 * self.width],
-            height: &row[2 * self.width..],
+            first,
+            dot: &row[..width],
+            cross: &row[width..2 * width],
+            height: &row[2 * width..],
         }
     }
 
     pub(super) fn samples_in(&self, window: usize) -> usize {
         (window.max(1) - 1) / self.stride + 1
+    }
+
+    pub(super) fn is_triangle(&self) -> bool {
+        self.triangle
     }
 
     pub(super) fn complete(&self) -> Result<(), RegistrationError> {
@@ -284,9 +354,10 @@ impl PairTerms {
             // The squares hold the heights', which belong to the height term: their sum is what counts.
             sums.source_square += w * (self.source.square[row + k] + p.length_squared());
             sums.target_square += w * (self.target.square[column + k] + q.length_squared());
-            sums.dot += w * (f64::from(terms.dot[column + k]) + p.dot(q));
-            sums.cross += w * (f64::from(terms.cross[column + k]) + p.perp_dot(q));
-            sums.height -= 2.0 * w * f64::from(terms.height[column + k]);
+            let at = column + k - terms.first;
+            sums.dot += w * (f64::from(terms.dot[at]) + p.dot(q));
+            sums.cross += w * (f64::from(terms.cross[at]) + p.perp_dot(q));
+            sums.height -= 2.0 * w * f64::from(terms.height[at]);
         }
         sums.alignment(fallback_yaw, self.source.origin, self.target.origin, ROUNDING)
     }
@@ -300,6 +371,18 @@ impl PairTerms {
         let count = samples.len() as f64;
         self.target.origin + samples.map(|sample| self.target.centre(sample)).sum::<DVec2>() / count
     }
+}
+
+/// Refuses more pairs than are held; `stride` is one that would do.
+fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), RegistrationError> {
+    if pairs > MOST_PAIRS {
+        return Err(RegistrationError::TooManyPairs {
+            pairs,
+            most: MOST_PAIRS,
+            stride: stride(),
+        });
+    }
+    Ok(())
 }
 
 /// What [`PairTerms::distances`] gives, straight from the definition: every pair of windows, of those that start in `sources` and `targets`, laid on each

@@ -38,6 +38,9 @@ cargo xtask quality [--data FOLDER]
     Makes a transition from every clip of a folder (BVH, or AMC beside their ASF) into every one, with the default parameters, and prints how good
     they are as a table in Markdown. Without a folder: subject 16 of the CMU database, where it lies in ../shared/data/cmu/16.
 
+cargo xtask graph-quality [--data FOLDER]
+    Walks for ten minutes through the motion graph of all clips of a folder, with the default options, and prints how good that is.
+
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
@@ -52,6 +55,7 @@ fn main() -> ExitCode {
         Some((&"test", rest)) => check::run(rest),
         Some((&"fuzz", rest)) => fuzz::run_targets(rest),
         Some((&"quality", rest)) => quality::run_pairs(rest),
+        Some((&"graph-quality", rest)) => quality::run_walks(rest),
         Some((&"docs", _)) => docs(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");

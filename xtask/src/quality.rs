@@ -1,15 +1,23 @@
-//! `cargo xtask quality`: transitions between all clips of a folder, measured.
+//! `cargo xtask quality` and `graph-quality`: transitions between all clips of a folder, and walks through their motion graph, measured.
 
 use std::path::PathBuf;
 
 use crate::shell::{Result, cargo, fail, root, run};
 
 pub fn run_pairs(args: &[&str]) -> Result<()> {
+    run_example("transition_quality", args)
+}
+
+pub fn run_walks(args: &[&str]) -> Result<()> {
+    run_example("graph_quality", args)
+}
+
+fn run_example(name: &str, args: &[&str]) -> Result<()> {
     let folder = match args {
         [] => usual_folder()?,
         // The table is made in the repository's root, the folder was named from here.
         ["--data", folder] => std::path::absolute(folder)?,
-        _ => return fail("`quality` knows --data, followed by one folder, and nothing else"),
+        _ => return fail("these commands know --data, followed by one folder, and nothing else"),
     };
     if !folder.is_dir() {
         return fail(format!("there is no folder {}", folder.display()));
@@ -20,7 +28,8 @@ pub fn run_pairs(args: &[&str]) -> Result<()> {
         "--release",
         "--locked",
         "--no-default-features",
-        "--example=transition_quality",
+        "--example",
+        name,
         "--",
     ]);
     run(table.arg(folder))

@@ -1,0 +1,108 @@
+//! A walk through the motion graph of a folder of clips, measured. Shared with the test of the same name.
+
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "a module of an example and of a test, each of which uses a part of it"
+)]
+
+use segue::blend::Source;
+use segue::clip::{ContactOptions, Contacts};
+use segue::graph::{
+    AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph, StitchOptions, Stitcher, WalkMetrics, WalkPiece, WalkProfile,
+    Walker, WeightOptions,
+};
+use segue::session::{Command, Session};
+use segue::skeleton::Roles;
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A walk.
+pub struct Walked {
+    /// The largest component.
+    pub graph: Arc<MotionGraph>,
+    /// Transitions of the whole graph.
+    pub transitions: usize,
+    /// The walk.
+    pub pieces: Vec<WalkPiece>,
+    /// What it is like.
+    pub metrics: WalkMetrics,
+    /// Seconds for all pairs, the window, and the graph.
+    pub secs: [f64; 3],
+}
+
+/// The clips of a folder: BVH files, and AMC files with the ASF file beside them; those whose file names `wanted` picks.
+///
+/// # Errors
+/// When the folder or a file cannot be read, or the clips do not fit each other.
+pub fn clips_of_folder(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Arc<FrameSet>, Box<dyn Error>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
+        let path = entry?.path();
+        let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().to_lowercase();
+        let (kind, name) = (part(path.extension()), part(path.file_name()));
+        if kind == "asf" || ["amc", "bvh"].contains(&kind.as_str()) && wanted(&name) {
+            // Skeletons come before their motions.
+            files.push((kind != "asf", name, path));
+        }
+    }
+    files.sort();
+    let (mut session, mut sources, mut height) = (Session::new(), Vec::new(), 0.0);
+    session.apply(Command::OpenLink("lab=view".to_owned()))?;
+    for (is_motion, name, path) in files {
+        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let loaded = session.load(&name, bytes.into())?;
+        for id in loaded.ids.into_iter().filter(|_| is_motion) {
+            session.apply(Command::OpenLink(format!("lab=view&a={id}")))?;
+            let outcome = session.main_outcome().ok_or_else(|| format!("there is no clip `{id}`"))?;
+            let motion = &outcome.motion;
+            height = f64::from(motion.roles.body_height(motion.clip.skeleton()));
+            sources.push(Arc::new(Source::new(Arc::clone(&motion.clip), &motion.roles)));
+        }
+    }
+    Ok(Arc::new(FrameSet::new(sources, height)?))
+}
+
+/// Walks for so many seconds.
+///
+/// # Errors
+/// When there is no graph.
+pub fn walk(set: &Arc<FrameSet>, options: &GraphOptions, stitch: &StitchOptions, seed: u64, secs: f64) -> Result<Walked, Box<dyn Error>> {
+    let start = Instant::now();
+    let mut all = AllPairs::new(Arc::clone(set))?;
+    all.finish();
+    let terms = start.elapsed().as_secs_f64();
+    let distances = all.distances(options.blend_window)?;
+    let window = start.elapsed().as_secs_f64() - terms;
+    let candidates = Candidates::find(&all, &distances, options)?;
+    let whole = MotionGraph::new(set, &candidates, options)?;
+    let graph = Arc::new(whole.pruned()?);
+    let built = start.elapsed().as_secs_f64() - terms - window;
+    let roles = Roles::detect(set.clips()[0].clip().skeleton());
+    let contacts = set
+        .clips()
+        .iter()
+        .map(|source| Contacts::detect(source.clip(), &roles, &ContactOptions::default()));
+    let profile = WalkProfile::new(Arc::clone(set), &roles, contacts.collect());
+    let choices = Arc::new(Choices::new(&graph, &WeightOptions::default())?);
+    let mut walker = Walker::new(Arc::clone(&graph), choices, seed);
+    let mut stitcher = Stitcher::new(Arc::clone(set), stitch);
+    let (mut pieces, mut frames) = (Vec::new(), 0);
+    while (frames as f64) < secs * set.fps() {
+        let Some(stay) = walker.next_stay() else { break };
+        let piece = stitcher.stitch(&graph, &stay)?;
+        frames += piece.clip.frames();
+        pieces.push(piece);
+    }
+    let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
+    Ok(Walked {
+        graph,
+        transitions: whole.jumps().len(),
+        pieces,
+        metrics,
+        secs: [terms, window, built],
+    })
+}

@@ -1,0 +1,410 @@
+use super::{Candidates, FrameSet, GraphError, Place};
+use crate::math::Planar;
+use petgraph::Direction;
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// How the graph is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Construction {
+    /// Each clip is cut into segments of so many frames; one goes from the end of one into the start of another.
+    Segments {
+        /// Frames of a segment. What is left at a clip's end belongs to its last segment.
+        segment_size: usize,
+    },
+    /// One goes where the distance has a local minimum, and the clips are cut there (Kovar, Gleicher, Pighin 2002, section 3.2).
+    Minima,
+}
+
+/// What a graph is made with.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GraphOptions {
+    /// How it is made.
+    pub construction: Construction,
+    /// Frames that a transition takes, and over which windows are compared; at least 1.
+    pub blend_window: usize,
+    /// The largest distance of two windows between which one goes, centimetres on the reference body.
+    pub edge_threshold_cm: f64,
+    /// One does not go to what is less than so many seconds away in the same clip.
+    pub min_jump_secs: f64,
+    /// The most transitions out of a stretch; the closest are kept.
+    pub most_ways_out: usize,
+}
+
+impl Default for GraphOptions {
+    fn default() -> Self {
+        Self {
+            construction: Construction::Minima,
+            blend_window: 30,
+            edge_threshold_cm: 8.0,
+            min_jump_secs: 0.5,
+            most_ways_out: 64,
+        }
+    }
+}
+
+impl GraphOptions {
+    /// Whether a graph of these clips can be made so, for all that can be said before distances are known.
+    ///
+    /// # Errors
+    /// [`GraphError`] says which number does not fit, and what would do.
+    pub fn check(&self, set: &FrameSet) -> Result<(), GraphError> {
+        let setting = |what, value: f64, least: f64, most: f64| {
+            if (least..=most).contains(&value) {
+                Ok(())
+            } else {
+                Err(GraphError::Setting { what, value, least, most })
+            }
+        };
+        setting("a blend window", self.blend_window as f64, 1.0, f64::from(u32::MAX))?;
+        setting("an edge threshold", self.edge_threshold_cm, 0.0, 1e6)?;
+        setting("a shortest jump", self.min_jump_secs, 0.0, 1e6)?;
+        setting("a number of ways out", self.most_ways_out as f64, 1.0, f64::from(u32::MAX))?;
+        let (window, longest) = (self.blend_window, set.longest());
+        if longest < window + 2 {
+            return Err(GraphError::WindowTooLong { window, longest });
+        }
+        if let Construction::Segments { segment_size } = self.construction {
+            setting("a segment size", segment_size as f64, 1.0, f64::from(u32::MAX))?;
+            if segment_size > longest {
+                return Err(GraphError::SegmentTooLong {
+                    segment: segment_size,
+                    longest,
+                });
+            }
+            if window >= segment_size {
+                return Err(GraphError::SegmentTooShort {
+                    segment: segment_size,
+                    window,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The segments of a clip; none where it is shorter than one, or the construction has none.
+    pub(super) fn stretches(&self, set: &FrameSet, clip: usize) -> Vec<Stretch> {
+        let Construction::Segments { segment_size } = self.construction else {
+            return Vec::new();
+        };
+        let (size, frames) = (segment_size.max(1), set.frames_of(clip));
+        let count = frames / size;
+        let end = |index: usize| if index + 1 == count { frames } else { (index + 1) * size };
+        (0..count)
+            .map(|index| Stretch {
+                clip,
+                start: index * size,
+                end: end(index),
+            })
+            .collect()
+    }
+
+    /// Whether a segment is entered at this frame.
+    pub(super) fn is_entered_at(&self, set: &FrameSet, place: Place) -> bool {
+        let Construction::Segments { segment_size } = self.construction else {
+            return false;
+        };
+        let size = segment_size.max(1);
+        place.frame.is_multiple_of(size) && place.frame / size < set.frames_of(place.clip) / size
+    }
+
+    /// Whether a segment is left at this frame.
+    pub(super) fn is_left_at(&self, set: &FrameSet, place: Place) -> bool {
+        let (end, frames) = (place.frame + self.blend_window, set.frames_of(place.clip));
+        let Construction::Segments { segment_size } = self.construction else {
+            return false;
+        };
+        let (size, count) = (segment_size.max(1), frames / segment_size.max(1));
+        count > 0 && (end == frames || (end.is_multiple_of(size) && end >= size && end / size < count))
+    }
+
+    /// Whether a segment is entered or left at this frame.
+    pub(super) fn is_end(&self, set: &FrameSet, place: Place) -> bool {
+        self.is_entered_at(set, place) || self.is_left_at(set, place)
+    }
+}
+
+/// Consecutive frames of one clip: a node of the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+pub struct Stretch {
+    /// The clip's index in its [`FrameSet`].
+    pub clip: usize,
+    /// Its first frame.
+    pub start: usize,
+    /// One past its last frame.
+    pub end: usize,
+}
+
+/// A way from one stretch to the next: an edge of the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The clip goes on.
+    Continue,
+    /// A transition: its index in [`MotionGraph::jumps`].
+    Jump(usize),
+}
+
+/// A transition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// The clip and the frame at which it is left.
+    pub leave: Place,
+    /// The clip and the frame at which it is entered.
+    pub enter: Place,
+    /// Frames that overlap: `leave..leave + window` and `enter..enter + window`.
+    pub window: usize,
+    /// The distance of the two windows, centimetres on the reference body.
+    pub distance_cm: f64,
+    /// How the entered clip lies best on the one that is left: `left_world_from_entered_world`.
+    pub alignment: Planar,
+}
+
+/// Stretches of clips, and the ways between them.
+#[derive(Clone, Debug)]
+pub struct MotionGraph {
+    pub(super) set: Arc<FrameSet>,
+    pub(super) options: GraphOptions,
+    pub(super) graph: DiGraph<Stretch, Way>,
+    pub(super) jumps: Vec<Jump>,
+}
+
+impl MotionGraph {
+    /// The graph of these places. `options` are those by which they were found; the threshold may be lower than it was then.
+    ///
+    /// Segments: a node each, in the order of clips and frames. A segment is left `blend_window` frames before its end and entered at its start; where
+    /// that is more than half of a segment, transitions overlap. Minima: each clip is cut where it is left and where a transition into it
+    /// is over, `blend_window` frames behind where it was entered, so that transitions do not overlap.
+    ///
+    /// # Errors
+    /// [`GraphError`] when the options do not fit the clips, or there is no transition; it says what would do.
+    pub fn new(set: &Arc<FrameSet>, candidates: &Candidates, options: &GraphOptions) -> Result<Self, GraphError> {
+        options.check(set)?;
+        let near = |distance: f64| distance <= options.edge_threshold_cm;
+        let chosen: Vec<Jump> = (candidates.found.iter())
+            .take_while(|candidate| near(candidate.distance_cm))
+            .map(|candidate| Jump {
+                leave: candidate.leave,
+                enter: candidate.enter,
+                window: options.blend_window,
+                distance_cm: candidate.distance_cm,
+                alignment: candidate.alignment,
+            })
+            .collect();
+        if chosen.is_empty() {
+            return Err(match candidates.nearest_cm {
+                Some(nearest_cm) => GraphError::NoTransition {
+                    threshold_cm: options.edge_threshold_cm,
+                    nearest_cm,
+                },
+                None => GraphError::NowhereToGo,
+            });
+        }
+        let mut made = Self {
+            set: Arc::clone(set),
+            options: *options,
+            graph: DiGraph::new(),
+            jumps: Vec::new(),
+        };
+        made.add_stretches(&chosen);
+        let (by_start, by_end) = made.by_ends();
+        let mut ways_out = vec![0; made.graph.node_count()];
+        for jump in chosen {
+            let arrives = Place {
+                frame: jump.enter.frame + made.arrival(),
+                ..jump.enter
+            };
+            let leaves = Place {
+                frame: jump.leave.frame + made.departure(),
+                ..jump.leave
+            };
+            if let (Some(&from), Some(&to)) = (by_end.get(&leaves), by_start.get(&arrives))
+                && ways_out[from.index()] < options.most_ways_out
+            {
+                ways_out[from.index()] += 1;
+                made.graph.add_edge(from, to, Way::Jump(made.jumps.len()));
+                made.jumps.push(jump);
+            }
+        }
+        Ok(made)
+    }
+
+    /// Frames from where a stretch is entered to where its node begins.
+    fn arrival(&self) -> usize {
+        match self.options.construction {
+            Construction::Segments { .. } => 0,
+            Construction::Minima => self.options.blend_window,
+        }
+    }
+
+    /// Frames from where a stretch is left to where its node ends.
+    fn departure(&self) -> usize {
+        self.options.blend_window - self.arrival()
+    }
+
+    fn add_stretches(&mut self, chosen: &[Jump]) {
+        let window = self.options.blend_window;
+        for clip in 0..self.set.clips().len() {
+            let stretches = match self.options.construction {
+                Construction::Segments { .. } => self.options.stretches(&self.set, clip),
+                Construction::Minima => {
+                    let mut cuts = BTreeSet::from([0, self.set.frames_of(clip)]);
+                    for jump in chosen {
+                        cuts.extend((jump.leave.clip == clip).then_some(jump.leave.frame));
+                        cuts.extend((jump.enter.clip == clip).then_some(jump.enter.frame + window));
+                    }
+                    let cuts: Vec<usize> = cuts.into_iter().collect();
+                    let stretch = |pair: &[usize]| Stretch {
+                        clip,
+                        start: pair[0],
+                        end: pair[1],
+                    };
+                    cuts.windows(2).map(stretch).collect()
+                }
+            };
+            let mut before = None;
+            for stretch in stretches {
+                let here = self.graph.add_node(stretch);
+                if let Some(before) = before {
+                    self.graph.add_edge(before, here, Way::Continue);
+                }
+                before = Some(here);
+            }
+        }
+    }
+
+    /// The nodes by where they start, and by where they end.
+    fn by_ends(&self) -> (BTreeMap<Place, NodeIndex>, BTreeMap<Place, NodeIndex>) {
+        let at = |end: fn(&Stretch) -> usize| {
+            let nodes = self.graph.node_indices().zip(self.graph.node_weights());
+            let place = |(node, stretch): (NodeIndex, &Stretch)| {
+                let (clip, frame) = (stretch.clip, end(stretch));
+                (Place { clip, frame }, node)
+            };
+            nodes.map(place).collect()
+        };
+        (at(|stretch| stretch.start), at(|stretch| stretch.end))
+    }
+
+    /// The clips.
+    #[must_use]
+    pub fn set(&self) -> &Arc<FrameSet> {
+        &self.set
+    }
+
+    /// What it was made with.
+    #[must_use]
+    pub fn options(&self) -> &GraphOptions {
+        &self.options
+    }
+
+    /// Nodes and edges.
+    #[must_use]
+    pub fn graph(&self) -> &DiGraph<Stretch, Way> {
+        &self.graph
+    }
+
+    /// The transitions, closest first.
+    #[must_use]
+    pub fn jumps(&self) -> &[Jump] {
+        &self.jumps
+    }
+
+    /// The transition of an edge; `None` where the clip goes on, and where there is no such edge.
+    #[must_use]
+    pub fn jump(&self, edge: EdgeIndex) -> Option<&Jump> {
+        match self.graph.edge_weight(edge)? {
+            Way::Jump(index) => self.jumps.get(*index),
+            Way::Continue => None,
+        }
+    }
+
+    /// The frames that play from where a node begins to where the node at the other end of an edge does.
+    #[must_use]
+    pub fn frames_of(&self, edge: EdgeIndex) -> usize {
+        let node = self.graph.edge_endpoints(edge).and_then(|(from, _)| self.graph.node_weight(from));
+        let Some(node) = node else { return 0 };
+        match self.jump(edge) {
+            None => node.end - node.start,
+            Some(jump) => (jump.leave.frame + self.arrival()).saturating_sub(node.start),
+        }
+    }
+
+    /// Nodes without a way out: the clips' ends.
+    #[must_use]
+    pub fn dead_ends(&self) -> Vec<NodeIndex> {
+        self.graph.externals(Direction::Outgoing).collect()
+    }
+
+    /// The strongly connected components, largest first (by frames, then by the first node): inside one, every node can be reached from every other.
+    #[must_use]
+    pub fn components(&self) -> Vec<Vec<NodeIndex>> {
+        let frames = |nodes: &[NodeIndex]| -> usize {
+            nodes
+                .iter()
+                .filter_map(|&node| self.graph.node_weight(node))
+                .map(|s| s.end - s.start)
+                .sum()
+        };
+        let mut components = kosaraju_scc(&self.graph);
+        for nodes in &mut components {
+            nodes.sort_unstable();
+        }
+        components.sort_by_key(|nodes| (std::cmp::Reverse(frames(nodes)), nodes.first().copied()));
+        components
+    }
+
+    /// The graph of the largest component alone: no walk in it comes to an end.
+    ///
+    /// # Errors
+    /// [`GraphError::NoCycle`] when no component has a way inside it.
+    pub fn pruned(&self) -> Result<Self, GraphError> {
+        let inside = |nodes: &[NodeIndex]| {
+            let within = |edge: petgraph::graph::EdgeReference<'_, Way>| nodes.binary_search(&edge.target()).is_ok();
+            nodes.iter().any(|&node| self.graph.edges(node).any(within))
+        };
+        let Some(kept) = self.components().into_iter().find(|nodes| inside(nodes)) else {
+            return Err(GraphError::NoCycle {
+                transitions: self.jumps.len(),
+                threshold_cm: self.options.edge_threshold_cm,
+            });
+        };
+        let mut pruned = Self {
+            set: Arc::clone(&self.set),
+            options: self.options,
+            graph: DiGraph::new(),
+            jumps: Vec::new(),
+        };
+        let mut new: BTreeMap<NodeIndex, NodeIndex> = BTreeMap::new();
+        for &node in &kept {
+            if let Some(stretch) = self.graph.node_weight(node) {
+                new.insert(node, pruned.graph.add_node(*stretch));
+            }
+        }
+        for edge in self.graph.edge_references() {
+            let (Some(&from), Some(&to)) = (new.get(&edge.source()), new.get(&edge.target())) else {
+                continue;
+            };
+            let way = match (edge.weight(), self.jump(edge.id())) {
+                (Way::Jump(_), Some(jump)) => {
+                    pruned.jumps.push(*jump);
+                    Way::Jump(pruned.jumps.len() - 1)
+                }
+                _ => Way::Continue,
+            };
+            pruned.graph.add_edge(from, to, way);
+        }
+        Ok(pruned)
+    }
+
+    /// The node that a frame lies in; `None` where the graph has none.
+    #[must_use]
+    pub fn node_at(&self, place: Place) -> Option<NodeIndex> {
+        let holds = |stretch: &Stretch| stretch.clip == place.clip && (stretch.start..stretch.end).contains(&place.frame);
+        self.graph
+            .node_indices()
+            .find(|&node| self.graph.node_weight(node).is_some_and(holds))
+    }
+}

@@ -1,0 +1,362 @@
+use super::{FrameSet, GraphError, Place};
+use crate::registration::{
+    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PointClouds, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep,
+    SymmetricDistances,
+};
+use std::sync::Arc;
+
+/// The terms of all pairs of frames of a set, clip by clip, from which the distances of windows of any length follow
+/// ([`PairTerms`]). Every pair is compared once: the distance of two windows is the same both ways.
+///
+/// Made in slices. 6,000 frames are 18 million pairs, 216 MB and about 0.2 s; for more than 11,500 frames use
+/// [`CandidateStream`](super::CandidateStream), which holds none of it.
+#[derive(Clone, Debug)]
+pub struct AllPairs {
+    set: Arc<FrameSet>,
+    /// (a, b) with a ≤ b, row by row.
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Debug)]
+enum Block {
+    Itself(SelfTerms, usize),
+    Pair(PairTerms, usize),
+}
+
+impl Block {
+    /// Pairs done and pairs in all.
+    fn pairs(&self) -> (usize, usize) {
+        match self {
+            Self::Itself(terms, n) => {
+                let left = |rows: usize| rows * (rows + 1) / 2;
+                (left(*n) - left(n - terms.progress().done), left(*n))
+            }
+            Self::Pair(terms, columns) => (terms.progress().done * columns, terms.progress().total * columns),
+        }
+    }
+
+    fn advance(&mut self, pairs: usize) {
+        match self {
+            Self::Itself(terms, n) => {
+                let columns = (*n - terms.progress().done).max(1);
+                terms.advance(pairs.div_ceil(columns));
+            }
+            Self::Pair(terms, columns) => {
+                terms.advance(pairs.div_ceil(*columns));
+            }
+        }
+    }
+}
+
+impl AllPairs {
+    /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] when a position is not finite, or the pairs are more than memory should be taken for (67 million, 12
+    /// bytes each).
+    pub fn new(set: Arc<FrameSet>) -> Result<Self, GraphError> {
+        let frames = set.frames();
+        let pairs = frames.saturating_mul(frames.saturating_add(1)) / 2;
+        if pairs > MOST_PAIRS {
+            let stride = (pairs as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize;
+            return Err(RegistrationError::TooManyPairs {
+                pairs,
+                most: MOST_PAIRS,
+                stride,
+            }
+            .into());
+        }
+        let level = level_m(&set)?;
+        let clouds = (set.clips().iter())
+            .map(|source| PointClouds::new(source.clip(), 0..source.clip().frames(), set.weights(), 1, level))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut blocks = Vec::new();
+        for (a, source) in clouds.iter().enumerate() {
+            blocks.push(Block::Itself(SelfTerms::new(source)?, source.samples()));
+            for target in &clouds[a + 1..] {
+                blocks.push(Block::Pair(PairTerms::of_clouds(source, target)?, target.samples()));
+            }
+        }
+        Ok(Self { set, blocks })
+    }
+
+    /// The frames that are compared.
+    #[must_use]
+    pub fn set(&self) -> &Arc<FrameSet> {
+        &self.set
+    }
+
+    /// Compares at least `pairs` more pairs of frames, and says how many are done. 100,000 take about a millisecond.
+    pub fn advance(&mut self, pairs: usize) -> Progress {
+        let mut left = pairs;
+        for block in &mut self.blocks {
+            let before = block.pairs();
+            if before.0 < before.1 && left > 0 {
+                block.advance(left);
+                left = left.saturating_sub(block.pairs().0 - before.0);
+            }
+        }
+        self.progress()
+    }
+
+    /// All pairs at once.
+    pub fn finish(&mut self) {
+        self.advance(usize::MAX);
+    }
+
+    /// How many pairs of frames are done.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let mut progress = Progress { done: 0, total: 0 };
+        for block in &self.blocks {
+            let (done, total) = block.pairs();
+            progress.done += done;
+            progress.total += total;
+        }
+        progress
+    }
+
+    /// The distances of all windows of `window` frames (0 counts as 1), in slices.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] before all pairs are compared.
+    pub fn sweep(&self, window: usize) -> Result<AllSweep<'_>, GraphError> {
+        let Progress { done, total } = self.progress();
+        if done < total {
+            return Err(RegistrationError::Unfinished { done, total }.into());
+        }
+        Ok(AllSweep {
+            all: self,
+            window: window.max(1),
+            blocks: Vec::new(),
+            now: None,
+        })
+    }
+
+    /// [`Self::sweep`] in one call.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] before all pairs are compared.
+    pub fn distances(&self, window: usize) -> Result<FrameDistances, GraphError> {
+        self.sweep(window)?.finish()
+    }
+
+    /// How the window of `window` frames from frame `b` lies best on that from frame `a`: `a_world_from_b_world`. O(window).
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] before all pairs are compared, or when a window crosses the end of its clip.
+    pub fn alignment(&self, a: Place, b: Place, window: usize) -> Result<Alignment, GraphError> {
+        let (first, second) = (a.min(b), a.max(b));
+        let facing = |place: Place| {
+            let source = self.set.clip(place.clip);
+            source
+                .and_then(|source| source.frames().get(place.frame))
+                .map_or(0.0, |frame| frame.yaw)
+        };
+        let fallback = facing(first) - facing(second);
+        let found = match self.blocks.get(block_of(self.set.clips().len(), first.clip, second.clip)) {
+            Some(Block::Itself(terms, _)) => terms.alignment(first.frame, second.frame, window, fallback)?,
+            Some(Block::Pair(terms, _)) => terms.alignment(first.frame, second.frame, window, fallback)?,
+            None => return Err(GraphError::NoClips),
+        };
+        let transform = if a <= b { found.transform } else { found.transform.inverse() };
+        Ok(Alignment { transform, ..found })
+    }
+}
+
+/// From where heights are summed: the middle of the body in the first frame.
+pub(super) fn level_m(set: &FrameSet) -> Result<f64, GraphError> {
+    let first = set.clip(0).ok_or(GraphError::NoClips)?;
+    Ok(PointClouds::level_m(first.clip(), set.weights())?)
+}
+
+/// Where the block of clips a ≤ b is kept.
+fn block_of(clips: usize, a: usize, b: usize) -> usize {
+    (a * clips + b).saturating_sub(a * (a + 1) / 2)
+}
+
+/// The running sums of all pairs of clips, on the way.
+#[derive(Clone, Debug)]
+pub struct AllSweep<'a> {
+    all: &'a AllPairs,
+    window: usize,
+    blocks: Vec<BlockDistances>,
+    now: Option<Now<'a>>,
+}
+
+#[derive(Clone, Debug)]
+enum Now<'a> {
+    Itself(SelfSweep<'a>),
+    Pair(Sweep<'a>),
+}
+
+impl AllSweep<'_> {
+    /// Does up to `rows` more rows of a pair of clips, and says how many pairs of clips are done.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] when the terms are not complete.
+    pub fn advance(&mut self, rows: usize) -> Result<Progress, GraphError> {
+        let total = self.all.blocks.len();
+        if let Some(block) = self.all.blocks.get(self.blocks.len()) {
+            let everything = 0..usize::MAX;
+            let mut now = match (self.now.take(), block) {
+                (Some(now), _) => now,
+                (None, Block::Itself(terms, _)) => Now::Itself(terms.sweep(self.window)?),
+                (None, Block::Pair(terms, _)) => Now::Pair(terms.sweep(self.window, &everything, &everything)?),
+            };
+            let complete = match &mut now {
+                Now::Itself(sweep) => sweep.advance(rows).is_complete(),
+                Now::Pair(sweep) => sweep.advance(rows).is_complete(),
+            };
+            if complete {
+                self.blocks.push(match now {
+                    Now::Itself(sweep) => BlockDistances::Itself(sweep.finish()),
+                    Now::Pair(sweep) => BlockDistances::Pair(sweep.finish()),
+                });
+            } else {
+                self.now = Some(now);
+            }
+        }
+        Ok(Progress {
+            done: self.blocks.len(),
+            total,
+        })
+    }
+
+    /// The rest, and the distances.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] when the terms are not complete.
+    pub fn finish(mut self) -> Result<FrameDistances, GraphError> {
+        while !self.advance(usize::MAX)?.is_complete() {}
+        Ok(FrameDistances {
+            set: Arc::clone(&self.all.set),
+            window: self.window,
+            blocks: self.blocks,
+        })
+    }
+}
+
+/// The distances between all windows of one length of a set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameDistances {
+    set: Arc<FrameSet>,
+    window: usize,
+    blocks: Vec<BlockDistances>,
+}
+
+/// Of one pair of clips.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum BlockDistances {
+    Itself(SymmetricDistances),
+    Pair(DistanceMatrix),
+}
+
+impl BlockDistances {
+    /// (rows, columns)
+    pub(super) fn size(&self) -> (usize, usize) {
+        match self {
+            Self::Itself(distances) => (distances.rows(), distances.rows()),
+            Self::Pair(distances) => (distances.rows(), distances.columns()),
+        }
+    }
+
+    pub(super) fn get(&self, row: usize, column: usize) -> Option<f32> {
+        match self {
+            Self::Itself(distances) => distances.get(row, column),
+            Self::Pair(distances) => distances.get(row, column),
+        }
+    }
+
+    /// A row from its first column on that is held once: the column, and the distances.
+    pub(super) fn row(&self, row: usize) -> (usize, &[f32]) {
+        match self {
+            Self::Itself(distances) => (row, distances.row(row)),
+            Self::Pair(distances) => (0, distances.row(row)),
+        }
+    }
+}
+
+impl FrameDistances {
+    /// The frames that are compared.
+    #[must_use]
+    pub fn set(&self) -> &Arc<FrameSet> {
+        &self.set
+    }
+
+    /// Frames of each window.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.window
+    }
+
+    /// The distance of the windows that start at two frames, centimetres; `None` where a window crosses the end of its clip.
+    #[must_use]
+    pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
+        let (a, b) = (a.min(b), a.max(b));
+        let block = self.block(a.clip, b.clip)?;
+        Some(self.set.rounded_cm(block.get(a.frame, b.frame)?))
+    }
+
+    /// Of clips a ≤ b.
+    pub(super) fn block(&self, a: usize, b: usize) -> Option<&BlockDistances> {
+        let clips = self.set.clips().len();
+        if b >= clips {
+            return None;
+        }
+        self.blocks.get(block_of(clips, a, b))
+    }
+
+    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value is the mean distance (centimetres) of a square of
+    /// `factor` × `factor` of them, row-major; NaN where no window starts.
+    #[must_use]
+    pub fn picture(&self, rows: std::ops::Range<usize>, columns: std::ops::Range<usize>, factor: usize) -> Vec<f32> {
+        let factor = factor.max(1);
+        let places = |range: std::ops::Range<usize>| -> Vec<Option<Place>> {
+            let range = range.start.min(self.set.frames())..range.end.min(self.set.frames());
+            range.map(|frame| self.set.place(frame)).collect()
+        };
+        let (rows, columns) = (places(rows), places(columns));
+        let scale = self.set.cm_per_m() as f32;
+        let mut picture = Vec::new();
+        for rows in rows.chunks(factor) {
+            for columns in columns.chunks(factor) {
+                let (mut sum, mut count) = (0.0, 0);
+                for &a in rows.iter().flatten() {
+                    for &b in columns.iter().flatten() {
+                        let (a, b) = (a.min(b), a.max(b));
+                        if let Some(found) = self.block(a.clip, b.clip).and_then(|block| block.get(a.frame, b.frame)) {
+                            sum += found;
+                            count += 1;
+                        }
+                    }
+                }
+                picture.push(sum / count as f32 * scale);
+            }
+        }
+        picture
+    }
+
+    /// How many pairs of windows lie in each of `bins` ranges of `bin_cm` centimetres; the last one takes what is farther. Every pair counts
+    /// once, a window with itself not.
+    #[must_use]
+    pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
+        let mut counts = vec![0_u32; bins.max(1)];
+        let last = counts.len() - 1;
+        let scale = if bin_cm > 0.0 {
+            (self.set.cm_per_m() / bin_cm) as f32
+        } else {
+            f32::MAX
+        };
+        for block in &self.blocks {
+            for row in 0..block.size().0 {
+                let (_, distances) = block.row(row);
+                let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
+                for &distance in distances.get(itself..).unwrap_or_default() {
+                    counts[((distance * scale) as usize).min(last)] += 1;
+                }
+            }
+        }
+        counts
+    }
+}

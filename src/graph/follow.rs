@@ -1,0 +1,269 @@
+use super::{GraphError, MotionGraph};
+use crate::math::Planar;
+use glam::DVec2;
+use petgraph::graph::{EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
+
+/// How far a search looks ahead before it commits itself, seconds.
+const HORIZON_SECS: f64 = 4.0;
+/// How much of what it found it then keeps, seconds.
+const KEPT_SECS: f64 = 1.0;
+/// What a second costs on the path itself, m²·s⁻¹: otherwise to stand still on it would be best.
+const PATIENCE: f64 = 0.05;
+/// Ways over the ground are read every so many frames.
+const READ_EVERY: usize = 4;
+
+/// A line on the ground, to be walked along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundPath {
+    points: Vec<DVec2>,
+    /// Metres from the start to each point.
+    lengths: Vec<f64>,
+}
+
+impl GroundPath {
+    /// The line through these points, (x, z) in metres. Points that are not finite, or repeat the one before, are left out.
+    ///
+    /// # Errors
+    /// [`GraphError::Setting`] when less than 10 cm of line is left.
+    pub fn new(points: &[DVec2]) -> Result<Self, GraphError> {
+        let mut path = Self {
+            points: Vec::new(),
+            lengths: Vec::new(),
+        };
+        for &point in points.iter().filter(|point| point.is_finite()) {
+            let step = path.points.last().map_or(0.0, |last| last.distance(point));
+            if path.points.is_empty() || step > 1e-6 {
+                path.lengths.push(path.length() + step);
+                path.points.push(point);
+            }
+        }
+        if !(0.1..=1e5).contains(&path.length()) {
+            return Err(GraphError::Setting {
+                what: "a path (in metres)",
+                value: path.length(),
+                least: 0.1,
+                most: 1e5,
+            });
+        }
+        Ok(path)
+    }
+
+    /// Metres from end to end.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
+    /// The point so many metres from the start; the ends beyond them.
+    #[must_use]
+    pub fn at(&self, metres: f64) -> DVec2 {
+        let next = self.lengths.partition_point(|&length| length <= metres);
+        match (
+            next.checked_sub(1)
+                .and_then(|last| Some((self.points.get(last)?, self.lengths.get(last)?))),
+            self.points.get(next),
+        ) {
+            (Some((from, start)), Some(to)) => from.lerp(*to, (metres - start) / from.distance(*to)),
+            (Some((from, _)), None) => *from,
+            (None, first) => first.copied().unwrap_or(DVec2::ZERO),
+        }
+    }
+}
+
+/// A way through a graph along a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Followed {
+    /// Its edges, from the start node on: for [`Walker::take`](super::Walker::take).
+    pub edges: Vec<EdgeIndex>,
+    /// Where the first clip lies: `world_from_clip`.
+    pub world_from_first: Planar,
+    /// How far off the path it is, metres: the root of the mean square.
+    pub rms_m: f64,
+    /// How far it comes along the path, metres.
+    pub along_m: f64,
+    /// The end of the path is reached.
+    pub arrives: bool,
+    /// Nodes that were looked at.
+    pub looked_at: usize,
+}
+
+/// A way through the graph whose trace on the ground stays close to a path (Kovar, Gleicher, Pighin 2002, section 5): branch and bound over what
+/// lies a few seconds ahead, of which the first is kept, and so on.
+///
+/// The cost is the squared distance, summed over time, of the character from the point of the path that is as far along it as the character has
+/// walked; a little is added per second. `budget` is the number of nodes that are looked at in all: a number, in place of a time, gives the same way on
+/// every machine. When it is used up, the best so far is given. The character starts at node `start`, at the path's first point, and faces along it.
+///
+/// Clips are laid on each other as their transitions' alignments say. What the [`Stitcher`](super::Stitcher) makes of it blends velocities and drifts
+/// off that by centimetres per transition.
+#[must_use]
+pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Followed {
+    let world_from_first = first_place(graph, start, path);
+    let mut search = Search {
+        graph,
+        path,
+        looked_at: 0,
+        stop_at: 0,
+        until: 0.0,
+        trail: Vec::new(),
+        best: None,
+    };
+    let mut here = State {
+        node: start,
+        world: world_from_first,
+        last: None,
+        along: 0.0,
+        cost: 0,
+        square: 0.0,
+        frames: 0,
+    };
+    let fps = graph.set().fps();
+    // Enough for every second of the path at a slow walk.
+    let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
+    let mut edges = Vec::new();
+    while here.along < path.length() && search.looked_at < budget {
+        search.stop_at = (search.looked_at + (budget / stages).max(64)).min(budget);
+        search.until = here.frames as f64 + HORIZON_SECS * fps;
+        (search.best, search.trail) = (None, Vec::new());
+        search.descend(&here);
+        let Some((_, way)) = search.best.take() else { break };
+        let kept = here.frames as f64 + KEPT_SECS * fps;
+        let before = edges.len();
+        for edge in way {
+            if edges.len() > before && here.frames as f64 >= kept {
+                break;
+            }
+            here = search.behind(&here, edge);
+            edges.push(edge);
+        }
+        if edges.len() == before {
+            break;
+        }
+    }
+    Followed {
+        edges,
+        world_from_first,
+        rms_m: (here.square / (here.frames as f64).max(1.0)).sqrt(),
+        along_m: here.along.min(path.length()),
+        arrives: here.along >= path.length(),
+        looked_at: search.looked_at,
+    }
+}
+
+fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Planar {
+    let ahead = path.at(0.5_f64.min(path.length())) - path.at(0.0);
+    let world = Planar::new(ahead.x.atan2(ahead.y), path.at(0.0).x, path.at(0.0).y);
+    let stretch = graph.graph().node_weight(start);
+    let frame = stretch.and_then(|stretch| graph.set().clip(stretch.clip)?.frames().get(stretch.start));
+    frame.map_or(world, |frame| world.after(&frame.inverse()))
+}
+
+/// At the start of a node.
+#[derive(Clone, Copy)]
+struct State {
+    node: NodeIndex,
+    /// `world_from_clip` of the node's clip.
+    world: Planar,
+    /// Where the character was read last.
+    last: Option<DVec2>,
+    /// Metres walked.
+    along: f64,
+    /// In 1e-6 m² · frames: whole numbers, which compare alike everywhere.
+    cost: u64,
+    square: f64,
+    frames: usize,
+}
+
+struct Search<'a> {
+    graph: &'a MotionGraph,
+    path: &'a GroundPath,
+    looked_at: usize,
+    stop_at: usize,
+    /// The frame up to which is searched.
+    until: f64,
+    trail: Vec<EdgeIndex>,
+    best: Option<(u64, Vec<EdgeIndex>)>,
+}
+
+impl Search<'_> {
+    /// What is still to be paid at least: the rest of the path on the path itself, at a run.
+    fn to_come(&self, state: &State) -> u64 {
+        let left = (self.path.length() - state.along).max(0.0);
+        (left / 4.0 * PATIENCE * self.graph.set().fps() * 1e6) as u64
+    }
+
+    fn descend(&mut self, here: &State) {
+        let bound = here.cost.saturating_add(self.to_come(here));
+        if self.best.as_ref().is_some_and(|(best, _)| bound >= *best) {
+            return;
+        }
+        let mut ways: Vec<(u64, EdgeIndex, State)> = Vec::new();
+        if here.along < self.path.length() && (here.frames as f64) < self.until {
+            let edges: Vec<EdgeIndex> = self.graph.graph().edges(here.node).map(|edge| edge.id()).collect();
+            for edge in edges {
+                self.looked_at += 1;
+                let next = self.behind(here, edge);
+                ways.push((next.cost.saturating_add(self.to_come(&next)), edge, next));
+            }
+        }
+        if ways.is_empty() {
+            // At the horizon, at the end of the path, or in a dead end: there what lies ahead cannot be walked.
+            let dead_end = here.along < self.path.length() && (here.frames as f64) < self.until;
+            let cost = if dead_end { u64::MAX - 1 } else { bound };
+            if self.best.as_ref().is_none_or(|(best, _)| cost < *best) {
+                self.best = Some((cost, self.trail.clone()));
+            }
+            return;
+        }
+        // The most promising first: a good bound early.
+        ways.sort_by_key(|(bound, edge, _)| (*bound, *edge));
+        for (_, edge, next) in ways {
+            // The first way down is always gone to its end.
+            if self.best.is_some() && self.looked_at >= self.stop_at {
+                return;
+            }
+            self.trail.push(edge);
+            self.descend(&next);
+            self.trail.pop();
+        }
+    }
+
+    /// The state at the other end of an edge.
+    fn behind(&self, here: &State, edge: EdgeIndex) -> State {
+        let mut next = *here;
+        let graph = self.graph.graph();
+        let ends = graph.edge_endpoints(edge);
+        let Some((stretch, (_, to))) = graph.node_weight(here.node).copied().zip(ends) else {
+            return next;
+        };
+        let jump = self.graph.jump(edge);
+        let end = jump.map_or(stretch.end, |jump| jump.leave.frame);
+        self.walk(&mut next, stretch.clip, stretch.start..end.max(stretch.start));
+        next.node = to;
+        if let Some(jump) = jump {
+            next.world = here.world.after(&jump.alignment);
+            let start = graph.node_weight(to).map_or(jump.enter.frame, |to| to.start);
+            self.walk(&mut next, jump.enter.clip, jump.enter.frame..start.max(jump.enter.frame));
+        }
+        next
+    }
+
+    fn walk(&self, state: &mut State, clip: usize, frames: std::ops::Range<usize>) {
+        let Some(source) = self.graph.set().clip(clip) else { return };
+        let mut frame = frames.start;
+        while frame < frames.end {
+            let count = READ_EVERY.min(frames.end - frame);
+            if let Some(at) = source.frames().get(frame) {
+                let at = state.world.apply_ground(at.shift);
+                state.along += state.last.map_or(0.0, |last| last.distance(at));
+                let square = at.distance_squared(self.path.at(state.along));
+                state.square += square * count as f64;
+                state.cost = state.cost.saturating_add(((square + PATIENCE) * 1e6).round() as u64 * count as u64);
+                state.last = Some(at);
+            }
+            state.frames += count;
+            frame += count;
+        }
+    }
+}

@@ -1,0 +1,127 @@
+use super::GraphError;
+use crate::blend::{Source, check};
+use crate::registration::{DistanceMatrix, limb_weights};
+use std::sync::Arc;
+
+/// A frame of one of the clips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+pub struct Place {
+    /// The clip's index in its [`FrameSet`].
+    pub clip: usize,
+    /// The frame of that clip.
+    pub frame: usize,
+}
+
+/// Several clips of one skeleton at one frame rate: all their frames, one behind the other. Windows do not cross from one clip into the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameSet {
+    clips: Vec<Arc<Source>>,
+    /// The number of each clip's first frame; behind them the number of frames.
+    starts: Vec<usize>,
+    weights: Vec<f64>,
+    body_height: f64,
+}
+
+impl FrameSet {
+    /// The clips in this order; `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is what distances are scaled by.
+    ///
+    /// # Errors
+    /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip moves another skeleton, runs at another rate or has no frames;
+    /// [`GraphError::Setting`] for a height that is none.
+    pub fn new(clips: Vec<Arc<Source>>, body_height: f64) -> Result<Self, GraphError> {
+        let first = clips.first().ok_or(GraphError::NoClips)?;
+        for clip in &clips {
+            check(first, 0, clip, 0, 0)?;
+        }
+        if !(0.01..=1_000.0).contains(&body_height) {
+            return Err(GraphError::Setting {
+                what: "a body height",
+                value: body_height,
+                least: 0.01,
+                most: 1_000.0,
+            });
+        }
+        let weights = limb_weights(first.clip().skeleton());
+        let mut starts = vec![0];
+        for clip in &clips {
+            starts.push(starts.last().copied().unwrap_or(0) + clip.clip().frames());
+        }
+        Ok(Self {
+            clips,
+            starts,
+            weights,
+            body_height,
+        })
+    }
+
+    /// The clips.
+    #[must_use]
+    pub fn clips(&self) -> &[Arc<Source>] {
+        &self.clips
+    }
+
+    /// One clip.
+    #[must_use]
+    pub fn clip(&self, clip: usize) -> Option<&Arc<Source>> {
+        self.clips.get(clip)
+    }
+
+    /// Frames of one clip; 0 where there is none.
+    #[must_use]
+    pub fn frames_of(&self, clip: usize) -> usize {
+        self.clips.get(clip).map_or(0, |source| source.clip().frames())
+    }
+
+    /// Frames of all clips together.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.starts.last().copied().unwrap_or(0)
+    }
+
+    /// Frames of the longest clip.
+    #[must_use]
+    pub fn longest(&self) -> usize {
+        self.clips.iter().map(|source| source.clip().frames()).max().unwrap_or(0)
+    }
+
+    /// Frames per second, of all clips.
+    #[must_use]
+    pub fn fps(&self) -> f64 {
+        self.clips.first().map_or(1.0, |source| source.clip().fps())
+    }
+
+    /// One weight per joint, by which points are weighed.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The clip and its frame of a frame of the set.
+    #[must_use]
+    pub fn place(&self, frame: usize) -> Option<Place> {
+        // Clips have frames, so that no two start at one number.
+        let clip = self.starts.partition_point(|&start| start <= frame).checked_sub(1)?;
+        (clip < self.clips.len()).then(|| Place {
+            clip,
+            frame: frame - self.starts[clip],
+        })
+    }
+
+    /// The number in the set of a clip's frame; `None` outside the clip.
+    #[must_use]
+    pub fn number(&self, place: Place) -> Option<usize> {
+        (place.frame < self.frames_of(place.clip)).then(|| self.starts[place.clip] + place.frame)
+    }
+
+    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded to 0.001 cm: what is decided by it does not
+    /// hang on a last digit.
+    #[must_use]
+    pub fn rounded_cm(&self, rms_m: f32) -> f64 {
+        (f64::from(rms_m) * self.cm_per_m() * 1_000.0).round() / 1_000.0
+    }
+
+    /// Centimetres on the reference body per metre of the clips' own.
+    pub(super) fn cm_per_m(&self) -> f64 {
+        DistanceMatrix::cm_scale(self.body_height)
+    }
+}

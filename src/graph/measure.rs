@@ -1,0 +1,495 @@
+use super::{FrameSet, MotionGraph, Place, WalkPiece};
+use crate::clip::{Clip, Contacts, stillest_step, turn_change};
+use crate::math::{Planar, quat, stats, wrap_angle};
+use crate::metrics::{Better, Metric};
+use crate::skeleton::{Roles, Side, WorldPose};
+use glam::{DVec2, Quat, Vec3};
+use std::sync::Arc;
+
+/// A spin is more yaw than this, degrees, in [`SPIN_SECS`].
+const SPIN_DEG: f64 = 30.0;
+/// Seconds.
+const SPIN_SECS: f64 = 0.2;
+/// A flash is a step this many times as large as all but one in a thousand of the clips' own.
+const FLASH: f32 = 2.0;
+/// Below this a joint is still, radians: what single precision and a capture at rest make of it.
+const STILL_RADIANS: f32 = 2e-3;
+/// Below this a root is still, metres.
+const STILL_M: f32 = 5e-4;
+/// Below this difference of velocities, metres per second, there is no change of speed to wait for.
+const LEAST_CHANGE_MPS: f64 = 0.1;
+
+/// What is usual in the clips of a set, measured once.
+#[derive(Clone, Debug)]
+pub struct WalkProfile {
+    set: Arc<FrameSet>,
+    roles: Roles,
+    /// Per clip.
+    contacts: Vec<Contacts>,
+    /// Per joint, 99th and 99.9th percentile of the turn from one frame to the next, radians.
+    turns: Vec<[f32; 2]>,
+    /// Per joint, 99th percentile of the change of that turn.
+    changes: Vec<f32>,
+    /// 99.9th percentile of the root's step, metres.
+    step: f32,
+}
+
+impl WalkProfile {
+    /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames × joints).
+    #[must_use]
+    pub fn new(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
+        let joints = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
+        let percentile = |values: &[f32], p: f32| stats::percentile(values, p).unwrap_or(0.0);
+        let (mut turns, mut changes) = (Vec::new(), Vec::new());
+        for joint in 0..joints {
+            let (mut turned, mut changed) = (Vec::new(), Vec::new());
+            for source in set.clips() {
+                let clip = source.clip();
+                let mut before = None;
+                for frame in 1..clip.frames() {
+                    let turn = turn(clip.rotations(frame - 1)[joint], clip.rotations(frame)[joint]);
+                    turned.push(turn.length());
+                    changed.extend(before.map(|before: Vec3| turn.distance(before)));
+                    before = Some(turn);
+                }
+            }
+            turns.push([percentile(&turned, 0.99), percentile(&turned, 0.999)]);
+            changes.push(percentile(&changed, 0.99));
+        }
+        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
+        Self {
+            step: percentile(&steps, 0.999),
+            set,
+            roles: roles.clone(),
+            contacts,
+            turns,
+            changes,
+        }
+    }
+
+    fn planted(&self, place: Place, side: Side) -> bool {
+        let contacts = self.contacts.get(place.clip);
+        contacts.is_some_and(|contacts| place.frame < self.set.frames_of(place.clip) && contacts.planted(side, place.frame))
+    }
+
+    /// The character's step into a frame of a clip; behind its end, the last one.
+    fn step_into(&self, place: Place) -> Planar {
+        let last = self.set.frames_of(place.clip).saturating_sub(1);
+        self.set
+            .clip(place.clip)
+            .map_or(Planar::IDENTITY, |source| source.step_into(place.frame.min(last)))
+    }
+}
+
+/// One transition of a walk, measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Seam {
+    /// The frame of the walk at which it begins.
+    pub at: usize,
+    /// Frames that it takes.
+    pub frames: usize,
+    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the clips or what they do in the very frame, degrees.
+    pub turn_deg: f32,
+    /// Likewise the largest change of a joint's angular velocity from one step to the next, degrees per second.
+    pub change_dps: f32,
+    /// The most yaw in 0.2 s or less that neither clip turns meanwhile, degrees.
+    pub spin_deg: f64,
+    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips' own, or what they do in the very frame if that is
+    /// more: a jump that was recorded is none of the walk's.
+    pub flash: f32,
+    /// The joint of it; none where it is the root's step.
+    pub flash_joint: Option<usize>,
+    /// How far a foot slides in the worst stance that touches it, centimetres; none where no foot stands.
+    pub skate_cm: Option<f32>,
+    /// Seconds until the velocity has come 90 % of the way to the entered clip's; none where the two are alike.
+    pub lag_s: Option<f64>,
+}
+
+/// A walk in numbers.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct WalkMetrics {
+    /// Seconds that it takes.
+    pub secs: f64,
+    /// The share of the set's frames that it plays at least once.
+    pub variety: f64,
+    /// Its transitions.
+    pub seams: Vec<Seam>,
+    /// How far feet slide in stances that no transition touches, centimetres: the median, for comparison.
+    pub own_skate_cm: Option<f32>,
+}
+
+/// What is read of a walk, frame by frame.
+#[derive(Default)]
+struct Walked {
+    steps: Vec<Planar>,
+    turns: Vec<f32>,
+    changes: Vec<f32>,
+    flashes: Vec<(f32, Option<usize>)>,
+    /// (first frame, last frame, slide in metres)
+    stances: Vec<(usize, usize, f32)>,
+}
+
+impl WalkMetrics {
+    /// Measures consecutive pieces of a walk.
+    #[must_use]
+    pub fn measure(pieces: &[WalkPiece], graph: &MotionGraph, profile: &WalkProfile) -> Self {
+        let fps = profile.set.fps();
+        let walked = Walked::of(pieces, profile);
+        let first = pieces.first().map_or(0, |piece| piece.start);
+        let seams = pieces
+            .iter()
+            .filter_map(|piece| seam(piece, first, &walked, profile, fps))
+            .collect::<Vec<_>>();
+        let touches = |stance: &(usize, usize, f32)| seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1);
+        let own: Vec<f32> = walked
+            .stances
+            .iter()
+            .filter(|stance| !touches(stance))
+            .map(|stance| stance.2 * 100.0)
+            .collect();
+        let mut seen = vec![false; graph.set().frames()];
+        for stay in pieces.iter().map(|piece| piece.stay) {
+            let number = |frame| graph.set().number(Place { clip: stay.clip, frame });
+            for frame in (stay.from..stay.to).filter_map(number) {
+                seen[frame] = true;
+            }
+        }
+        Self {
+            secs: walked.steps.len() as f64 / fps,
+            variety: seen.iter().filter(|seen| **seen).count() as f64 / seen.len().max(1) as f64,
+            seams,
+            own_skate_cm: stats::percentile(&own, 0.5),
+        }
+    }
+
+    /// Transitions with more than 30° of yaw in 0.2 s that neither clip has.
+    #[must_use]
+    pub fn spins(&self) -> usize {
+        self.seams.iter().filter(|seam| seam.spin_deg > SPIN_DEG).count()
+    }
+
+    /// Transitions with a step of the root or of a joint of more than twice the 99.9th percentile of the clips' own.
+    #[must_use]
+    pub fn flashes(&self) -> usize {
+        self.seams.iter().filter(|seam| seam.flash > FLASH).count()
+    }
+
+    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    #[must_use]
+    pub fn list(&self) -> [Metric; 8] {
+        let worst = |value: fn(&Seam) -> f64| self.seams.iter().map(value).max_by(f64::total_cmp);
+        let median = |values: Vec<f32>| stats::percentile(&values, 0.5).map(f64::from);
+        let metric = |id, label, value, unit, better, help| Metric {
+            id,
+            label,
+            value,
+            unit,
+            better,
+            help,
+        };
+        let (lower, neutral) = (Better::Lower, Better::Neutral);
+        let per_minute = (self.secs > 0.0).then(|| self.seams.len() as f64 * 60.0 / self.secs);
+        let skates = self.seams.iter().filter_map(|seam| seam.skate_cm).collect();
+        let lags = self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
+        [
+            metric(
+                "seams_per_min",
+                "Seams",
+                per_minute,
+                "/min",
+                neutral,
+                "How many transitions a minute of the walk has.",
+            ),
+            metric(
+                "walk_seam_deg",
+                "Seam angle",
+                worst(|seam| f64::from(seam.turn_deg)),
+                "°",
+                lower,
+                "How far a joint turns in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
+            ),
+            metric(
+                "walk_seam_dps",
+                "Seam angular velocity",
+                worst(|seam| f64::from(seam.change_dps)),
+                "°/s",
+                lower,
+                "How much a joint's angular velocity changes in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
+            ),
+            metric(
+                "spins",
+                "Spins",
+                Some(self.spins() as f64),
+                "",
+                lower,
+                "Transitions in which the character turns by more than 30° in 0.2 s and neither clip does.",
+            ),
+            metric(
+                "flashes",
+                "Flashes",
+                Some(self.flashes() as f64),
+                "",
+                lower,
+                "Transitions in which the root or a joint jumps more than twice as far as in all but one in a thousand frames of the clips.",
+            ),
+            metric(
+                "walk_skate_cm",
+                "Foot slide",
+                median(skates),
+                "cm",
+                lower,
+                "How far a planted foot slides in the worst stance of a transition: the median.",
+            ),
+            metric(
+                "walk_lag_s",
+                "Drag",
+                median(lags),
+                "s",
+                lower,
+                "How long a transition takes to come 90 % of the way to the entered clip's velocity: the median.",
+            ),
+            metric(
+                "variety",
+                "Variety",
+                Some(self.variety * 100.0),
+                "%",
+                Better::Higher,
+                "How much of the clips the walk has shown.",
+            ),
+        ]
+    }
+}
+
+fn turn(from: Quat, to: Quat) -> Vec3 {
+    quat::log(to * from.conjugate())
+}
+
+impl Walked {
+    fn of(pieces: &[WalkPiece], profile: &WalkProfile) -> Self {
+        let mut walked = Self::default();
+        let Some(first) = pieces.first() else { return walked };
+        let points = Side::BOTH.map(|side| profile.roles.foot_points(first.clip.skeleton(), side));
+        let mut feet: [Vec<Vec3>; 2] = Default::default();
+        // Per side: the first frame of the stance, and how far it has slid at most and by now.
+        let mut stances: [Option<(usize, f32, Vec3)>; 2] = [None; 2];
+        let mut before: Option<(Planar, Vec<Quat>, Vec3)> = None;
+        let mut turned: Vec<Vec3> = Vec::new();
+        let mut world = WorldPose::default();
+        let mut last_world = first.world_from_piece;
+        for piece in pieces {
+            let mut next = Some(piece.world_from_piece.inverse().after(&last_world));
+            last_world = piece.world_from_piece;
+            for frame in 0..piece.clip.frames() {
+                // What is known of the last piece is brought into this one: nothing is compared far from the origin.
+                if let Some(here_from_last) = next.take() {
+                    for points in &mut feet {
+                        for point in points.iter_mut() {
+                            *point = here_from_last.apply(*point);
+                        }
+                    }
+                    turned
+                        .first_mut()
+                        .into_iter()
+                        .for_each(|turn| *turn = here_from_last.apply_vector(*turn));
+                    for (_, _, slid) in stances.iter_mut().flatten() {
+                        *slid = here_from_last.apply_vector(*slid);
+                    }
+                    if let Some((standing, rotations, root)) = &mut before {
+                        *standing = here_from_last.after(standing);
+                        *root = here_from_last.apply(*root);
+                        rotations.first_mut().into_iter().for_each(|q| *q = here_from_last.rotation() * *q);
+                    }
+                }
+                let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
+                let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
+                let sources = Sources::of(piece, frame, &profile.set);
+                walked.step(before.as_ref(), (&standing, rotations, root), &mut turned, profile, &sources);
+                before = Some((standing, rotations.to_vec(), root));
+                piece.clip.world_pose_into(frame, &mut world);
+                let number = walked.steps.len() - 1;
+                for side in Side::BOTH {
+                    let now: Vec<Vec3> = points[side.index()]
+                        .iter()
+                        .map(|&(joint, point)| world.point(joint, point))
+                        .collect();
+                    let stands = profile.planted(shown(piece, frame), side);
+                    let (feet, stance) = (&mut feet[side.index()], &mut stances[side.index()]);
+                    if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
+                        *slid += step;
+                        *most = most.max(slid.length());
+                    } else {
+                        walked.stances.extend(stance.take().map(|(first, most, _)| (first, number, most)));
+                        *stance = stands.then_some((number, 0.0, Vec3::ZERO));
+                    }
+                    *feet = now;
+                }
+            }
+        }
+        let last = walked.steps.len().saturating_sub(1);
+        walked
+            .stances
+            .extend(stances.into_iter().flatten().map(|(first, most, _)| (first, last, most)));
+        walked
+    }
+
+    /// The step into a frame.
+    fn step(
+        &mut self,
+        before: Option<&(Planar, Vec<Quat>, Vec3)>,
+        (standing, rotations, root): (&Planar, &[Quat], Vec3),
+        turned: &mut Vec<Vec3>,
+        profile: &WalkProfile,
+        sources: &Sources<'_>,
+    ) {
+        let (mut turn_excess, mut change_excess, mut flash) = (0.0_f32, 0.0_f32, (0.0_f32, None));
+        let mut step = Planar::IDENTITY;
+        if let Some((stood, were, root_was)) = before {
+            step = stood.inverse().after(standing);
+            flash.0 = root.distance(*root_was) / profile.step.max(STILL_M).max(sources.step());
+            let turns: Vec<Vec3> = were.iter().zip(rotations).map(|(&from, &to)| turn(from, to)).collect();
+            for (joint, turn) in turns.iter().enumerate() {
+                let (Some([p99, p999]), Some(change)) = (profile.turns.get(joint), profile.changes.get(joint)) else {
+                    continue;
+                };
+                let (length, changed) = (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
+                // What the clips do themselves is looked at only where it matters.
+                if length / p999.max(STILL_RADIANS) > flash.0 {
+                    let unusual = length / p999.max(STILL_RADIANS).max(sources.turn(joint));
+                    if unusual > flash.0 {
+                        flash = (unusual, Some(joint));
+                    }
+                }
+                if length - p99 > turn_excess {
+                    turn_excess = turn_excess.max(length - p99.max(sources.turn(joint)));
+                }
+                if changed - change > change_excess {
+                    change_excess = change_excess.max(changed - change.max(sources.change(joint)));
+                }
+            }
+            *turned = turns;
+        }
+        self.steps.push(step);
+        self.turns.push(turn_excess);
+        self.changes.push(change_excess);
+        self.flashes.push(flash);
+    }
+}
+
+/// The frames of the clips that play in a frame of a walk: one, or two in a transition.
+struct Sources<'a>([Option<(&'a Clip, usize)>; 2]);
+
+impl<'a> Sources<'a> {
+    fn of(piece: &WalkPiece, frame: usize, set: &'a FrameSet) -> Self {
+        let clip = |place: Place| {
+            let clip = set.clip(place.clip)?.clip();
+            (place.frame < clip.frames()).then_some((clip.as_ref(), place.frame))
+        };
+        let entered = Place {
+            clip: piece.stay.clip,
+            frame: piece.stay.from + frame,
+        };
+        let left = piece.seam.filter(|seam| frame <= seam.frames).map(|seam| Place {
+            frame: seam.leave.frame + frame,
+            ..seam.leave
+        });
+        Self([clip(entered), left.and_then(clip)])
+    }
+
+    fn most(&self, of: impl Fn(&Clip, usize) -> Option<f32>) -> f32 {
+        let found = self.0.iter().flatten().filter_map(|&(clip, frame)| of(clip, frame));
+        found.fold(0.0, f32::max)
+    }
+
+    /// The root's step into the frame, metres.
+    fn step(&self) -> f32 {
+        self.most(|clip, frame| {
+            let roots = clip.root_translations();
+            Some(roots.get(frame.checked_sub(1)?)?.distance(*roots.get(frame)?))
+        })
+    }
+
+    /// A joint's turn in the step into the frame, radians.
+    fn turn(&self, joint: usize) -> f32 {
+        self.most(|clip, frame| {
+            let at = |frame: usize| clip.rotations(frame).get(joint).copied();
+            Some(turn(at(frame.checked_sub(1)?)?, at(frame)?).length())
+        })
+    }
+
+    /// How much that turn changes from the step before, radians.
+    fn change(&self, joint: usize) -> f32 {
+        self.most(|clip, frame| turn_change(clip, frame.checked_sub(1)?, joint))
+    }
+}
+
+/// The frame of a clip that has the greater part in a frame of a piece.
+fn shown(piece: &WalkPiece, frame: usize) -> Place {
+    match piece.seam.filter(|seam| frame < seam.handover) {
+        Some(seam) => Place {
+            frame: seam.leave.frame + frame,
+            ..seam.leave
+        },
+        None => Place {
+            clip: piece.stay.clip,
+            frame: piece.stay.from + frame,
+        },
+    }
+}
+
+fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile, fps: f64) -> Option<Seam> {
+    let of = piece.seam?;
+    let at = piece.start - first;
+    let end = (at + of.frames).min(walked.steps.len().saturating_sub(1));
+    let most = |values: &[f32]| values.get(at..=end).unwrap_or_default().iter().copied().fold(0.0, f32::max);
+    let behind = |place: Place, steps: usize| Place {
+        frame: place.frame + steps,
+        ..place
+    };
+    let steps: Vec<[Planar; 3]> = (at..=end)
+        .map(|frame| {
+            let source = |place| profile.step_into(behind(place, frame - at));
+            [walked.steps[frame], source(of.leave), source(of.enter)]
+        })
+        .collect();
+    let flashes = walked.flashes.get(at..=end).unwrap_or_default().iter();
+    let (flash, flash_joint) = flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    let stances = walked.stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
+    Some(Seam {
+        at,
+        frames: of.frames,
+        turn_deg: most(&walked.turns).to_degrees(),
+        change_dps: most(&walked.changes).to_degrees() * fps as f32,
+        spin_deg: spin(&steps, (SPIN_SECS * fps).round().max(1.0) as usize).to_degrees(),
+        flash,
+        flash_joint,
+        skate_cm: stances.map(|stance| stance.2 * 100.0).max_by(f32::total_cmp),
+        lag_s: lag(&steps, fps),
+    })
+}
+
+/// The most that the first turns beyond both others over any run of at most `longest` steps, radians.
+fn spin(steps: &[[Planar; 3]], longest: usize) -> f64 {
+    let mut worst = 0.0_f64;
+    for start in 0..steps.len() {
+        let mut turned = [0.0; 3];
+        for step in steps[start..].iter().take(longest) {
+            for (turned, step) in turned.iter_mut().zip(step) {
+                *turned += wrap_angle(step.yaw);
+            }
+            let [r, a, b] = turned;
+            worst = worst.max(r - a.max(b).max(0.0)).max(a.min(b).min(0.0) - r);
+        }
+    }
+    worst
+}
+
+fn lag(steps: &[[Planar; 3]], fps: f64) -> Option<f64> {
+    let apart: f64 = steps.iter().map(|[_, a, b]| a.shift.distance_squared(b.shift)).sum();
+    let apart = (apart / steps.len().max(1) as f64).sqrt();
+    if apart * fps < LEAST_CHANGE_MPS {
+        return None;
+    }
+    let off = |[r, _, b]: &[Planar; 3]| DVec2::distance(r.shift, b.shift) > 0.1 * apart;
+    Some(steps.iter().rposition(off).map_or(0.0, |last| (last + 1) as f64 / fps))
+}

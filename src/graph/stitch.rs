@@ -1,0 +1,254 @@
+use super::{FrameSet, GraphError, MotionGraph, Place, Stay};
+use crate::blend::{Assembly, RootBlend, Source, WeightLaw};
+use crate::clip::Clip;
+use crate::math::{Decay, Planar, wrap_angle};
+use crate::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How much of what has played is kept for the next transition, seconds: a stride, over which its speed is taken.
+const PAST_SECS: f64 = 1.0;
+/// How far beyond a transition the clip that is left is made for it, seconds, if the transition does not ask for more.
+const AHEAD_SECS: f64 = 0.5;
+
+/// A classic mistake in laying one clip on the other, for experiments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum WalkMistake {
+    /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the right place, and goes on in the direction in which it
+    /// was recorded.
+    FirstFrameOnly,
+    /// `atan` in place of `atan2`: half of all clips are laid on with their back to the front.
+    AtanForAtan2,
+}
+
+/// How transitions are made.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct StitchOptions {
+    /// The method.
+    pub method: Method,
+    /// A mistake to be made.
+    pub mistake: Option<WalkMistake>,
+}
+
+impl StitchOptions {
+    /// A dissolve over the graph's blend window.
+    #[must_use]
+    pub fn dissolve(window: usize) -> Self {
+        Self {
+            method: Method::Dissolve {
+                window,
+                law: WeightLaw::default(),
+            },
+            mistake: None,
+        }
+    }
+
+    /// Inertialization by a spring.
+    #[must_use]
+    pub fn inertialize(half_life_secs: f64) -> Self {
+        Self {
+            method: Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs })),
+            mistake: None,
+        }
+    }
+}
+
+/// A piece of a walk, from where one clip is entered to where the next is.
+#[derive(Clone, Debug)]
+pub struct WalkPiece {
+    /// The motion, near where its clip was recorded: a walk may go far, and single precision does not.
+    pub clip: Clip,
+    /// Where the piece lies in the walk's world, accumulated in double precision.
+    pub world_from_piece: Planar,
+    /// Where the character stands and faces in every frame (`piece_from_character`).
+    pub frames: Vec<Planar>,
+    /// The number of its first frame in the walk.
+    pub start: usize,
+    /// What it plays.
+    pub stay: Stay,
+    /// The transition that it begins with; none in the first piece.
+    pub seam: Option<PieceSeam>,
+}
+
+/// The transition at the start of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PieceSeam {
+    /// Where the last clip was left.
+    pub leave: Place,
+    /// Where this one was entered.
+    pub enter: Place,
+    /// Frames of the transition; they may reach into the next piece.
+    pub frames: usize,
+    /// The frame of the piece from which its own clip has the greater part.
+    pub handover: usize,
+}
+
+/// Makes motion of the stays of a walk, piece by piece and without end.
+///
+/// A transition starts from what plays, not from the clip that is left: transitions may follow each other so fast that they overlap.
+#[derive(Clone, Debug)]
+pub struct Stitcher {
+    set: Arc<FrameSet>,
+    options: StitchOptions,
+    playing: Option<Tail>,
+    made: usize,
+}
+
+/// What has played of the last piece, and what would have played on.
+#[derive(Clone, Debug)]
+struct Tail {
+    source: Source,
+    /// The first of its frames that has not been given out.
+    leave: usize,
+    world_from_here: Planar,
+    /// The frame of its clip that it would show next.
+    place: Place,
+}
+
+impl Stitcher {
+    /// Nothing has played yet.
+    #[must_use]
+    pub fn new(set: Arc<FrameSet>, options: &StitchOptions) -> Self {
+        Self {
+            set,
+            options: *options,
+            playing: None,
+            made: 0,
+        }
+    }
+
+    /// The next piece. Stays come in the order in which a walk gives them; `graph` is the one it goes through.
+    ///
+    /// # Errors
+    /// [`GraphError`] when a stay is none of the graph's, or a half-life is none.
+    pub fn stitch(&mut self, graph: &MotionGraph, stay: &Stay) -> Result<WalkPiece, GraphError> {
+        let source = self.set.clip(stay.clip).ok_or(GraphError::NoClips)?;
+        let frames = source.clip().frames();
+        // Checks the stay, too.
+        source.clip().crop(stay.from..stay.to)?;
+        let ahead = (AHEAD_SECS * self.set.fps()).round() as usize;
+        let until = stay.to + ahead.max(graph.options().blend_window).min(frames - stay.to);
+        let jump = stay.jump.and_then(|index| graph.jumps().get(index));
+        let (made, entered, world_from_piece, seam) = match (self.playing.take(), jump) {
+            (Some(tail), Some(jump)) => {
+                let from = stay.from.saturating_sub(1);
+                let incoming = part(source, from..until)?;
+                let joined = self.joined(&tail, &incoming, stay.from - from)?;
+                let seam = PieceSeam {
+                    leave: jump.leave,
+                    enter: jump.enter,
+                    frames: joined.frames,
+                    handover: joined.handover,
+                };
+                (
+                    joined.source,
+                    tail.leave,
+                    tail.world_from_here.after(&joined.tail_from_piece),
+                    Some(seam),
+                )
+            }
+            _ => (part(source, stay.from..until)?, 0, Planar::IDENTITY, None),
+        };
+        let leave = entered + (stay.to - stay.from);
+        let past = (PAST_SECS * self.set.fps()).round() as usize;
+        let kept = leave.saturating_sub(past.max(1));
+        let name = source.clip().name();
+        let piece = WalkPiece {
+            clip: made.clip().crop(entered..leave)?.with_name(name),
+            world_from_piece,
+            frames: made.frames().get(entered..leave).unwrap_or_default().to_vec(),
+            start: self.made,
+            stay: *stay,
+            seam,
+        };
+        let tail = part(&made, kept..made.clip().frames())?;
+        let renamed = tail.clip().as_ref().clone().with_name(name);
+        self.playing = Some(Tail {
+            source: tail.with_motion(renamed, tail.frames().to_vec()),
+            leave: leave - kept,
+            world_from_here: world_from_piece,
+            place: Place {
+                clip: stay.clip,
+                frame: stay.to,
+            },
+        });
+        self.made += stay.to - stay.from;
+        Ok(piece)
+    }
+
+    /// Where the walk would go on in its present clip; none before the first piece.
+    #[must_use]
+    pub fn place(&self) -> Option<Place> {
+        self.playing.as_ref().map(|tail| tail.place)
+    }
+
+    fn joined(&self, tail: &Tail, incoming: &Source, enter: usize) -> Result<Joined, GraphError> {
+        let (a, leave) = (&tail.source, tail.leave);
+        let options = TransitionOptions::new(self.options.method);
+        let (made, moved) = match self.options.mistake {
+            None => (concatenate(a, leave, incoming, enter, &options)?, Planar::IDENTITY),
+            Some(WalkMistake::AtanForAtan2) => (
+                concatenate_mistaken(a, leave, incoming, enter, &options, Mistake::AtanForAtan2)?,
+                Planar::IDENTITY,
+            ),
+            Some(WalkMistake::FirstFrameOnly) => {
+                let moved = first_frame_only(tail, incoming, enter);
+                let options = TransitionOptions {
+                    align: false,
+                    root: RootBlend::World,
+                    ..options
+                };
+                (concatenate(a, leave, &incoming.moved(&moved), enter, &options)?, moved)
+            }
+        };
+        let tail_from_piece = made.world_from_b.after(&moved);
+        let back = tail_from_piece.inverse();
+        let frames = made.frames.iter().map(|frame| back.after(frame)).collect();
+        Ok(Joined {
+            source: incoming.with_motion(made.clip.transformed(&back), frames),
+            tail_from_piece,
+            frames: made.transition.len(),
+            handover: made.handover.saturating_sub(leave),
+        })
+    }
+}
+
+struct Joined {
+    /// The tail and the incoming clip, where the latter was recorded.
+    source: Source,
+    tail_from_piece: Planar,
+    frames: usize,
+    handover: usize,
+}
+
+/// Where the incoming clip comes to lie if only its first frame is turned: in the right place, and in the direction in which it was recorded.
+fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
+    let (Some(here), Some(there)) = (tail.source.frames().get(tail.leave), incoming.frames().get(enter)) else {
+        return Planar::IDENTITY;
+    };
+    let turned = Planar::new(wrap_angle(-tail.world_from_here.yaw), 0.0, 0.0);
+    let shift = here.shift - turned.apply_ground(there.shift);
+    Planar { shift, ..turned }
+}
+
+/// Some frames of a clip, with what is known of it.
+fn part(source: &Source, frames: Range<usize>) -> Result<Source, GraphError> {
+    let clip = source.clip().crop(frames.clone())?;
+    Ok(source.with_motion(clip, source.frames().get(frames).unwrap_or_default().to_vec()))
+}
+
+/// The pieces as one clip in the walk's world, and where the character stands in each frame. `None` for no pieces.
+///
+/// # Errors
+/// [`GraphError::Clip`]; not for pieces of one walk.
+pub fn assembled(pieces: &[WalkPiece]) -> Result<Option<(Clip, Vec<Planar>)>, GraphError> {
+    let Some(first) = pieces.first() else { return Ok(None) };
+    let count = pieces.iter().map(|piece| piece.clip.frames()).sum();
+    let mut made = Assembly::of(&first.clip, pieces.iter().map(|piece| &piece.clip), count);
+    let mut frames = Vec::with_capacity(count);
+    for piece in pieces {
+        made.play_moved(&piece.clip, 0..piece.clip.frames(), &piece.world_from_piece);
+        frames.extend(piece.frames.iter().map(|frame| piece.world_from_piece.after(frame)));
+    }
+    Ok(Some((made.finish("walk".to_owned())?, frames)))
+}

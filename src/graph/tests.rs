@@ -1,0 +1,703 @@
+use super::*;
+use crate::blend::{Source, align_onto};
+use crate::clip::{Clip, ContactOptions, Contacts, JointTranslations};
+use crate::math::Planar;
+use crate::registration::fixtures::Walk;
+use crate::registration::rms_cm;
+use crate::skeleton::{Joint, Roles, Skeleton};
+use glam::{DVec2, Quat, Vec3};
+use petgraph::graph::NodeIndex;
+use proptest::prelude::*;
+use std::sync::Arc;
+
+const HEIGHT: f64 = 1.7;
+
+fn set_of(walks: &[Walk]) -> Arc<FrameSet> {
+    let sources = walks.iter().map(|walk| {
+        let clip = Arc::new(walk.clip());
+        let roles = Roles::detect(clip.skeleton());
+        Arc::new(Source::new(clip, &roles))
+    });
+    Arc::new(FrameSet::new(sources.collect(), HEIGHT).unwrap())
+}
+
+/// A walk, a faster one that turns, and one that begins elsewhere and faces elsewhere.
+fn three(frames: [usize; 3]) -> Arc<FrameSet> {
+    let walk = Walk::default();
+    set_of(&[
+        Walk { frames: frames[0], ..walk },
+        Walk {
+            frames: frames[1],
+            cadence: 1.1,
+            turning: 0.7,
+            speed: 1.5,
+            ..walk
+        },
+        Walk {
+            frames: frames[2],
+            phase: 0.3,
+            heading: 2.5,
+            start: (4.0, -3.0),
+            swing: 0.5,
+            ..walk
+        },
+    ])
+}
+
+fn compared(set: &Arc<FrameSet>) -> AllPairs {
+    let mut all = AllPairs::new(Arc::clone(set)).unwrap();
+    all.finish();
+    all
+}
+
+fn options(construction: Construction, blend_window: usize, edge_threshold_cm: f64) -> GraphOptions {
+    GraphOptions {
+        construction,
+        blend_window,
+        edge_threshold_cm,
+        ..GraphOptions::default()
+    }
+}
+
+fn built(set: &Arc<FrameSet>, options: &GraphOptions) -> Result<MotionGraph, GraphError> {
+    let all = compared(set);
+    let candidates = Candidates::find(&all, &all.distances(options.blend_window)?, options)?;
+    MotionGraph::new(set, &candidates, options)
+}
+
+fn walker(graph: &Arc<MotionGraph>, weights: &WeightOptions, seed: u64) -> Walker {
+    Walker::new(Arc::clone(graph), Arc::new(Choices::new(graph, weights).unwrap()), seed)
+}
+
+fn pieces(graph: &Arc<MotionGraph>, walker: &mut Walker, options: &StitchOptions, stays: usize) -> Vec<WalkPiece> {
+    let mut stitcher = Stitcher::new(Arc::clone(graph.set()), options);
+    let mut pieces = Vec::new();
+    while let Some(stay) = walker.next_stay().filter(|_| pieces.len() < stays) {
+        pieces.push(stitcher.stitch(graph, &stay).unwrap());
+    }
+    pieces
+}
+
+fn profile(set: &Arc<FrameSet>) -> WalkProfile {
+    let roles = Roles::detect(set.clips()[0].clip().skeleton());
+    let contacts = set
+        .clips()
+        .iter()
+        .map(|source| Contacts::detect(source.clip(), &roles, &ContactOptions::default()));
+    let contacts = contacts.collect();
+    WalkProfile::new(Arc::clone(set), &roles, contacts)
+}
+
+#[test]
+fn frames_are_numbered_through() {
+    let set = three([30, 20, 25]);
+    assert_eq!((set.frames(), set.longest(), set.fps()), (75, 30, 60.0));
+    for number in 0..75 {
+        assert_eq!(set.number(set.place(number).unwrap()), Some(number));
+    }
+    assert_eq!(set.place(30), Some(Place { clip: 1, frame: 0 }));
+    assert_eq!((set.place(75), set.number(Place { clip: 1, frame: 20 })), (None, None));
+    assert_eq!(FrameSet::new(vec![], HEIGHT), Err(GraphError::NoClips));
+    let faster = Walk {
+        fps: 30.0,
+        ..Walk::default()
+    };
+    let sources = [Walk::default(), faster].map(|walk| {
+        let clip = Arc::new(walk.clip());
+        let roles = Roles::detect(clip.skeleton());
+        Arc::new(Source::new(clip, &roles))
+    });
+    assert!(matches!(FrameSet::new(sources.to_vec(), HEIGHT), Err(GraphError::Blend(_))));
+    assert!(matches!(
+        FrameSet::new(sources[..1].to_vec(), f64::NAN),
+        Err(GraphError::Setting { .. })
+    ));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn all_pairs_are_what_aligning_gives(frames in [5usize..40, 5usize..40, 5usize..40], window in 1usize..12, slice in 1usize..900) {
+        let set = three(frames);
+        let mut all = AllPairs::new(Arc::clone(&set)).unwrap();
+        prop_assert!(all.distances(window).is_err());
+        let mut before = 0;
+        while !all.advance(slice).is_complete() {
+            prop_assert!(all.progress().done > before);
+            before = all.progress().done;
+        }
+        prop_assert_eq!(all.progress().total, {
+            let pairs: usize = frames.iter().sum();
+            pairs * (pairs + 1) / 2
+        });
+        let mut sweep = all.sweep(window).unwrap();
+        while !sweep.advance(7).unwrap().is_complete() {}
+        let distances = sweep.finish().unwrap();
+        for a in 0..set.frames() {
+            for b in 0..set.frames() {
+                let (p, q) = (set.place(a).unwrap(), set.place(b).unwrap());
+                let fits = [p, q].iter().all(|place| place.frame + window <= set.frames_of(place.clip));
+                let found = distances.cm(p, q);
+                prop_assert_eq!(found.is_some(), fits);
+                // One in seven is enough.
+                let Some(found) = found.filter(|_| (a + 3 * b) % 7 == 0) else { continue };
+                let source = |place: Place| set.clip(place.clip).unwrap().clip();
+                let direct = align_onto(source(p), p.frame, source(q), q.frame, window, set.weights(), 0.0).unwrap();
+                let wanted = rms_cm(direct.distance, direct.weight, HEIGHT);
+                prop_assert!((found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted, "{:?} {:?} {} {}", p, q, found, wanted);
+                let aligned = all.alignment(p, q, window).unwrap();
+                if !direct.turn_is_free && !aligned.turn_is_free && wanted < 30.0 {
+                    let off = aligned.transform.inverse().after(&direct.transform);
+                    prop_assert!(off.yaw.abs() < 1e-3 && off.shift.length() < 1e-2, "{:?}", off);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_find_what_all_pairs_do(
+        frames in [20usize..90, 20usize..90, 20usize..90], window in 1usize..18, segment in prop::option::of(19usize..20), threshold in 0.5f64..30.0
+    ) {
+        let set = three(frames);
+        let construction = segment.map_or(Construction::Minima, |segment_size| Construction::Segments { segment_size });
+        let options = options(construction, window, threshold);
+        let all = compared(&set);
+        let held = Candidates::find(&all, &all.distances(window).unwrap(), &options).unwrap();
+        let streamed = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        let places = |of: &Candidates| {
+            let mut places: Vec<_> = of.found().iter().map(|found| (found.leave, found.enter)).collect();
+            places.sort_unstable();
+            places
+        };
+        prop_assert_eq!(places(&held), places(&streamed));
+        for (a, b) in held.found().iter().zip(streamed.found()) {
+            prop_assert!((a.distance_cm - b.distance_cm).abs() < 0.0021);
+        }
+        if segment.is_none() {
+            // The slow way: every pair, and its neighbours.
+            let distances = all.distances(window).unwrap();
+            for found in held.found() {
+                let (a, b) = (found.leave, found.enter);
+                let here = distances.cm(a, b).unwrap();
+                prop_assert!(here <= threshold && a.frame >= 1 && b.frame + window < set.frames_of(b.clip));
+                for (da, db) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1), (1, -1), (-1, 1)] {
+                    let moved = |place: Place, by: i64| Place { frame: (place.frame as i64 + by) as usize, ..place };
+                    if a.frame as i64 + da >= 0 && b.frame as i64 + db >= 0
+ && let Some(there) = distances.cm(moved(a, da), moved(b, db)) {
+                            prop_assert!(there >= here, "{:?} {} {}", found, here, there);
+ }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn long_clips_are_tiled_without_a_gap() {
+    let set = three([1_300, 530, 40]);
+    let options = options(Construction::Minima, 20, 12.0);
+    let all = compared(&set);
+    let held = Candidates::find(&all, &all.distances(20).unwrap(), &options).unwrap();
+    let mut stream = CandidateStream::new(&set, &options).unwrap();
+    let total = stream.advance(1).unwrap().total;
+    // Three parts, one, and one.
+    assert_eq!(total, 5 * 6 / 2);
+    let streamed = stream.finish().unwrap();
+    assert!(held.found().len() > 100, "{}", held.found().len());
+    let same = held
+        .found()
+        .iter()
+        .filter(|a| streamed.found().iter().any(|b| (a.leave, a.enter) == (b.leave, b.enter)))
+        .count();
+    // Equal neighbours may change places by a last digit.
+    assert!(same * 100 >= held.found().len() * 98 && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len());
+}
+
+/// For every segment size and blend window there is a graph that can be walked, or a sentence; and what the sentence says does it.
+#[test]
+fn any_setting_answers() {
+    let set = three([34, 25, 9]);
+    let all = compared(&set);
+    let attempt = |options: &GraphOptions| -> Result<MotionGraph, GraphError> {
+        options.check(&set)?;
+        let candidates = Candidates::find(&all, &all.distances(options.blend_window)?, options)?;
+        MotionGraph::new(&set, &candidates, options)?.pruned()
+    };
+    let (mut graphs, mut sentences) = (0, 0);
+    for segment_size in 0..=36 {
+        for blend_window in 0..=36 {
+            for threshold in [0.0, 6.0, 1e5] {
+                // 0 stands for the other construction.
+                let construction = match segment_size {
+                    0 => Construction::Minima,
+                    segment_size => Construction::Segments { segment_size },
+                };
+                let options = GraphOptions {
+                    min_jump_secs: 0.05,
+                    ..options(construction, blend_window, threshold)
+                };
+                match attempt(&options) {
+                    Ok(graph) => {
+                        graphs += 1;
+                        let graph = Arc::new(graph);
+                        let mut walker = walker(&graph, &WeightOptions::default(), 3);
+                        let pieces = pieces(&graph, &mut walker, &StitchOptions::dissolve(blend_window), 12);
+                        assert_eq!(pieces.len(), 12, "{options:?}");
+                        for piece in &pieces {
+                            assert!(piece.clip.frames() > 0 && piece.frames.len() == piece.clip.frames());
+                        }
+                    }
+                    Err(error) => {
+                        sentences += 1;
+                        let sentence = error.to_string();
+                        assert!(sentence.contains(':'), "{sentence}");
+                        let mended = match error {
+                            GraphError::SegmentTooShort { segment, window } if segment_size < 34 => {
+                                let construction = Construction::Segments { segment_size: window + 1 };
+                                let raised = GraphOptions { construction, ..options };
+                                let lowered = GraphOptions {
+                                    blend_window: segment - 1,
+                                    ..options
+                                };
+                                assert!(segment == 1 || !matches!(attempt(&lowered), Err(GraphError::SegmentTooShort { .. })));
+                                raised.check(&set)
+                            }
+                            GraphError::SegmentTooLong { longest, .. } => {
+                                let construction = Construction::Segments { segment_size: longest };
+                                GraphOptions { construction, ..options }.check(&set)
+                            }
+                            GraphError::WindowTooLong { longest, .. } => GraphOptions {
+                                construction: Construction::Minima,
+                                blend_window: longest - 2,
+                                ..options
+                            }
+                            .check(&set),
+                            GraphError::NoTransition { nearest_cm, .. } => {
+                                let raised = GraphOptions {
+                                    edge_threshold_cm: nearest_cm + 0.01,
+                                    ..options
+                                };
+                                let again = attempt(&raised);
+                                assert!(!matches!(again, Err(GraphError::NoTransition { .. })), "{options:?} {again:?}");
+                                Ok(())
+                            }
+                            _ => Ok(()),
+                        };
+                        assert_eq!(mended, Ok(()), "{sentence}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(graphs > 300 && sentences > 300, "{graphs} {sentences}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let set = three([30, 30, 30]);
+    for wrong in [
+        GraphOptions {
+            edge_threshold_cm: f64::NAN,
+            ..GraphOptions::default()
+        },
+        GraphOptions {
+            edge_threshold_cm: -1.0,
+            ..GraphOptions::default()
+        },
+        GraphOptions {
+            min_jump_secs: f64::INFINITY,
+            ..GraphOptions::default()
+        },
+        GraphOptions {
+            most_ways_out: 0,
+            ..GraphOptions::default()
+        },
+        GraphOptions {
+            blend_window: usize::MAX,
+            ..GraphOptions::default()
+        },
+        options(Construction::Segments { segment_size: usize::MAX }, 3, 5.0),
+    ] {
+        assert!(matches!(wrong.check(&set), Err(GraphError::Setting { .. })), "{wrong:?}");
+    }
+    let all = compared(&set);
+    let distances = all.distances(7).unwrap();
+    let other = Candidates::find(&all, &distances, &options(Construction::Minima, 8, 5.0));
+    assert_eq!(other, Err(GraphError::OtherWindow { found: 7, expected: 8 }));
+}
+
+fn minima_graph() -> Arc<MotionGraph> {
+    let set = three([300, 260, 240]);
+    Arc::new(built(&set, &options(Construction::Minima, 12, 9.0)).unwrap().pruned().unwrap())
+}
+
+#[test]
+fn shares_add_up_and_follow_their_law() {
+    let graph = minima_graph();
+    let laws = [
+        DistanceLaw::Inverse,
+        DistanceLaw::Exponential { sigma_cm: 1.5 },
+        DistanceLaw::Uniform,
+        DistanceLaw::Proportional,
+    ];
+    for law in laws {
+        for continuity in [0.0, 0.3, 1.0] {
+            let choices = Choices::new(&graph, &WeightOptions { continuity, law }).unwrap();
+            for node in graph.graph().node_indices() {
+                let whole: u64 = choices.ways(node).iter().map(|way| way.1).sum();
+                assert_eq!(whole, 1 << 32);
+                let jumps: Vec<(f64, f64)> = choices
+                    .probabilities(node)
+                    .filter_map(|(edge, p)| Some((graph.jump(edge)?.distance_cm, p)))
+                    .collect();
+                let p_continue = choices.p_continue(&graph, node);
+                if jumps.len() < choices.ways(node).len() && !jumps.is_empty() {
+                    assert!((p_continue - continuity).abs() < 1e-9);
+                    assert_eq!(choices.expected_run_nodes(&graph, node), 1.0 / (1.0 - p_continue));
+                }
+                for pair in jumps.windows(2).filter(|_| continuity < 1.0) {
+                    let [(d, p), (e, q)] = [pair[0], pair[1]];
+                    let wanted = match law {
+                        DistanceLaw::Inverse => e.max(0.01) / d.max(0.01),
+                        DistanceLaw::Exponential { sigma_cm } => ((e - d) / sigma_cm).exp(),
+                        DistanceLaw::Uniform => 1.0,
+                        DistanceLaw::Proportional => d.max(0.01) / e.max(0.01),
+                    };
+                    assert!((p / q / wanted - 1.0).abs() < 1e-6, "{law:?} {p} {q} {wanted}");
+                }
+            }
+        }
+    }
+    assert!(
+        Choices::new(
+            &graph,
+            &WeightOptions {
+                continuity: 1.1,
+                ..WeightOptions::default()
+            }
+        )
+        .is_err()
+    );
+    let nothing = DistanceLaw::Exponential { sigma_cm: 0.0 };
+    assert!(
+        Choices::new(
+            &graph,
+            &WeightOptions {
+                law: nothing,
+                ..WeightOptions::default()
+            }
+        )
+        .is_err()
+    );
+}
+
+#[test]
+fn runs_are_as_long_as_expected() {
+    let graph = minima_graph();
+    for continuity in [0.2, 0.8] {
+        let weights = WeightOptions {
+            continuity,
+            ..WeightOptions::default()
+        };
+        let expected = Choices::new(&graph, &weights).unwrap().expected_run_secs(&graph).unwrap();
+        let mut walker = walker(&graph, &weights, 11);
+        let (mut frames, count) = (0, 20_000);
+        for _ in 0..count {
+            let stay = walker.next_stay().unwrap();
+            frames += stay.to - stay.from;
+        }
+        let found = frames as f64 / f64::from(count) / graph.set().fps();
+        assert!((found / expected - 1.0).abs() < 0.05, "{continuity}: {found} {expected}");
+    }
+}
+
+#[test]
+fn a_pruned_graph_has_no_end_and_a_seed_gives_one_walk() {
+    let set = three([300, 260, 240]);
+    let whole = built(&set, &options(Construction::Minima, 12, 9.0)).unwrap();
+    assert!(!whole.dead_ends().is_empty());
+    let graph = Arc::new(whole.pruned().unwrap());
+    assert_eq!(graph.dead_ends(), []);
+    assert_eq!(graph.components().len(), 1);
+    assert_eq!(graph.components()[0].len(), graph.graph().node_count());
+    let edges = |seed| {
+        let mut walker = walker(&graph, &WeightOptions::default(), seed);
+        (0..2_000).map(|_| walker.next_edge().unwrap().index()).collect::<Vec<_>>()
+    };
+    assert_eq!(edges(5), edges(5));
+    assert_ne!(edges(5), edges(6));
+    // A walk over the whole graph comes to an end, and stays there.
+    let whole = Arc::new(whole);
+    let mut walker = walker(
+        &whole,
+        &WeightOptions {
+            continuity: 1.0,
+            ..WeightOptions::default()
+        },
+        1,
+    );
+    let last = std::iter::from_fn(|| walker.next_stay()).last().unwrap();
+    assert_eq!((last.clip, last.to), (0, 300));
+    assert_eq!(walker.next_stay(), None);
+}
+
+#[test]
+fn a_clip_can_be_gone_to_and_what_was_seen_can_be_avoided() {
+    let graph = minima_graph();
+    let weights = WeightOptions::default();
+    let mut walker = walker(&graph, &weights, 2);
+    let clips: Vec<usize> = (0..3)
+        .filter(|&clip| graph.graph().node_weights().any(|stretch| stretch.clip == clip))
+        .collect();
+    assert!(clips.len() > 1);
+    for &clip in clips.iter().rev() {
+        assert!(walker.go_to_clip(clip));
+        let there = |walker: &Walker| graph.graph()[walker.node()].clip == clip;
+        let steps = (0..200).find(|_| there(&walker) || walker.next_edge().is_none());
+        assert!(steps.is_some() && there(&walker));
+    }
+    assert!(!walker.go_to_clip(99));
+    let unseen = |factor: f64| {
+        let mut walker = self::walker(&graph, &weights, 4).with_visited_discount(factor).unwrap();
+        assert!((0..300).all(|_| walker.next_edge().is_some()));
+        walker.visits().iter().filter(|visits| **visits == 0).count()
+    };
+    assert!(unseen(0.3) < unseen(1.0), "{} {}", unseen(0.3), unseen(1.0));
+    assert!(self::walker(&graph, &weights, 4).with_visited_discount(1.5).is_err());
+    // Nothing of it is left, and still there is a way.
+    let mut all_seen = self::walker(&graph, &weights, 4).with_visited_discount(0.0).unwrap();
+    assert!((0..500).all(|_| all_seen.next_edge().is_some()));
+}
+
+#[test]
+fn pieces_follow_each_other_without_a_jump() {
+    let graph = minima_graph();
+    let set = graph.set();
+    let profile = profile(set);
+    for stitch in [StitchOptions::dissolve(12), StitchOptions::inertialize(0.1)] {
+        let mut walker = walker(
+            &graph,
+            &WeightOptions {
+                continuity: 0.4,
+                ..WeightOptions::default()
+            },
+            9,
+        );
+        let pieces = pieces(&graph, &mut walker, &stitch, 60);
+        let mut start = 0;
+        for piece in &pieces {
+            assert_eq!((piece.start, piece.clip.frames()), (start, piece.stay.to - piece.stay.from));
+            start += piece.clip.frames();
+            // Behind the transition it is the clip itself, where it was recorded.
+            let settled = piece.seam.map_or(0, |seam| seam.frames);
+            if let StitchOptions {
+                method: crate::transition::Method::Dissolve { .. },
+                ..
+            } = stitch
+            {
+                for frame in (settled..piece.clip.frames()).step_by(5) {
+                    let own = set.clip(piece.stay.clip).unwrap().clip().pose(piece.stay.from + frame);
+                    let off = piece.clip.pose(frame).root_translation.distance(own.root_translation);
+                    assert!(off < 1e-4, "{off}");
+                    assert_eq!(piece.clip.rotations(frame)[3], own.rotations[3]);
+                }
+            }
+        }
+        let (clip, frames) = assembled(&pieces).unwrap().unwrap();
+        assert_eq!((clip.frames(), frames.len()), (start, start));
+        let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
+        assert_eq!(metrics.seams.len(), pieces.len() - 1);
+        assert_eq!((metrics.spins(), metrics.flashes()), (0, 0), "{:?}", metrics.seams);
+        assert!(metrics.variety > 0.3 && metrics.variety <= 1.0);
+        let roots = clip.root_translations();
+        let longest = roots.windows(2).map(|pair| pair[0].distance(pair[1])).fold(0.0, f32::max);
+        assert!(longest < 0.06, "{longest}");
+        assert!(metrics.list().iter().all(|metric| metric.value.is_none_or(f64::is_finite)));
+    }
+    assert!(assembled(&[]).unwrap().is_none());
+}
+
+#[test]
+fn overlapping_blends_do_not_jump_either() {
+    let set = three([200, 200, 200]);
+    let options = options(Construction::Segments { segment_size: 20 }, 17, 25.0);
+    let graph = Arc::new(built(&set, &options).unwrap().pruned().unwrap());
+    let mut walker = walker(
+        &graph,
+        &WeightOptions {
+            continuity: 0.1,
+            ..WeightOptions::default()
+        },
+        1,
+    );
+    let pieces = pieces(&graph, &mut walker, &StitchOptions::dissolve(17), 80);
+    assert!(pieces.iter().any(|piece| piece.clip.frames() == 3));
+    let metrics = WalkMetrics::measure(&pieces, &graph, &profile(&set));
+    assert_eq!((metrics.spins(), metrics.flashes()), (0, 0));
+}
+
+#[test]
+fn mistakes_spin() {
+    let graph = minima_graph();
+    let profile = profile(graph.set());
+    let measured = |mistake| {
+        let mut walker = walker(
+            &graph,
+            &WeightOptions {
+                continuity: 0.4,
+                ..WeightOptions::default()
+            },
+            9,
+        );
+        let options = StitchOptions {
+            mistake,
+            ..StitchOptions::dissolve(12)
+        };
+        WalkMetrics::measure(&pieces(&graph, &mut walker, &options, 60), &graph, &profile)
+    };
+    assert_eq!(measured(None).spins(), 0);
+    for mistake in [WalkMistake::FirstFrameOnly, WalkMistake::AtanForAtan2] {
+        let wrong = measured(Some(mistake));
+        assert!(wrong.spins() > 0, "{mistake:?}");
+        assert_eq!(wrong.secs, measured(None).secs);
+    }
+}
+
+#[test]
+fn a_path_is_followed() {
+    let set = three([300, 260, 240]);
+    let graph = built(&set, &options(Construction::Minima, 12, 12.0)).unwrap().pruned().unwrap();
+    let path = GroundPath::new(&[DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0)]).unwrap();
+    assert!((path.length() - 4.0 - 41.0_f64.sqrt()).abs() < 1e-12);
+    assert_eq!(
+        (path.at(-1.0), path.at(4.0), path.at(99.0)),
+        (DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0))
+    );
+    let start = NodeIndex::new(0);
+    let found = follow(&graph, start, &path, 60_000);
+    assert!(
+        found.arrives && found.rms_m < 1.5,
+        "{} {} {} {}",
+        found.arrives,
+        found.rms_m,
+        found.along_m,
+        found.looked_at
+    );
+    assert_eq!(follow(&graph, start, &path, 60_000), found);
+    for pair in found.edges.windows(2) {
+        let [before, after] = [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
+        assert_eq!(before.1, after.0);
+    }
+    // A small budget gives a way, too, and hardly goes beyond.
+    let hasty = follow(&graph, start, &path, 40);
+    assert!(!hasty.edges.is_empty() && hasty.looked_at < 1_000);
+    assert!(GroundPath::new(&[DVec2::ZERO]).is_err() && GroundPath::new(&[DVec2::NAN, DVec2::ZERO]).is_err());
+}
+
+#[test]
+fn graphs_are_written() {
+    let graph = minima_graph();
+    let choices = Choices::new(&graph, &WeightOptions::default()).unwrap();
+    let json = graph.to_json(&choices);
+    assert_eq!(json["nodes"].as_array().unwrap().len(), graph.graph().node_count());
+    let edges = json["edges"].as_array().unwrap();
+    assert_eq!(edges.len(), graph.graph().edge_count());
+    assert_eq!(edges.iter().filter(|edge| edge["leave"].is_object()).count(), graph.jumps().len());
+    let dot = graph.to_dot(&choices);
+    assert!(
+        dot.starts_with("digraph {") && dot.matches(" -> ").count() == edges.len(),
+        "{}",
+        &dot[..200]
+    );
+    assert_eq!(dot.matches("style = dashed").count(), graph.jumps().len());
+}
+
+#[test]
+fn pictures_and_histograms_count_every_pair() {
+    let set = three([30, 22, 18]);
+    let all = compared(&set);
+    let distances = all.distances(5).unwrap();
+    let windows = 26 + 18 + 14;
+    let counts = distances.histogram(2.0, 10);
+    assert_eq!(counts.iter().sum::<u32>() as usize, windows * (windows - 1) / 2);
+    let picture = distances.picture(0..70, 20..70, 10);
+    assert_eq!(picture.len(), 7 * 5);
+    let one = distances.picture(3..4, 40..41, 1)[0];
+    assert!((f64::from(one) - distances.cm(Place { clip: 0, frame: 3 }, Place { clip: 1, frame: 10 }).unwrap()).abs() < 1e-3);
+    assert!(distances.picture(27..28, 0..1, 1)[0].is_nan());
+    let _: Planar = all
+        .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
+        .unwrap()
+        .transform;
+}
+
+/// Distance, centimetres; clip and frame that are left; clip and frame that are entered.
+type GoldenJump = (f64, (usize, usize), (usize, usize));
+
+#[derive(serde::Deserialize)]
+struct Golden {
+    window: usize,
+    threshold_cm: f64,
+    min_jump: usize,
+    height: f64,
+    continuity: f64,
+    seed: u64,
+    clips: Vec<Vec<Vec<[f32; 3]>>>,
+    jumps: Vec<GoldenJump>,
+    nodes: Vec<(usize, usize, usize)>,
+    kept: Vec<(usize, usize, usize)>,
+    stays: Vec<(usize, usize, usize)>,
+}
+
+/// A clip whose joints hang from the root and go where they are told.
+fn points_as_clip(skeleton: &Arc<Skeleton>, frames: &[Vec<[f32; 3]>]) -> Arc<Source> {
+    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from(frame[joint]);
+    let roots: Vec<Vec3> = frames.iter().map(|frame| at(frame, 0)).collect();
+    let rotations = vec![Quat::IDENTITY; frames.len() * skeleton.len()];
+    let tracks = (1..skeleton.len()).map(|joint| JointTranslations {
+        joint,
+        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
+    });
+    let clip = Clip::new("points", Arc::clone(skeleton), 60.0, rotations, roots).unwrap();
+    let clip = clip.with_translations(tracks.collect()).unwrap();
+    Arc::new(Source::new(Arc::new(clip), &Roles::detect(skeleton)))
+}
+
+#[test]
+fn graph_and_walk_are_those_of_numpy() {
+    let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/graph.json")).unwrap();
+    let joint = |index: usize| Joint {
+        name: format!("p{index}"),
+        parent: (index > 0).then_some(0),
+        offset: Vec3::ZERO,
+        end_site: None,
+        channels: vec![],
+    };
+    let skeleton = Arc::new(Skeleton::new((0..4).map(joint).collect()).unwrap());
+    let sources = golden.clips.iter().map(|frames| points_as_clip(&skeleton, frames));
+    let set = Arc::new(FrameSet::new(sources.collect(), golden.height).unwrap());
+    let options = GraphOptions {
+        min_jump_secs: golden.min_jump as f64 / 60.0,
+        ..options(Construction::Minima, golden.window, golden.threshold_cm)
+    };
+    let graph = built(&set, &options).unwrap();
+    let pair = |place: Place| (place.clip, place.frame);
+    assert_eq!(graph.jumps().len(), golden.jumps.len());
+    for (jump, wanted) in graph.jumps().iter().zip(&golden.jumps) {
+        assert!((jump.distance_cm - wanted.0).abs() < 0.0021, "{jump:?} {wanted:?}");
+        assert_eq!((pair(jump.leave), pair(jump.enter)), (wanted.1, wanted.2));
+    }
+    let nodes = |graph: &MotionGraph| graph.graph().node_weights().map(|s| (s.clip, s.start, s.end)).collect::<Vec<_>>();
+    assert_eq!(nodes(&graph), golden.nodes);
+    let graph = Arc::new(graph.pruned().unwrap());
+    assert_eq!(nodes(&graph), golden.kept);
+    let weights = WeightOptions {
+        continuity: golden.continuity,
+        law: DistanceLaw::Inverse,
+    };
+    let mut walker = walker(&graph, &weights, golden.seed);
+    for wanted in &golden.stays {
+        let stay = walker.next_stay().unwrap();
+        assert_eq!((stay.clip, stay.from, stay.to), *wanted);
+    }
+}

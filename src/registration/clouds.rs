@@ -1,0 +1,57 @@
+use super::RegistrationError;
+use super::cloud::{Cloud, Shares};
+use super::points::checked_sum;
+use crate::clip::Clip;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Every `stride`-th frame of a part of a clip as a cloud of weighted points: made once, compared with many others.
+#[derive(Clone, Debug)]
+pub struct PointClouds {
+    pub(super) cloud: Arc<Cloud>,
+    pub(super) shares: Shares,
+    /// Σw of one frame.
+    pub(super) frame_weight: f64,
+    pub(super) stride: usize,
+}
+
+impl PointClouds {
+    /// The clouds of `frames` (clamped to the clip), every `stride`-th (at least 1), with one weight per joint. Heights are summed from
+    /// `level_m`: about the middle of the body, the same for all that are compared ([`Self::level_m`]).
+    ///
+    /// # Errors
+    /// [`RegistrationError`] when the part is empty, the weights do not fit, or a position is not finite.
+    pub fn new(clip: &Clip, frames: Range<usize>, weights: &[f64], stride: usize, level_m: f64) -> Result<Self, RegistrationError> {
+        let frame_weight = checked_sum(weights, clip.skeleton().len())?;
+        let frames = frames.start.min(clip.frames())..frames.end.min(clip.frames());
+        if frames.is_empty() {
+            return Err(RegistrationError::Empty { which: "outgoing" });
+        }
+        let (stride, shares) = (stride.max(1), Shares::new(weights, frame_weight));
+        let cloud = Arc::new(Cloud::new(clip, frames, stride, &shares, level_m)?);
+        Ok(Self {
+            cloud,
+            shares,
+            frame_weight,
+            stride,
+        })
+    }
+
+    /// The weighted mean height of a clip's first frame, metres; 0 for a clip without frames.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Weights`] when the weights do not fit.
+    pub fn level_m(clip: &Clip, weights: &[f64]) -> Result<f64, RegistrationError> {
+        let sum = checked_sum(weights, clip.skeleton().len())?;
+        if clip.frames() == 0 {
+            return Ok(0.0);
+        }
+        Ok(Shares::new(weights, sum).mean_height(clip, 0))
+    }
+
+    /// Samples in it.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.cloud.samples
+    }
+}
