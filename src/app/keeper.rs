@@ -93,9 +93,11 @@ impl Keeper {
             Phase::Late { begun } => {
                 let now = Mark::of(session);
                 if now.library != begun.library {
-                    // The user's files are in the library by now; they stay, and what was stored gives way to them.
+                    // The user's files are in the library by now; they stay, are yet to be stored, and what was stored gives way to them.
                     log::warn!("the stored work came too late");
-                } else if let Some(stored) = stored {
+                    return false;
+                }
+                if let Some(stored) = stored {
                     // Parameters that were touched meanwhile stay as they are.
                     let query = (now.query != begun.query || !self.link.is_empty()).then_some(now.query);
                     session.restore(&stored.saved, |key| vault.restore(&stored.files, key), query.as_deref());

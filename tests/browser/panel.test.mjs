@@ -92,7 +92,7 @@ onBothBackends("a page at rest draws nothing", async ({ open }) => {
     await pause(ms);
     return (await segue("stats")).frames - frames;
   };
-  await until("it comes to rest", async () => (await drawnIn(700)) === 0, 15_000);
+  await until("it comes to rest", async () => (await drawnIn(1500)) === 0, 30_000);
   assert.equal(await drawnIn(1500), 0);
   await segue("play");
   await until("it draws again when it plays", async () => (await drawnIn(300)) > 0);
