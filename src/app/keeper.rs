@@ -249,6 +249,16 @@ mod tests {
     }
 
     #[test]
+    fn what_came_before_a_slow_storage_is_stored_too() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.wait(&mut session, &mut Vault::default(), 1151.0);
+        session.apply(Command::OpenLink("lab=make&gait=run".into())).unwrap();
+        session.apply(Command::Keep(0)).unwrap();
+        keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2000.0), Some(QUIET_MS));
+    }
+
+    #[test]
     fn work_is_stored_once_it_is_quiet() {
         let (mut keeper, mut session) = keeper("");
         keeper.arrived(&mut session, &mut Vault::default(), None);
