@@ -416,6 +416,7 @@ impl Segue {
         let before = self.session.revision();
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
+        self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.filming = Filming {
             pictures: platform::can_take_pictures(),
@@ -434,6 +435,7 @@ impl Segue {
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
+        self.picture.mark_path(self.panels.path.marks(&self.session));
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();

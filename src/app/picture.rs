@@ -5,7 +5,7 @@ use crate::render;
 use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
-use segue::scene::{Color, Colors, Director, Look, Viewport};
+use segue::scene::{Camera, Color, Colors, Director, Look, PathMarks, Viewport};
 use segue::session::Session;
 
 /// The one stage of the page.
@@ -57,6 +57,16 @@ impl Picture {
     /// The pair of frames that is shown in place of the result from now on.
     pub(crate) fn show_pair(&mut self, frames: Option<[f64; 2]>) {
         self.director.show_pair(frames);
+    }
+
+    /// What the hand does with a path, in what is drawn from now on.
+    pub(crate) fn mark_path(&mut self, marks: PathMarks) {
+        self.director.mark_path(marks);
+    }
+
+    /// The cameras of so many panes, as they were drawn last.
+    pub(crate) fn cameras(&self, panes: usize) -> Vec<Option<Camera>> {
+        (0..panes).map(|pane| self.director.camera(pane).copied()).collect()
     }
 
     /// Draws the session's present state into the place that was kept.
@@ -121,6 +131,8 @@ fn colors_of(palette: &Palette) -> Colors {
         b: color(palette.b),
         result: color(palette.accent),
         bad: color(palette.bad),
+        warning: color(palette.warning),
+        others: palette.others.map(color),
         ghost_alpha: palette.ghost_alpha,
     }
 }

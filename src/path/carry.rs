@@ -46,6 +46,8 @@ pub struct Carried {
     pub frames: Vec<f64>,
     /// For every frame of it the frame of the new path that it rides in.
     pub places: Vec<Waypoint>,
+    /// For every frame of it where the character stands and what it faces.
+    pub characters: Vec<Planar>,
 }
 
 /// Steadily moving characters keep their speed; one that is slower than this is about to stand, and time runs more and more as it did, metres per second.
@@ -68,7 +70,8 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
         Timing::Metres | Timing::Duration => (0..clip.frames()).map(|frame| frame as f64).collect(),
         Timing::Speed => at_speed(path, edited),
     };
-    let (mut places, mut moves) = (Vec::with_capacity(frames.len()), Vec::with_capacity(frames.len()));
+    let mut places = Vec::with_capacity(frames.len());
+    let (mut moves, mut characters) = (Vec::with_capacity(frames.len()), Vec::with_capacity(frames.len()));
     for &frame in &frames {
         let (index, part) = path.between(frame);
         let parameter = path.parameter(frame);
@@ -82,18 +85,25 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
             Timing::Speed | Timing::Duration => edited.at(parameter),
         };
         let turned = place.frame.after(&old.frame.inverse());
-        moves.push(match options.orientation {
+        let stood = path.character(frame);
+        let planar = match options.orientation {
             Orientation::Path => turned,
-            Orientation::World => {
-                let stood = path.character(frame).shift;
-                let shift = turned.apply_ground(stood) - stood;
-                Planar { yaw: 0.0, shift }
-            }
-        });
+            Orientation::World => Planar {
+                yaw: 0.0,
+                shift: turned.apply_ground(stood.shift) - stood.shift,
+            },
+        };
+        characters.push(planar.after(&stood));
+        moves.push(planar);
         places.push(place);
     }
     let clip = moved(clip, &frames, &moves)?;
-    Ok(Carried { clip, frames, places })
+    Ok(Carried {
+        clip,
+        frames,
+        places,
+        characters,
+    })
 }
 
 impl Carried {

@@ -1,5 +1,6 @@
 use super::{CarryOptions, FittedPath, HardTurn, PathEditError, Road, Waypoint, carry, hard_turns};
 use crate::clip::{Clip, Contacts};
+use crate::math::Planar;
 use crate::metrics::foot_slide_cm;
 use crate::skeleton::Roles;
 use crate::transition::{FootLockOptions, foot_lock};
@@ -23,6 +24,8 @@ pub struct EditedMotion {
     pub frames: Vec<f64>,
     /// For every frame of it the frame of the edited path that it rides in.
     pub places: Vec<Waypoint>,
+    /// For every frame of it where the character stands and what it faces, before its feet are planted.
+    pub characters: Vec<Planar>,
     /// When which foot is on the ground.
     pub contacts: Contacts,
     /// How far a planted foot slides in the worst stance, centimetres; `None` without feet or stances.
@@ -96,6 +99,7 @@ impl PathEditor {
             clip,
             frames: carried.frames,
             places: carried.places,
+            characters: carried.characters,
             contacts,
             slide_cm,
             hard_turns,

@@ -231,6 +231,8 @@ fn the_chosen_joint_is_marked_over_the_body() {
         b: rgb(B[theme]),
         result: rgb(RESULT[theme]),
         bad: rgb(0xff_7a_6b),
+        warning: rgb(0xf0_c0_5a),
+        others: [rgb(0x5f_a8_f5); 4],
         ghost_alpha: 0.4,
     };
     let size = [700, 600];
@@ -271,6 +273,8 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
             b: rgb(B[theme]),
             result: rgb(RESULT[theme]),
             bad: rgb(0xff_7a_6b),
+            warning: rgb(0xf0_c0_5a),
+            others: [rgb(0x5f_a8_f5); 4],
             ghost_alpha: 0.4,
         };
         let mut blue = Vec::new();
@@ -311,6 +315,8 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
         b: rgb(0x5f_a8_f5),
         result: rgb(0x58_d6_a9),
         bad: rgb(0xff_7a_6b),
+        warning: rgb(0xf0_c0_5a),
+        others: [rgb(0x5f_a8_f5); 4],
         ghost_alpha: 0.42,
     };
     for (name, link, pair) in [

@@ -1,3 +1,4 @@
+use super::path::{PathMarks, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::math::Planar;
@@ -17,6 +18,10 @@ pub struct Colors {
     pub result: Color,
     /// The ring of a foot that slides.
     pub bad: Color,
+    /// Where a path turns faster than the motion on it can.
+    pub warning: Color,
+    /// Those who play along, each with its ghost and path.
+    pub others: [Color; 4],
     /// How much a ghost covers, 0 to 1.
     pub ghost_alpha: f32,
 }
@@ -28,6 +33,7 @@ pub struct Director {
     rigs: Vec<CameraRig>,
     marks_joint: bool,
     pair: Option<[f64; 2]>,
+    marks: PathMarks,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
@@ -43,6 +49,8 @@ const MARK_RADIUS: f32 = 0.011;
 const BESIDE_METRES: f64 = 0.8;
 /// The poses of a pair are more than ghosts: they are all there is.
 const PAIR_ALPHA: f32 = 1.8;
+/// How much of a companion's colour is on its clay.
+const COMPANY_SHARE: f32 = 0.55;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
 /// A camera that nothing is followed with comes to a new view this fast.
@@ -88,6 +96,7 @@ impl Director {
                     Some((frames, map)) => self.draw_pair(&shown, frames, map, params, colors, pane),
                     None => self.draw(&shown, params, &look, colors, pane),
                 }
+                self.draw_company(session, &look, colors, pane);
                 self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
@@ -109,6 +118,11 @@ impl Director {
     /// The pair of frames of A and B (at A's rate) that is shown in place of the result from now on, aligned; `None` for the result itself.
     pub fn show_pair(&mut self, frames: Option<[f64; 2]>) {
         self.pair = frames;
+    }
+
+    /// What the hand does with a path, from now on.
+    pub fn mark_path(&mut self, marks: PathMarks) {
+        self.marks = marks;
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -177,7 +191,9 @@ impl Director {
                 );
             }
         }
-        if params.is_on(Key::Trail) {
+        if let Some(path) = &outcome.path {
+            add_path(path, &self.marks, look, colors, pane);
+        } else if params.is_on(Key::Trail) {
             add_ground_path(outcome, place, colors, pane);
         }
         if params.is_on(Key::JointTrail)
@@ -187,6 +203,31 @@ impl Director {
         }
         if params.is_on(Key::Contacts) {
             add_contacts(shown, colors, pane);
+        }
+    }
+
+    /// Those who play along, in the middle between clay and their colour, each on its way.
+    fn draw_company(&mut self, session: &Session, look: &Look, colors: &Colors, pane: &mut Pane) {
+        let params = session.params();
+        for (index, companion) in session.company().iter().enumerate() {
+            let Ok(motion) = &companion.motion else { continue };
+            let color = colors.others[index % colors.others.len()];
+            let Some(world) = pose_at(motion, session.now_secs(), &Planar::IDENTITY) else {
+                continue;
+            };
+            if params.text(Key::Look) == "bones" {
+                add_bones(motion.clip.skeleton(), &world, color, pane);
+            } else {
+                let body = self.body(motion);
+                pane.add_body(&body, &world, mixed(look.clay, color, COMPANY_SHARE));
+            }
+            if params.is_on(Key::Trail) {
+                let ways = motion
+                    .ground_frames
+                    .iter()
+                    .step_by(motion.ground_frames.len().div_ceil(PATH_POINTS).max(1));
+                pane.add_path(ways.map(|place| (place.origin().with_y(0.004), color)), 2.0, Layer::Ground);
+            }
         }
     }
 
@@ -278,6 +319,12 @@ impl Director {
         };
         let Some(rig) = self.rigs.get_mut(index) else { return };
         let first = *rig == CameraRig::default();
+        if self.marks.is_held && !first {
+            // The ground must not move under the hand.
+            pane.camera = *rig.camera();
+            pane.focus = rig.goal.target.with_y(0.0);
+            return;
+        }
         let cut = goal.target.distance(rig.goal.target) > CUT_METRES;
         rig.goal = goal;
         if first || cut {
@@ -381,11 +428,13 @@ fn middle_height(motion: &Motion) -> f32 {
 
 /// A's colour where nothing of B is, B's where all is, softened by the clay of the body.
 fn share_color(share: f32, look: &Look, colors: &Colors) -> Color {
-    let mixed = |channel: usize| {
-        let pure = colors.a[channel] + (colors.b[channel] - colors.a[channel]) * share;
-        pure + (look.clay[channel] - pure) * CLAY_SHARE
-    };
-    [mixed(0), mixed(1), mixed(2), 1.0]
+    mixed(mixed(colors.a, colors.b, share), look.clay, CLAY_SHARE)
+}
+
+/// An opaque colour between two.
+fn mixed(from: Color, to: Color, share: f32) -> Color {
+    let between = |channel: usize| from[channel] + (to[channel] - from[channel]) * share;
+    [between(0), between(1), between(2), 1.0]
 }
 
 /// Warm where A plays, cool where B does, the accent between them and where there is no transition.

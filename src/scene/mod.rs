@@ -9,6 +9,7 @@ mod body;
 mod bounds;
 mod build;
 mod camera;
+mod path;
 mod rig;
 mod stage;
 
@@ -16,5 +17,6 @@ pub use body::Body;
 pub use bounds::Bounds;
 pub use build::{Colors, Director, camera_of, pose_at, resting_point};
 pub use camera::{Camera, Lens, Ray};
+pub use path::PathMarks;
 pub use rig::CameraRig;
 pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Stage, Stroke, Viewport, rgb, with_alpha};

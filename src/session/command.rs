@@ -28,6 +28,8 @@ pub enum Command {
     Reimport(String, ImportOptions),
     /// Puts the result of a pane, counted from 0, into the library.
     Keep(usize),
+    /// Changes who plays along in the Path lab.
+    Company(CompanyChange),
     /// Moves the playhead, seconds.
     Seek(f64),
     /// Moves the playhead by whole frames and pauses.
@@ -44,6 +46,19 @@ pub enum Command {
     Dismiss(u64),
     /// Gives up reading a file, by the number of its task.
     StopReading(u64),
+}
+
+/// Who plays along on the stage of the Path lab: by their place in the list, counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CompanyChange {
+    /// A clip of the library joins.
+    Join(String),
+    /// The result of a pane joins, and is kept in the library; another path can be made then.
+    JoinResult(usize),
+    /// Changes places with what is being edited.
+    Edit(usize),
+    /// Leaves the stage; in the library it stays.
+    Leave(usize),
 }
 
 /// Why a command could not be carried out. Nothing is changed then.

@@ -18,13 +18,13 @@ mod saved;
 pub mod transport;
 mod undo;
 
-pub use command::{Command, CommandError, Request};
+pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{ClipInfo, Job, Loaded, Pane, Session, Shown};
+pub use document::{ClipInfo, Companion, Job, Loaded, Pane, Session, Shown};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
 pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
-pub use recipe::{Beat, DistanceMap, Registered, write_pins};
+pub use recipe::{Beat, DistanceMap, FittedMotion, OnPath, Registered, write_pins};
 pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use saved::{Saved, SavedEntry};

@@ -20,6 +20,7 @@ pub enum Group {
     Loop,
     Layers,
     Register,
+    Path,
 }
 
 impl Group {
@@ -39,6 +40,7 @@ impl Group {
             Self::Loop => "loop",
             Self::Layers => "layers",
             Self::Register => "register",
+            Self::Path => "path",
         }
     }
 
@@ -212,6 +214,7 @@ const LABS: &[Choice] = &[
     choice("loop", "Loop"),
     choice("layers", "Layers"),
     choice("register", "Register"),
+    choice("path", "Path"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -262,6 +265,12 @@ const REFERENCES: &[Choice] = &[choice("mean", "mean"), choice("first", "first f
 const WARPS: &[Choice] = &[choice("registered", "registered"), choice("plain", "plain")];
 const WARP_MODES: &[Choice] = &[choice("blend", "blend"), choice("join", "join")];
 const ENDS: &[Choice] = &[choice("free", "free"), choice("corner", "corner")];
+const KEEPS: &[Choice] = &[
+    choice("speed", "speed"),
+    choice("duration", "duration"),
+    choice("whole", "whole way"),
+];
+const FACINGS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it did")];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -337,6 +346,16 @@ parameters! {
     EndSlack "end_slack" "Left out at most" Register number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
     WarpSmoothing "warp_smoothing" "Smoothing" Register auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
     Pins "pins" "Pins" Register Kind::Text, Start::Word(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
+
+    ControlPoints "control_points" "Control points" Path number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
+    PathSmoothing "path_smoothing" "Smoothing" Path number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
+    PathKeep "keep" "Keep" Path Kind::Choice(KEEPS), Start::Word("speed"), "", "What stays when the path becomes longer or shorter.";
+    PathFacing "path_facing" "Body faces" Path Kind::Choice(FACINGS), Start::Word("path"), "", "Whether the body turns where the path turns, or faces as it did before.";
+    Path "path" "Path" Path Kind::Text, Start::Word(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
+    PathGrid "path_grid" "Snap to grid" Path number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
+    PinStart "pin_start" "Pin the start" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
+    PinEnd "pin_end" "Pin the end" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
+    Others "others" "Others" Path Kind::Text, Start::Word(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

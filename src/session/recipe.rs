@@ -12,18 +12,21 @@ mod layers;
 mod looping;
 mod make;
 mod pair;
+mod path;
 mod register;
 mod rounds;
 mod speed;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
-pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
+pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
+pub use path::{FittedMotion, OnPath};
+pub(super) use path::{PathInputs, Paths};
 pub use register::{Beat, DistanceMap, Registered, write_pins};
 pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
@@ -135,6 +138,8 @@ pub struct Outcome {
     pub layer: Option<LayerFacts>,
     /// Which frames of A and B it is made of; `None` where they were not registered.
     pub registered: Option<Arc<Registered>>,
+    /// The path that it goes on; `None` where it was not edited.
+    pub path: Option<Arc<OnPath>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -150,6 +155,7 @@ impl Outcome {
             retargeted: None,
             layer: None,
             registered: None,
+            path: None,
             metrics: Vec::new(),
         }
     }

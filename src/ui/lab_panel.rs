@@ -7,6 +7,7 @@ use super::kit::{self, Button, Icon};
 use super::layers_rows::layers_ui;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
+use super::path_panel::path_ui;
 use super::register_panel::register_ui;
 use super::save_rows::save_rows_ui;
 use super::state::UiState;
@@ -27,6 +28,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "loop" => loop_ui(session, state, out, ui),
         "layers" => layers_ui(session, state, out, ui),
         "register" => register_ui(session, state, out, ui),
+        "path" => path_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);

@@ -2,6 +2,8 @@
 
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::out::{Action, Out};
+use super::path_hand::path_of;
+use super::path_stage::{drawing_input, frame_once, handles_ui, said_ui};
 use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
@@ -25,8 +27,14 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         columns(stage, panes.len()).enumerate().collect()
     };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
-    camera_input(session, &response, out, ui);
+    frame_once(session, state, out);
+    let draws = drawing_input(session, &shown, &response, state, out, ui);
+    camera_input(session, &response, draws, out, ui);
     paint(stage, &shown, ui);
+    (state.path.hovered, state.path.place) = (None, None);
+    for &(index, rect) in &shown {
+        handles_ui(session, index, rect, &response, state, out, ui);
+    }
 
     let verdicts = verdicts(panes);
     let mut numbers_top = stage.bottom();
@@ -48,10 +56,15 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         text::WELCOME_HINT
     } else if session.params().text(Key::Lab) == "register" {
         text::REGISTER_HINT
+    } else if session.params().text(Key::Lab) == "path" {
+        text::PATH_HINT
     } else {
         ""
     };
-    if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
+    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.path.drawing);
+    if says {
+        said_ui(stage, numbers_top, state, ui);
+    } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
         let above_numbers = stage.with_max_y(numbers_top - space::S);
         kit::caption_ui(hint, above_numbers, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
@@ -152,6 +165,8 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         (text::ROUGHEST, Mood::Bad)
     } else if is_beyond(pane) {
         (text::BEYOND, Mood::Warning)
+    } else if path_of(session, pane).is_some_and(|path| !path.hard_turns.is_empty()) {
+        (text::TOO_HARD, Mood::Warning)
     } else {
         ("", Mood::default())
     };
@@ -297,6 +312,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             text: String::new(),
             secondary: Key::LoopMethod.param().spoken(session.params().get(Key::LoopMethod)),
         },
+        "path" => Words {
+            strong: name(Key::A),
+            text: String::new(),
+            secondary: path_of(session, pane).map_or_else(String::new, text::path_lengths),
+        },
         "layers" => Words {
             strong: name(Key::A),
             text: format!("+ {}", name(Key::B)),
@@ -397,10 +417,10 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
 const TURN_PER_POINT: f64 = 0.35;
 
 /// Turns, moves and zooms: drag; Shift or another button, or two fingers; wheel or pinch.
-fn camera_input(session: &Session, response: &Response, out: &mut Out, ui: &Ui) {
+fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut Out, ui: &Ui) {
     let params = session.params();
     let mut values = Vec::new();
-    let (drag, panning) = drag_of(response, ui);
+    let (drag, panning) = if draws { (Vec2::ZERO, false) } else { drag_of(response, ui) };
     let from_above = params.text(Key::Camera) == "top";
     if drag != Vec2::ZERO && (panning || from_above) {
         values.extend(pan(session, drag, response.rect));
@@ -455,23 +475,37 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 
 /// Stops following and shows the whole way of every pane.
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
+    out.commands.extend(framing(session, state, None).map(segue::session::Command::Set));
+}
+
+/// The camera that shows the whole way of everybody; from this height, degrees, or from where it is.
+pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) -> Option<Vec<(Key, Value)>> {
     let outcomes = || session.panes().iter().filter_map(|pane| pane.shown_at(0.0));
     let places = outcomes().flat_map(|shown| {
         let frames = &shown.outcome.motion.ground_frames;
         frames.iter().map(move |frame| shown.place.after(frame).origin())
     });
-    let (low, high) = places.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
+    let company = session.company().iter().filter_map(|companion| companion.motion.as_ref().ok());
+    let company = company.flat_map(|motion| motion.ground_frames.iter().map(segue::math::Planar::origin));
+    let paths = session.panes().iter().filter_map(|pane| path_of(session, pane));
+    let points = paths.flat_map(|path| path.road.spline().points());
+    let points = points.map(|point| glam::Vec3::new(point.x as f32, 0.0, point.y as f32));
+    let all = places.chain(company).chain(points);
+    let (low, high) = all.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     });
-    let Some(first) = outcomes().next().filter(|_| low.is_finite()) else {
-        return;
-    };
+    let first = outcomes().next().filter(|_| low.is_finite())?;
     let motion = &first.outcome.motion;
     let height = motion.roles.body_height(motion.clip.skeleton());
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
-    let mut camera = camera_of(session.params());
+    let mut params = session.params().clone();
+    let pitch = pitch.map(|pitch| (Key::CameraPitch, Value::Number(pitch)));
+    if let Some((key, value)) = &pitch {
+        params.set(*key, value.clone()).ok()?;
+    }
+    let mut camera = camera_of(&params);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
     let pan = camera.target - resting_point(first.outcome, &first.place);
@@ -479,10 +513,11 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
         (Key::Follow, Value::Choice("off")),
         (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),
     ];
+    values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {
         values.push((key, Value::Number(f64::from(value).clamp(-100.0, 100.0))));
     }
-    out.commands.push(segue::session::Command::Set(values));
+    Some(values)
 }
 
 /// Where a point of the picture is, for tests and captions.

@@ -1,6 +1,8 @@
 //! What the interface remembers that is nobody else's business.
 
+use super::path_hand::PathHand;
 use eframe::egui::Rect;
+use segue::scene::Camera;
 use segue::session::export::ExportOptions;
 
 /// How much room there is.
@@ -70,6 +72,10 @@ pub(crate) struct UiState {
     pub(crate) joints_open: bool,
     /// The pair of frames of A and B, at A's rate, that the pointer is at on the map of distances.
     pub(crate) hovered_pair: Option<[f64; 2]>,
+    /// The hand on the path of the Path lab.
+    pub(crate) path: PathHand,
+    /// The cameras of all panes as they were drawn last.
+    pub(crate) cameras: Vec<Option<Camera>>,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -96,6 +102,8 @@ impl Default for UiState {
             details: None,
             joints_open: false,
             hovered_pair: None,
+            path: PathHand::default(),
+            cameras: Vec::new(),
             export: ExportOptions::default(),
             saved_pane: 0,
             filming: Filming::default(),

@@ -3,6 +3,7 @@
 use super::cycle_panels::{compare_loops, compare_speeds};
 use super::kit::{self, Button, Icon, MenuItem};
 use super::out::{Action, Out};
+use super::path_panel::compare_points;
 use super::register_panel::compare_warps;
 use super::state::{Layout, UiState};
 use super::text;
@@ -141,6 +142,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "speed" => return compare_speeds(session, out),
         "loop" => return compare_loops(session, out),
         "register" => return compare_warps(session, out),
+        "path" => return compare_points(session, out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,

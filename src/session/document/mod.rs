@@ -1,9 +1,11 @@
 //! The document itself: what it holds, and what commands do to it.
 
+mod company;
 mod going_round;
 mod loading;
 mod panes;
 
+pub use company::Companion;
 pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
@@ -16,7 +18,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
+use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Paths, Registrar, Slot, read_pins};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -90,6 +92,8 @@ pub struct Session {
     cycles: CycleFinder,
     layerer: Layerer,
     registrar: Registrar,
+    paths: Paths,
+    company: Vec<Companion>,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -119,6 +123,8 @@ impl Session {
             cycles: CycleFinder::default(),
             layerer: Layerer::default(),
             registrar: Registrar::default(),
+            paths: Paths::default(),
+            company: Vec::new(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -207,13 +213,14 @@ impl Session {
         self.panes.first().and_then(|pane| pane.outcome.as_ref())
     }
 
-    /// The longest result's duration, seconds.
+    /// The duration of the longest result, or of who plays along with it, seconds.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.panes
             .iter()
             .filter_map(|pane| pane.outcome.as_ref())
             .map(|outcome| outcome.duration_secs())
+            .chain(self.company.iter().filter_map(Companion::duration_secs))
             .fold(0.0, f64::max)
     }
 
@@ -302,6 +309,7 @@ impl Session {
             Command::CorrectRole(id, role, joint) => self.correct_role(&id, role, joint)?,
             Command::Reimport(id, options) => self.reimport(&id, &options)?,
             Command::Keep(pane) => self.keep(pane)?,
+            Command::Company(change) => self.change_company(change)?,
             Command::Seek(secs) => {
                 let to = if secs.is_finite() {
                     secs.clamp(0.0, self.duration_secs())
@@ -514,6 +522,7 @@ impl Session {
         let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
         self.remember(None);
         self.library.remove(&entry.id);
+        self.leave_company(&entry.id);
         self.library_revision += 1;
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {

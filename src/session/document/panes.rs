@@ -8,7 +8,7 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs};
+use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, Slot, SpeedInputs};
 use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
@@ -82,6 +82,7 @@ pub(super) enum Inputs {
     Loop(LoopInputs),
     Layers(LayerInputs),
     Register(RegisterInputs),
+    Path(PathInputs),
 }
 
 impl PartialEq for Inputs {
@@ -94,6 +95,7 @@ impl PartialEq for Inputs {
             (Self::Loop(a), Self::Loop(b)) => a == b,
             (Self::Layers(a), Self::Layers(b)) => a == b,
             (Self::Register(a), Self::Register(b)) => a == b,
+            (Self::Path(a), Self::Path(b)) => a == b,
             _ => false,
         }
     }
@@ -157,7 +159,7 @@ impl Session {
         match (self.params.text(Key::Lab), slot) {
             ("make", _) => false,
             (_, Slot::A) => true,
-            (lab, Slot::B) => !matches!(lab, "view" | "loop"),
+            (lab, Slot::B) => !matches!(lab, "view" | "loop" | "path"),
         }
     }
 
@@ -254,6 +256,7 @@ impl Session {
             self.refresh_pane(&mut pane, &params, match_window);
             self.panes.push(pane);
         }
+        self.refresh_company();
     }
 
     /// A and B, made ready for each other.
@@ -275,6 +278,9 @@ impl Session {
             "loop" => (self.motion_of(params.text(Key::A)))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
                 .map(Inputs::Loop),
+            "path" => (self.motion_of(params.text(Key::A)))
+                .and_then(|motion| self.paths.inputs(&motion, params))
+                .map(Inputs::Path),
             lab => self.pair_of(params).and_then(|pair| match lab {
                 "speed" => self.gaits.inputs(&pair, params).map(Inputs::Speed),
                 "layers" => self.layerer.inputs(&pair, params).map(Inputs::Layers),
@@ -298,6 +304,7 @@ impl Session {
                     Inputs::Loop(cycle) => cycle.run(),
                     Inputs::Layers(layers) => layers.run(),
                     Inputs::Register(register) => register.run(),
+                    Inputs::Path(path) => path.run(),
                 };
                 match outcome {
                     Ok(outcome) => {

@@ -365,6 +365,7 @@ impl BlendInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             registered: None,
+            path: None,
             metrics,
         })
     }

@@ -23,6 +23,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "loop" => group == Group::Loop || matches!(key, Key::HalfLife | Key::FootLock),
         "layers" => group == Group::Layers || key == Key::FootLock,
         "register" => group == Group::Register || key == Key::FootLock,
+        "path" => group == Group::Path || key == Key::FootLock,
         _ => false,
     }
 }
@@ -31,11 +32,16 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
         Key::A => true,
-        Key::B => lab != "loop",
-        // Looked at, and not made from.
-        Key::MaskColors => false,
+        Key::B => !matches!(lab, "loop" | "path"),
+        // Looked at or worked with, and not made from.
+        Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
         _ => belongs_to(key, lab),
     }
+}
+
+/// What a lab's result is made from, clips included.
+pub(in crate::session) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = Key> {
+    PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
 }
 
 /// The id of what the parameters make: `run(turn_rate:20)` of the Make lab, `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
@@ -97,8 +103,30 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
         "loop" => format!("{a}, looped"),
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
+        "path" => format!("{a} on a path"),
         _ => format!("{a} to {b}"),
     }
+}
+
+/// Several ids in one text: separated by commas.
+pub(in crate::session) fn write_ids(ids: &[String]) -> String {
+    let written = |id: &String| match recipe_params(id) {
+        Some(_) => id.clone(),
+        None => utf8_percent_encode(id, RESERVED).to_string(),
+    };
+    ids.iter().map(written).collect::<Vec<_>>().join(",")
+}
+
+/// The ids of such a text; `None` when its brackets do not close.
+pub(in crate::session) fn read_ids(text: &str) -> Option<Vec<String>> {
+    let id = |part: &str| {
+        if part.ends_with(')') {
+            part.to_owned()
+        } else {
+            percent_decode_str(part).decode_utf8_lossy().into_owned()
+        }
+    };
+    Some(parts(text)?.into_iter().map(id).collect())
 }
 
 /// What was found where it was left to Segue.

@@ -306,6 +306,7 @@ impl LayerInputs {
                 has_no_steps: timed.has_no_steps,
             }),
             registered: None,
+            path: None,
             metrics,
         })
     }

@@ -180,6 +180,7 @@ impl LoopInputs {
             retargeted: None,
             layer: None,
             registered: None,
+            path: None,
             metrics,
         })
     }

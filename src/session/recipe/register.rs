@@ -357,6 +357,7 @@ impl RegisterInputs {
             cycle: None,
             retargeted: pair.retargeted.clone(),
             layer: None,
+            path: None,
             metrics,
         })
     }

@@ -150,6 +150,7 @@ impl SpeedInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             registered: None,
+            path: None,
             metrics,
         })
     }

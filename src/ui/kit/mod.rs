@@ -23,6 +23,7 @@ mod metrics;
 mod notice;
 pub(crate) mod paint;
 mod pane;
+mod profile;
 mod section;
 mod segmented;
 mod slider_row;
@@ -47,6 +48,7 @@ pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{Notice, NoticeEvent, caption_ui, progress_row_ui, toasts_ui};
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
+pub(crate) use profile::profile_ui;
 pub(crate) use section::{folded_ui, section_header_ui};
 pub(crate) use segmented::segmented_ui;
 pub(crate) use slider_row::{Mark, SliderRow, Source, slider_row_ui};

@@ -64,6 +64,8 @@ pub(crate) struct Palette {
     pub(crate) handle: Color32,
     /// The sign on [`Self::handle`].
     pub(crate) on_handle: Color32,
+    /// Those who play along: neither A, B nor the result.
+    pub(crate) others: [Color32; 4],
     /// Under raised things. Translucent.
     pub(crate) shadow: Color32,
     /// Distances, from alike to far apart: what is alike has the ground's colour, so that curves stand out in the valleys.
@@ -143,6 +145,7 @@ pub(crate) const DARK: Palette = Palette {
     warning_wash: wash(0xf0_c05a, 30),
     handle: hex(0xe8_eaf0),
     on_handle: hex(0x15_181e),
+    others: [hex(0x5f_a8f5), hex(0xc0_8df0), hex(0xf0_8fb4), hex(0xa9_c75a)],
     shadow: wash(0x00_0000, 110),
     heat: [hex(0x0c_0e13), hex(0x20_2b45), hex(0x47_4a80), hex(0x8f_6496), hex(0xd9_a394)],
     ghost_alpha: 0.42,
@@ -188,6 +191,7 @@ pub(crate) const LIGHT: Palette = Palette {
     warning_wash: wash(0xe0_a81c, 36),
     handle: hex(0x1b_2030),
     on_handle: hex(0xff_ffff),
+    others: [hex(0x2f_7fd6), hex(0x8a_52cc), hex(0xc4_4f82), hex(0x66_8512)],
     shadow: wash(0x1b_2030, 44),
     heat: [hex(0xff_ffff), hex(0xd6_e0f2), hex(0xa8_a9d8), hex(0x8b_62a4), hex(0x55_2a5b)],
     ghost_alpha: 0.34,
@@ -290,7 +294,15 @@ mod tests {
     fn controls_stand_out_from_panels() {
         // WCAG 1.4.11: what one must see to use a control reaches 3.
         for (theme, p) in themes() {
-            for (name, fill) in [("accent", p.accent), ("handle", p.handle), ("accent fill", p.accent_fill)] {
+            for (name, fill) in [
+                ("accent", p.accent),
+                ("handle", p.handle),
+                ("accent fill", p.accent_fill),
+                ("other", p.others[0]),
+                ("other", p.others[1]),
+                ("other", p.others[2]),
+                ("other", p.others[3]),
+            ] {
                 let ratio = contrast(fill, p.panel);
                 assert!(ratio >= 3.0, "{theme}: {name} on panel is {ratio:.2}");
             }

@@ -1,0 +1,141 @@
+//! The Path lab on the stage: the way as it was, the path that was fitted to it, the path as it is now, and its control points.
+
+use super::{Color, Colors, Layer, Look, Pane, with_alpha};
+use crate::path::{Road, Waypoint};
+use crate::session::OnPath;
+use glam::{DVec2, Vec3};
+
+/// What the hand does with the path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathMarks {
+    /// Whether control points are to be seen.
+    pub handles: bool,
+    /// The chosen control point.
+    pub chosen: Option<usize>,
+    /// The control point under the pointer.
+    pub hovered: Option<usize>,
+    /// The place on the path that the pointer is at, (x, z) in metres: a point can be added there.
+    pub place: Option<DVec2>,
+    /// A point is held, or a curve is drawn: cameras stand still.
+    pub is_held: bool,
+    /// The curve that is being drawn by hand, (x, z) in metres.
+    pub drawn: Vec<DVec2>,
+}
+
+/// Points of a curve for each of its control points.
+const POINTS: usize = 24;
+/// Time between two of the lines that show what the fit leaves over, seconds.
+const RESIDUAL_SECS: f64 = 0.1;
+/// At most so many of them are drawn.
+const RESIDUALS: usize = 400;
+/// Heights above the ground in which lines lie over each other, metres.
+const LOWEST: f32 = 0.003;
+/// Likewise.
+const MIDDLE: f32 = 0.005;
+/// Likewise.
+const HIGHEST: f32 = 0.007;
+/// Radius of a control point, points.
+const HANDLE: f32 = 6.0;
+
+/// Adds everything to a pane whose camera is set later; control points are lines on the ground plane over everything.
+pub(super) fn add_path(path: &OnPath, marks: &PathMarks, look: &Look, colors: &Colors, pane: &mut Pane) {
+    add_original(path, colors, pane);
+    add_edited(path, colors, pane);
+    if marks.handles {
+        let points = path.road.spline().points();
+        pane.add_dashed_path(
+            points.iter().map(|&point| on_ground(point, MIDDLE)),
+            with_alpha(look.clay, 0.45),
+            0.06,
+            1.0,
+            Layer::Ground,
+        );
+        for (index, &point) in points.iter().enumerate() {
+            let (chosen, hovered) = (marks.chosen == Some(index), marks.hovered == Some(index));
+            let radius = if chosen || hovered { HANDLE + 1.5 } else { HANDLE };
+            let inside = if chosen { colors.result } else { look.background_top };
+            add_dot(point, radius, if hovered || chosen { look.clay } else { colors.result }, pane);
+            add_dot(point, radius - 2.0, inside, pane);
+        }
+        if let Some(place) = marks.place {
+            add_dot(place, HANDLE - 1.0, with_alpha(colors.result, 0.7), pane);
+        }
+    }
+    let drawn = marks.drawn.iter().map(|&point| (on_ground(point, HIGHEST), colors.result));
+    pane.add_path(drawn, 3.0, Layer::Over);
+}
+
+/// The way of the hips in A's colour, the path fitted to it, and short lines between: what is carried along.
+fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
+    let (motion, places) = (path.fitted.motion(), path.fitted.places());
+    let strength = if path.is_edited { 0.6 } else { 1.0 };
+    let way = motion.ground_frames.iter();
+    let stride = motion.ground_frames.len().div_ceil(1200).max(1);
+    let faint = with_alpha(colors.a, 0.45 * strength);
+    pane.add_path(
+        way.clone().step_by(stride).map(|place| (place.origin().with_y(LOWEST), faint)),
+        1.5,
+        Layer::Ground,
+    );
+    if path.is_edited {
+        let fitted = curve(path.fitted.road())
+            .into_iter()
+            .map(|place| on_ground(place.frame.shift, MIDDLE));
+        pane.add_dashed_path(fitted, with_alpha(colors.a, 0.8), 0.08, 1.5, Layer::Ground);
+    }
+    let apart = (motion.clip.fps() * RESIDUAL_SECS)
+        .max(places.len() as f64 / RESIDUALS as f64)
+        .max(1.0) as usize;
+    for (place, character) in places.iter().zip(way).step_by(apart) {
+        let from = on_ground(place.frame.shift, LOWEST);
+        pane.add_line(
+            from,
+            character.origin().with_y(LOWEST),
+            with_alpha(colors.a, 0.8 * strength),
+            1.0,
+            Layer::Ground,
+        );
+    }
+}
+
+/// The path as it is now; where it turns too hard, in the colour of a warning.
+fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
+    let places = curve(&path.road);
+    pane.add_path(
+        places.iter().map(|place| (on_ground(place.frame.shift, HIGHEST), colors.result)),
+        2.5,
+        Layer::Ground,
+    );
+    for turn in &path.hard_turns {
+        let Some(frames) = path.places.get(turn.frames.start.saturating_sub(1)..turn.frames.end) else {
+            continue;
+        };
+        let hard = frames
+            .iter()
+            .map(|place| (on_ground(place.frame.shift, HIGHEST + 0.002), colors.warning));
+        pane.add_path(hard, 6.0, Layer::Ground);
+    }
+    // An arrow head says which way it runs.
+    if let Some(end) = places.last() {
+        let tip = on_ground(end.frame.shift, HIGHEST);
+        let ahead = end.frame.forward();
+        let left = Vec3::new(ahead.z, 0.0, -ahead.x);
+        for side in [-1.0, 1.0] {
+            pane.add_line(tip, tip - ahead * 0.16 + left * (0.09 * side), colors.result, 2.5, Layer::Ground);
+        }
+    }
+}
+
+fn curve(road: &Road) -> Vec<Waypoint> {
+    road.evenly(road.spline().points().len() * POINTS)
+}
+
+fn on_ground(point: DVec2, height: f32) -> Vec3 {
+    Vec3::new(point.x as f32, height, point.y as f32)
+}
+
+/// A line so short that only its round ends are seen.
+fn add_dot(point: DVec2, radius: f32, color: Color, pane: &mut Pane) {
+    let at = on_ground(point, HIGHEST);
+    pane.add_line(at, at + Vec3::X * 1e-4, color, 2.0 * radius, Layer::Over);
+}

@@ -1,0 +1,174 @@
+//! What a hand does with a path: which control point it holds, and what comes of it.
+
+use super::out::Out;
+use super::text;
+use glam::DVec2;
+use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, drawn_path};
+use segue::scene::PathMarks;
+use segue::session::{Command, Key, OnPath, Pane, Session, Value};
+
+/// The hand on the path, remembered between frames.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PathHand {
+    /// The chosen control point: what keys and buttons work on.
+    pub(super) chosen: Option<usize>,
+    /// The control point under the pointer.
+    pub(super) hovered: Option<usize>,
+    /// The place on the path under the pointer, and its parameter.
+    pub(super) place: Option<(DVec2, f64)>,
+    /// The next drag on the stage draws a curve.
+    pub(super) drawing: bool,
+    /// What was drawn so far, (x, z) in metres.
+    pub(super) drawn: Vec<DVec2>,
+    /// The point that is dragged.
+    pub(super) held: Option<Held>,
+    /// Why the last edit was not made.
+    pub(super) said: Option<String>,
+    /// The camera was put where the whole path is in sight; with these values.
+    pub(super) framed: Option<Vec<(Key, Value)>>,
+}
+
+/// A control point in the hand.
+#[derive(Clone, Debug)]
+pub(super) struct Held {
+    /// Which.
+    pub(super) index: usize,
+    /// The pane that it was taken in.
+    pub(super) pane: usize,
+    /// The path when it was taken.
+    pub(super) start: GroundSpline,
+    /// From the place that was pressed to the point, metres.
+    pub(super) grip: DVec2,
+}
+
+/// A curve whose ends are nearer to each other than this share of its length is a loop.
+const LOOP_SHARE: f64 = 0.12;
+/// A drawn curve is followed as closely as a hand is steady.
+const DRAWN_SMOOTHING: f64 = 1e-3;
+/// A loop has at least so many control points.
+const LOOP_POINTS: usize = 6;
+
+impl PathHand {
+    /// What is to be seen of it on the stage.
+    pub(crate) fn marks(&self, session: &Session) -> PathMarks {
+        let is_open = session.params().text(Key::Lab) == "path";
+        PathMarks {
+            handles: is_open && !session.params().is_on(Key::Embed) && self.drawn.is_empty(),
+            chosen: self.chosen,
+            hovered: self.hovered,
+            place: self.place.map(|(place, _)| place),
+            is_held: is_open && (self.held.is_some() || !self.drawn.is_empty()),
+            drawn: self.drawn.clone(),
+        }
+    }
+
+    /// Edits a path, and says why where that is not possible. The caller ends the step.
+    pub(super) fn edit(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+        let edited = from.edited(edit, pins(session));
+        self.take(edited, session, out)
+    }
+
+    /// The same as one step of undo.
+    pub(super) fn edit_once(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+        let done = self.edit(from, edit, session, out);
+        out.commands.push(Command::Settle);
+        done
+    }
+
+    fn take(&mut self, edited: Result<GroundSpline, PathEditError>, session: &Session, out: &mut Out) -> bool {
+        // What the link can hold is what is shown.
+        let edited = edited.and_then(|spline| spline.rounded()).and_then(Road::new);
+        match edited {
+            Ok(road) => {
+                let code = road.spline().to_code();
+                if session.params().text(Key::Path) != code {
+                    out.set(Key::Path, Value::Text(code));
+                }
+                self.said = None;
+                true
+            }
+            Err(error) => {
+                self.said = Some(text::sentence(&error.to_string()));
+                false
+            }
+        }
+    }
+
+    /// Makes a path of what was drawn.
+    pub(super) fn finish_drawing(&mut self, session: &Session, out: &mut Out) {
+        let drawn = std::mem::take(&mut self.drawn);
+        self.drawing = false;
+        let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let gap = drawn.first().zip(drawn.last()).map_or(0.0, |(first, last)| first.distance(*last));
+        let is_loop = gap < LOOP_SHARE * length;
+        let wanted = session.params().number(Key::ControlPoints) as usize;
+        let options = FitOptions {
+            control_points: if is_loop { wanted.max(LOOP_POINTS) } else { wanted },
+            smoothing: DRAWN_SMOOTHING,
+            pin_ends: true,
+        };
+        let path = drawn_path(&drawn, &options).and_then(|path| {
+            if is_loop {
+                path.edited(&PathEdit::Close, Pins::default())
+            } else {
+                Ok(path)
+            }
+        });
+        if self.take(path, session, out) {
+            self.chosen = None;
+        }
+        out.commands.push(Command::Settle);
+    }
+
+    /// One more control point: behind the chosen one, or where there is most room.
+    pub(super) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+        let spline = path.road.spline();
+        let ends = spline.greville();
+        let gaps = || ends.windows(2).enumerate();
+        let widest = gaps()
+            .max_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))
+            .map_or(0, |(gap, _)| gap);
+        let gap = self.chosen.filter(|&chosen| chosen + 1 < ends.len()).unwrap_or(widest);
+        // A knot may lie in the middle: then beside it.
+        let middle = |share: f64| ends[gap] + (ends[gap + 1] - ends[gap]) * share;
+        for share in [0.5, 0.4, 0.6, 0.3, 0.7] {
+            if self.edit(spline, &PathEdit::Insert { at: middle(share) }, session, out) {
+                self.chosen = Some(gap + 1);
+                break;
+            }
+        }
+        out.commands.push(Command::Settle);
+    }
+
+    /// Takes the chosen control point away.
+    pub(super) fn remove_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+        let Some(index) = self.chosen else {
+            self.said = Some(text::CHOOSE_POINT.to_owned());
+            return;
+        };
+        let spline = path.road.spline();
+        if self.edit_once(spline, &PathEdit::Remove { index }, session, out) {
+            self.chosen = Some(index.min(spline.points().len().saturating_sub(2)));
+        }
+    }
+}
+
+/// Which ends stay.
+fn pins(session: &Session) -> Pins {
+    Pins {
+        start: session.params().is_on(Key::PinStart),
+        end: session.params().is_on(Key::PinEnd),
+    }
+}
+
+/// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
+pub(super) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
+    let is_open = session.params().text(Key::Lab) == "path" && pane.problem.is_none();
+    pane.outcome.as_ref()?.path.as_deref().filter(|_| is_open)
+}
+
+/// A place on the grid, if there is one.
+pub(super) fn snapped(place: DVec2, session: &Session) -> DVec2 {
+    let grid = session.params().number(Key::PathGrid);
+    if grid > 0.0 { (place / grid).round() * grid } else { place }
+}

@@ -1,0 +1,250 @@
+//! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole path.
+
+use super::kit::{self, Button, Icon};
+use super::lab_panel::{lab_label, save_result_ui, slot_row_ui};
+use super::out::Out;
+use super::param_row::{Detail, param_row_ui};
+use super::path_hand::path_of;
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Color32, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use segue::path::PathEdit;
+use segue::session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};
+
+/// A turn of the whole path, degrees.
+const TURN_DEG: f64 = 15.0;
+/// How much larger the whole path becomes.
+const LARGER: f64 = 1.1;
+/// More warnings would be a list that nobody reads.
+const MOST_WARNINGS: usize = 3;
+
+/// All rows of the lab.
+pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::PATH_ABOUT, palette.muted, ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    let pane = session.panes().first();
+    let path = pane.and_then(|pane| path_of(session, pane));
+    if let Some(problem) = pane.and_then(|pane| pane.problem.as_deref()) {
+        note_ui(problem, palette.warning, ui);
+    }
+    ui.add_space(space::S);
+    if let Some(path) = path {
+        points_ui(path, session, state, out, ui);
+    }
+    param_row_ui(Key::PathGrid, &Detail::default(), session, out, ui);
+    ui.add_space(space::XS);
+    if let Some(path) = path {
+        whole_ui(path, session, state, out, ui);
+    }
+    if !session.params().text(Key::Path).is_empty()
+        && kit::button_ui(Button::new(text::RESET_PATH).icon(Icon::Undo).hint(text::RESET_PATH_HELP), ui).clicked()
+    {
+        state.path.said = None;
+        state.path.chosen = None;
+        out.set_once(Key::Path, Value::Text(String::new()));
+    }
+    if let Some(said) = &state.path.said {
+        note_ui(said, palette.warning, ui);
+    }
+    if let Some(path) = path {
+        warnings_ui(path, ui);
+    }
+    ui.add_space(space::S);
+    label_ui(Key::PathKeep, ui);
+    param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
+    note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
+    label_ui(Key::PathFacing, ui);
+    param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
+    ui.add_space(space::XS);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    fit_ui(path, session, out, ui);
+    ui.add_space(space::S);
+    company_ui(path.is_some(), session, state, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// What is done with single points.
+fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        let draw = Button::new(text::DRAW)
+            .icon(Icon::Pencil)
+            .hint(text::DRAW_HELP)
+            .selected(state.path.drawing);
+        if kit::button_ui(draw, ui).clicked() {
+            state.path.drawing = !state.path.drawing;
+            state.path.said = None;
+        }
+        if kit::button_ui(Button::new(text::ADD_POINT).icon(Icon::Plus).hint(text::ADD_POINT_HELP), ui).clicked() {
+            state.path.add_point(path, session, out);
+        }
+        if kit::button_ui(Button::new(text::REMOVE_POINT).icon(Icon::Trash).hint(text::REMOVE_POINT_HELP), ui).clicked() {
+            state.path.remove_point(path, session, out);
+        }
+    });
+    let points = path.road.spline().points();
+    let chosen = state.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
+    let words = chosen.map_or_else(
+        || text::POINTS_HELP.to_owned(),
+        |(index, place)| text::chosen_point(index, points.len(), place),
+    );
+    note_ui(&words, palette_of(ui).muted, ui);
+}
+
+/// What is done with the whole path.
+fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    param_row_ui(Key::PinStart, &Detail::default(), session, out, ui);
+    param_row_ui(Key::PinEnd, &Detail::default(), session, out, ui);
+    ui.label(RichText::new(text::WHOLE_PATH).font(theme_of(ui).font(Type::Label)));
+    let turn = |degrees: f64| PathEdit::Rotate {
+        radians: degrees.to_radians(),
+    };
+    let grid_m = session.params().number(Key::PathGrid);
+    let spline = path.road.spline();
+    let mut edits = vec![
+        (text::TURN_LEFT, turn(TURN_DEG)),
+        (text::TURN_RIGHT, turn(-TURN_DEG)),
+        (text::LARGER_PATH, PathEdit::Scale { factor: LARGER }),
+        (text::SMALLER_PATH, PathEdit::Scale { factor: LARGER.recip() }),
+        (text::MIRROR, PathEdit::Mirror),
+        (text::STRAIGHTEN, PathEdit::Straighten { share: 0.5 }),
+        (text::SMOOTH, PathEdit::Smooth { share: 0.5 }),
+        if spline.is_closed() {
+            (text::OPEN_LOOP, PathEdit::Open)
+        } else {
+            (text::CLOSE_LOOP, PathEdit::Close)
+        },
+    ];
+    if grid_m > 0.0 {
+        edits.push((text::SNAP_ALL, PathEdit::Snap { grid_m }));
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        for (label, edit) in edits {
+            if kit::button_ui(Button::new(label), ui).clicked() {
+                state.path.edit_once(spline, &edit, session, out);
+            }
+        }
+    });
+    ui.add_space(space::XS);
+}
+
+/// Where the path asks for more than the motion can.
+fn warnings_ui(path: &OnPath, ui: &mut Ui) {
+    let fps = path.fitted.motion().clip.fps();
+    let warning = palette_of(ui).warning;
+    for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
+        note_ui(&text::hard_turn(turn, fps), warning, ui);
+    }
+    if path.hard_turns.len() > MOST_WARNINGS {
+        note_ui(&text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS), warning, ui);
+    }
+}
+
+/// How the path is fitted to the motion, and how well.
+fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) {
+    ui.label(RichText::new(text::FIT).font(theme_of(ui).font(Type::Strong)));
+    let edited = path.filter(|path| path.is_edited);
+    let detail = Detail {
+        help: edited.map(|path| text::own_points(path.road.spline().points().len())),
+        ..Detail::default()
+    };
+    param_row_ui(Key::ControlPoints, &detail, session, out, ui);
+    let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
+    let label = if on { text::COMPARE_OFF } else { text::FOUR_EIGHT_SIXTEEN };
+    if kit::button_ui(Button::new(label).selected(on), ui).clicked() {
+        compare_points(session, out);
+    }
+    param_row_ui(Key::PathSmoothing, &Detail::default(), session, out, ui);
+    let Some(path) = path else { return };
+    let error = path.fitted.error();
+    let words = text::fit_error(
+        error.rms_cm,
+        error.most_cm,
+        path.fitted.places().get(error.frame).map_or(0.0, |place| place.along_m),
+    );
+    let color = palette_of(ui).a;
+    kit::profile_ui(&words, path.fitted.errors_cm(), error.most_cm, color, ui);
+    note_ui(&words, palette_of(ui).muted, ui);
+}
+
+/// Few and many control points side by side, or back to one pane.
+pub(super) fn compare_points(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
+    let query = if on { "" } else { text::FOUR_EIGHT_SIXTEEN_QUERY };
+    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+}
+
+/// Who else is on the stage.
+fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    ui.label(RichText::new(text::COMPANY).font(theme.font(Type::Strong)));
+    for (place, companion) in session.company().iter().enumerate() {
+        ui.push_id(("companion", place), |ui| {
+            let row = kit::paint::full_width(theme.row_height(), ui);
+            let color = palette.others[place % palette.others.len()];
+            ui.painter()
+                .circle_filled(row.left_center() + vec2(6.0, 0.0), 5.0 * theme.scale(), color);
+            let side = theme.row_height();
+            let buttons = Rect::from_min_max(pos2(row.right() - 2.0 * side - space::XS, row.top()), row.max);
+            let name = kit::paint::line_of(
+                &[kit::paint::Run::new(&companion.name, Type::Body, palette.text)],
+                buttons.left() - row.left() - 2.0 * space::L,
+                ui,
+            );
+            kit::paint::put(
+                ui.painter(),
+                row.left_center() + vec2(18.0, 0.0),
+                eframe::egui::Align2::LEFT_CENTER,
+                name,
+            );
+            ui.scope_builder(UiBuilder::new().max_rect(buttons), |ui| {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = space::XS;
+                    let edit = text::edit_companion(&companion.name);
+                    if kit::icon_button_ui(Icon::Swap, &edit, ui).clicked() {
+                        state.path.chosen = None;
+                        out.commands.push(Command::Company(CompanyChange::Edit(place)));
+                    }
+                    let leave = text::companion_leaves(&companion.name);
+                    if kit::icon_button_ui(Icon::Close, &leave, ui).clicked() {
+                        out.commands.push(Command::Company(CompanyChange::Leave(place)));
+                    }
+                });
+            });
+            if let Err(problem) = &companion.motion {
+                note_ui(problem, palette.warning, ui);
+            }
+        });
+    }
+    let button = Button::new(text::JOIN).icon(Icon::Plus).hint(text::JOIN_HELP);
+    if has_result && kit::button_ui(button, ui).clicked() {
+        out.commands.push(Command::Company(CompanyChange::JoinResult(state.saved_pane)));
+    }
+    let entries = session.library().entries();
+    let options: Vec<(usize, &str)> = entries
+        .iter()
+        .enumerate()
+        .map(|(index, entry)| (index, entry.name.as_str()))
+        .collect();
+    let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);
+    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
+        out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));
+    }
+    note_ui(text::COMPANY_HELP, palette.muted, ui);
+}
+
+fn label_ui(key: Key, ui: &mut Ui) {
+    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+}
+
+/// A sentence in small type.
+fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.add_space(space::XS);
+}

@@ -1,0 +1,289 @@
+//! The path on the stage: its control points are taken with mouse, finger or keys, and a curve is drawn by hand.
+
+use super::kit;
+use super::out::Out;
+use super::path_hand::{Held, path_of, snapped};
+use super::state::UiState;
+use super::text;
+use super::theme::space;
+use eframe::egui::{
+    self, CursorIcon, EventFilter, Key as Keyboard, Modifiers, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,
+};
+use glam::DVec2;
+use segue::path::{GroundSpline, PathEdit};
+use segue::scene::Camera;
+use segue::session::{Command, Group, Key, OnPath, Session};
+
+/// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
+const GRIP: f32 = 30.0;
+/// The path is pointed at within this distance, points.
+const REACH: f32 = 12.0;
+/// An arrow key moves a point by this, metres; with Shift by five times as much.
+const KEY_STEP_M: f64 = 0.05;
+/// Drawn points are at least this far apart, metres.
+const DRAWN_STEP_M: f64 = 0.02;
+/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the horizon a hair's breadth is a mile.
+const FARTHEST: f32 = 6.0;
+/// From how high the camera looks when the lab opens, degrees.
+const PITCH_DEG: f64 = 34.0;
+
+/// A pane as its camera sees it.
+struct View<'a> {
+    camera: &'a Camera,
+    rect: Rect,
+}
+
+impl View<'_> {
+    fn size(&self) -> glam::Vec2 {
+        glam::Vec2::new(self.rect.width(), self.rect.height())
+    }
+
+    /// Where a point of the ground is on the page.
+    fn on_page(&self, point: DVec2) -> Option<Pos2> {
+        let world = glam::Vec3::new(point.x as f32, 0.0, point.y as f32);
+        let at = self.camera.project(world, self.size())?;
+        Some(self.rect.min + vec2(at.x, at.y))
+    }
+
+    /// The place on the ground under a point of the page.
+    fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
+        let pixel = pos - self.rect.min;
+        let hit = self.camera.ray(glam::Vec2::new(pixel.x, pixel.y), self.size()).ground_hit()?;
+        let near = hit.distance(self.camera.target) < FARTHEST * self.camera.distance;
+        near.then(|| DVec2::new(f64::from(hit.x), f64::from(hit.z)))
+    }
+}
+
+/// Draws a curve if that is what is wanted now; whether the stage's own drag is taken by it.
+pub(super) fn drawing_input(
+    session: &Session,
+    shown: &[(usize, Rect)],
+    response: &Response,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &Ui,
+) -> bool {
+    if session.params().text(Key::Lab) != "path" {
+        state.path.drawing = false;
+    }
+    if !state.path.drawing {
+        state.path.drawn.clear();
+        return false;
+    }
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+    }
+    if ui.input(|input| input.key_pressed(Keyboard::Escape) || input.multi_touch().is_some()) {
+        state.path.drawing = false;
+        state.path.drawn.clear();
+        return false;
+    }
+    let started = ui.input(|input| input.pointer.press_origin());
+    let pos = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged_by(egui::PointerButton::Primary));
+    if let (Some(origin), Some(pos)) = (started, pos) {
+        let pane = shown.iter().find(|(_, rect)| rect.contains(origin));
+        let place = pane.and_then(|&(index, rect)| {
+            let camera = state.cameras.get(index)?.as_ref()?;
+            View { camera, rect }.on_ground(pos)
+        });
+        let last = state.path.drawn.last().copied();
+        if let Some(place) = place.filter(|&place| last.is_none_or(|last| last.distance(place) > DRAWN_STEP_M)) {
+            state.path.drawn.push(place);
+        }
+    }
+    if response.drag_stopped() {
+        state.path.finish_drawing(session, out);
+    }
+    true
+}
+
+/// The control points of one pane, and the place on the path that the pointer is at.
+pub(super) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Response, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let Some(path) = session.panes().get(pane).and_then(|pane| path_of(session, pane)) else {
+        return;
+    };
+    let Some(camera) = state.cameras.get(pane).copied().flatten().filter(|_| !state.path.drawing) else {
+        return;
+    };
+    let view = View { camera: &camera, rect };
+    let spline = path.road.spline();
+    let count = spline.points().len();
+    state.path.chosen = state.path.chosen.filter(|&chosen| chosen < count);
+    // Both ends of a loop are one point.
+    let shown = if spline.is_closed() { count - 1 } else { count };
+    for (index, &point) in spline.points().iter().enumerate().take(shown) {
+        let Some(at) = view.on_page(point).filter(|at| rect.contains(*at)) else {
+            continue;
+        };
+        let id = ui.make_persistent_id(("control point", pane, index));
+        let hit = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
+        let response = ui.interact(hit, id, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::control_point(index, shown, point)));
+        handle_input(index, pane, point, &view, path, &response, session, state, out, ui);
+    }
+    if state.path.held.is_none() && state.path.hovered.is_none() {
+        place_input(spline, &view, stage, session, state, out, ui);
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "a widget, what it shows, and who is asked")]
+fn handle_input(
+    index: usize,
+    pane: usize,
+    point: DVec2,
+    view: &View<'_>,
+    path: &OnPath,
+    response: &Response,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &Ui,
+) {
+    let hand = &mut state.path;
+    if response.hovered() || response.dragged() {
+        hand.hovered = Some(index);
+        let icon = if response.dragged() {
+            CursorIcon::Grabbing
+        } else {
+            CursorIcon::Grab
+        };
+        ui.ctx().set_cursor_icon(icon);
+    }
+    if response.clicked() || response.drag_started() {
+        hand.chosen = Some(index);
+        response.request_focus();
+    }
+    if response.drag_started() {
+        let pressed = ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
+        hand.held = Some(Held {
+            index,
+            pane,
+            start: path.road.spline().clone(),
+            grip: pressed.map_or(DVec2::ZERO, |pressed| point - pressed),
+        });
+    }
+    let held = hand.held.clone().filter(|held| held.index == index && held.pane == pane);
+    if let Some(held) = held {
+        let to = response.interact_pointer_pos().and_then(|pos| view.on_ground(pos));
+        if let Some(to) = to.filter(|_| response.dragged() && response.drag_delta() != Vec2::ZERO) {
+            let to = snapped(to + held.grip, session);
+            hand.edit(&held.start, &PathEdit::Move { index, to }, session, out);
+        }
+        if response.drag_stopped() {
+            hand.held = None;
+            out.commands.push(Command::Settle);
+        }
+    }
+    if response.has_focus() {
+        hand.chosen = Some(index);
+        keys(index, point, view, path, response, session, state, out, ui);
+    }
+}
+
+/// Arrows move the point as it is seen, Delete takes it away.
+#[expect(clippy::too_many_arguments, reason = "a widget, what it shows, and who is asked")]
+fn keys(
+    index: usize,
+    point: DVec2,
+    view: &View<'_>,
+    path: &OnPath,
+    response: &Response,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &Ui,
+) {
+    let filter = EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let pressed = |modifiers: Modifiers, key: Keyboard| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
+    let moved = |modifiers: Modifiers| {
+        let across = pressed(modifiers, Keyboard::ArrowRight) - pressed(modifiers, Keyboard::ArrowLeft);
+        let ahead = pressed(modifiers, Keyboard::ArrowUp) - pressed(modifiers, Keyboard::ArrowDown);
+        DVec2::new(across, ahead)
+    };
+    let steps = moved(Modifiers::SHIFT) * 5.0 + moved(Modifiers::NONE);
+    if steps != DVec2::ZERO {
+        let grid = session.params().number(Key::PathGrid);
+        let step = if grid > 0.0 { grid } else { KEY_STEP_M };
+        // On the axis of the ground that is nearest to where it is seen to go, so that a key and its opposite undo each other.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let yaw = (f64::from(view.camera.yaw) / quarter).round() * quarter;
+        let (sin, cos) = yaw.sin_cos();
+        let by = DVec2::new(cos, -sin) * steps.x - DVec2::new(sin, cos) * steps.y;
+        let to = snapped(point + by * step, session);
+        let spline = path.road.spline();
+        state.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
+    }
+    if pressed(Modifiers::NONE, Keyboard::Delete) + pressed(Modifiers::NONE, Keyboard::Backspace) > 0.0 {
+        state.path.chosen = Some(index);
+        state.path.remove_point(path, session, out);
+    }
+}
+
+/// Shows where a point would be added, and adds it at a double click.
+fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
+    let pos = stage.interact_pointer_pos().or(stage.hover_pos());
+    let Some(pos) = pos.filter(|pos| view.rect.contains(*pos) && !stage.dragged()) else {
+        return;
+    };
+    let steps = 16 * spline.points().len();
+    let places = (0..=steps).filter_map(|step| {
+        let parameter = step as f64 / steps as f64;
+        let place = spline.position(parameter);
+        Some((view.on_page(place)?.distance(pos), place, parameter))
+    });
+    let nearest = places.min_by(|one, other| one.0.total_cmp(&other.0));
+    let Some((_, place, parameter)) = nearest.filter(|nearest| nearest.0 < REACH) else {
+        return;
+    };
+    state.path.place = Some((place, parameter));
+    ui.ctx().set_cursor_icon(CursorIcon::Copy);
+    if stage.double_clicked() && state.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out) {
+        let before = spline.greville().iter().filter(|&&at| at < parameter).count();
+        state.path.chosen = Some(before);
+    }
+}
+
+/// Why the last edit was not made, where the hand is.
+pub(super) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
+    let words = match &state.path.said {
+        Some(said) => said.as_str(),
+        None if state.path.drawing => text::DRAW_HINT,
+        None => return,
+    };
+    kit::caption_ui(words, stage.with_max_y(numbers_top - space::S), ui);
+}
+
+/// When the lab opens, the whole path comes into sight, unless somebody has put the camera elsewhere; when it is left, the camera is as before.
+pub(super) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
+    let is_open = session.params().text(Key::Lab) == "path";
+    let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
+    match (is_open, &state.path.framed) {
+        (true, None) if !untouched() => state.path.framed = Some(Vec::new()),
+        (true, None) => {
+            if session.main_outcome().is_some_and(|outcome| outcome.path.is_some())
+                && let Some(values) = super::stage_panel::framing(session, state, Some(PITCH_DEG))
+            {
+                state.path.framed = Some(values.clone());
+                out.commands.push(Command::Set(values));
+            }
+        }
+        (false, Some(values)) => {
+            let as_set = values
+                .iter()
+                .all(|(key, value)| key.param().check(value.clone()).as_ref() == Ok(session.params().get(*key)));
+            if as_set && !values.is_empty() {
+                let defaults = values.iter().map(|(key, _)| (*key, key.param().default_value()));
+                out.commands.push(Command::Set(defaults.collect()));
+            }
+            state.path.framed = None;
+        }
+        _ => {}
+    }
+}
