@@ -8,11 +8,13 @@ use eframe::wgpu::naga;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
-use segue::scene::{Body, Bounds, Camera, Colors, Director, Layer, Lens, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
-use segue::session::{Command, Session};
+use segue::path::{PathEdit, Pins};
+use segue::scene::{Body, Bounds, Camera, Colors, Director, Layer, Lens, Look, Pane, PathMarks, Ring, Stage, Viewport, rgb, with_alpha};
+use segue::session::{Command, Key, Session, Value};
 use segue::skeleton::{Joint, Roles, Skeleton, world_pose};
 use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Every entry point can be said in the shading language of WebGL 2.
@@ -846,4 +848,58 @@ fn time_to_build_and_encode() {
         each(build),
         each(prepare)
     );
+}
+
+#[test]
+fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1000, 640];
+    let camera = "follow=off&camera_pitch=34&camera_distance=11&pan_z=2.5";
+    for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
+        let colors = Colors {
+            a: rgb(A[theme]),
+            b: rgb(B[theme]),
+            result: rgb(RESULT[theme]),
+            bad: rgb(0xff_7a_6b),
+            warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
+            others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
+            ghost_alpha: 0.4,
+        };
+        for (name, link) in [
+            ("path-fitted", "lab=path&a=walk_left&t=1.5"),
+            ("path-edited", "lab=path&a=walk&t=2&others=run,walk_left"),
+            ("path-top", "lab=path&a=walk&t=2&others=run,walk_left&camera=top"),
+        ] {
+            let mut session = Session::new();
+            session.apply(Command::OpenLink(format!("{link}&{camera}"))).unwrap();
+            while session.work() {}
+            if name != "path-fitted" {
+                let outcome = Arc::clone(session.main_outcome().unwrap());
+                let spline = outcome.path.as_ref().unwrap().road.spline();
+                let to = spline.points()[4] + glam::DVec2::new(-1.4, -1.9);
+                let edited = spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();
+                session
+                    .apply(Command::Set(vec![(Key::Path, Value::Text(edited.to_code()))]))
+                    .unwrap();
+                assert!(!session.main_outcome().unwrap().path.as_ref().unwrap().hard_turns.is_empty());
+            }
+            let viewport = Viewport {
+                x: 0,
+                y: 0,
+                width: size[0],
+                height: size[1],
+            };
+            let mut director = Director::default();
+            director.mark_path(PathMarks {
+                handles: true,
+                chosen: Some(4),
+                hovered: Some(2),
+                ..PathMarks::default()
+            });
+            let stage = director.stage(&session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            let bodies = if name == "path-fitted" { 1 } else { 3 };
+            assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
+            gpu.draw(&format!("{name}-{theme}"), &stage, size);
+        }
+    }
 }

@@ -8,11 +8,14 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use segue::formats::{FileKind, ImportOptions};
+use segue::scene::{Colors, Director, Look, Viewport, rgb};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
 use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
+
+mod path;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
 const PHONE: Vec2 = vec2(390.0, 844.0);
@@ -35,9 +38,37 @@ struct Page {
     session: Session,
     state: UiState,
     curves: CurveCache,
+    director: Director,
     out: Out,
     /// Commands are carried out, as the app does; otherwise they are only kept.
     obeys: bool,
+}
+
+impl Page {
+    /// Puts the cameras where the app would.
+    fn aim(&mut self, places: &[(usize, Rect)]) {
+        let viewport = |rect: Rect| Viewport {
+            x: 0,
+            y: 0,
+            width: rect.width() as u32,
+            height: rect.height() as u32,
+        };
+        let shown: Vec<(usize, Viewport)> = places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
+        let color = rgb(0x58_d6_a9);
+        let colors = Colors {
+            a: color,
+            b: color,
+            result: color,
+            bad: color,
+            warning: color,
+            others: [color; 4],
+            ghost_alpha: 0.4,
+        };
+        self.director.mark_path(self.state.path.marks(&self.session));
+        self.director.stage(&self.session, &shown, 1.0, Look::DARK, &colors, 10.0);
+        let panes = self.session.panes().len();
+        self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
+    }
 }
 
 fn page(link: &str) -> Page {
@@ -48,6 +79,7 @@ fn page(link: &str) -> Page {
         session,
         state: UiState::default(),
         curves: CurveCache::default(),
+        director: Director::default(),
         out: Out::default(),
         obeys: true,
     }
@@ -63,7 +95,9 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
         });
     let mut harness = builder.build_ui_state(
         |ui, page: &mut Page| {
-            let mut paint = |stage: Rect, _: &[(usize, Rect)], ui: &mut Ui| {
+            let mut places: Vec<(usize, Rect)> = Vec::new();
+            let mut paint = |stage: Rect, panes: &[(usize, Rect)], ui: &mut Ui| {
+                places = panes.to_vec();
                 let colors = &palette_of(ui).stage;
                 ui.painter()
                     .add(Shape::gradient_rect(stage, egui::Direction::TopDown, [colors.sky, colors.horizon]));
@@ -78,6 +112,7 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
                     page.session.apply(command.clone()).expect("a page as the tests need it");
                 }
             }
+            page.aim(&places);
             page.out.commands.extend(out.commands);
             page.out.actions.extend(out.actions);
         },

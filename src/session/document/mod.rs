@@ -662,6 +662,8 @@ mod going_round_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]
+mod path_tests;
+#[cfg(test)]
 mod registering_tests;
 #[cfg(test)]
 mod tests;

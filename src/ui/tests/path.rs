@@ -1,0 +1,277 @@
+//! The Path lab with mouse, finger and keys.
+
+use super::*;
+use eframe::egui::{Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
+use glam::DVec2;
+use segue::session::OnPath;
+
+fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
+    outcome(harness.state()).path.clone().expect("a path")
+}
+
+fn points(harness: &Harness<'_, Page>) -> Vec<DVec2> {
+    path(harness).road.spline().points().to_vec()
+}
+
+/// The page until the cameras of its panes are known, and the path is in sight.
+fn lab(size: Vec2, theme: Theme, link: &str) -> Harness<'static, Page> {
+    let mut harness = harness(size, theme, page(link));
+    harness.run_steps(4);
+    harness
+}
+
+fn handle(number: usize, harness: &Harness<'_, Page>) -> Pos2 {
+    harness.get_by_label_contains(&format!("Control point {number} of")).rect().center()
+}
+
+fn step(events: Vec<Event>, harness: &mut Harness<'_, Page>) {
+    for event in events {
+        harness.event(event);
+    }
+    harness.step();
+}
+
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    }
+}
+
+/// Takes what is under the pointer along these places and lets it go.
+fn drag(way: &[Pos2], harness: &mut Harness<'_, Page>) {
+    step(vec![Event::PointerMoved(way[0])], harness);
+    step(vec![button(way[0], true)], harness);
+    for &pos in &way[1..] {
+        step(vec![Event::PointerMoved(pos)], harness);
+    }
+    step(vec![button(way[way.len() - 1], false)], harness);
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_lab_opens_with_its_path_in_sight() {
+    for (name, size, theme, link) in [
+        ("path-desk-dark", DESK, DARK, "lab=path&a=walk_left&play=off&t=1.5"),
+        ("path-desk-light", DESK, LIGHT, "lab=path&a=walk_left&play=off&t=1.5"),
+        (
+            "path-compare-dark",
+            DESK,
+            DARK,
+            "lab=path&a=walk_left&compare=control_points:4,8,16&play=off",
+        ),
+        (
+            "path-phone-dark",
+            PHONE,
+            DARK,
+            "lab=path&a=walk_left&play=off&others=run,walk_right",
+        ),
+        (
+            "path-projector",
+            vec2(1280.0, 720.0),
+            HALL,
+            "lab=path&play=off&others=run,walk_right",
+        ),
+        ("path-none-dark", DESK, DARK, "lab=path&a=idle&play=off"),
+    ] {
+        let harness = &mut lab(size, theme, link);
+        let count = harness.query_all_by_label_contains("Control point").count();
+        let wanted = match name {
+            "path-none-dark" => 0,
+            "path-compare-dark" => 4 + 8 + 16,
+            _ => 8,
+        };
+        assert_eq!(count, wanted, "{name}");
+        for node in harness.query_all_by_label_contains("Control point") {
+            assert!(
+                node.rect().width() >= 24.0 && node.rect().height() >= 24.0,
+                "{name}: {:?}",
+                node.rect()
+            );
+        }
+        if name == "path-none-dark" {
+            assert!(harness.query_all_by_label_contains("stays within").count() > 0);
+        }
+        picture(name, harness);
+    }
+}
+
+#[test]
+fn a_point_is_dragged_with_the_result_under_the_hand() {
+    for camera in ["", "&camera=top&camera_distance=9&follow=off"] {
+        let mut harness = lab(DESK, DARK, &format!("lab=path&a=walk&play=off{camera}"));
+        let (before, from) = (points(&harness), handle(4, &harness));
+        let to = from + vec2(70.0, 24.0);
+        step(vec![Event::PointerMoved(from)], &mut harness);
+        step(vec![button(from, true)], &mut harness);
+        for share in [0.3, 0.7, 1.0] {
+            step(vec![Event::PointerMoved(from + (to - from) * share)], &mut harness);
+            harness.step();
+            assert!(path(&harness).is_edited, "live, not only in the end");
+        }
+        assert!(
+            handle(4, &harness).distance(to) < 4.0,
+            "{camera}: it stays under the hand: {:?} {to:?}",
+            handle(4, &harness)
+        );
+        step(vec![button(to, false)], &mut harness);
+        harness.run_steps(2);
+        let after = points(&harness);
+        assert!(after[3].distance(before[3]) > 0.2);
+        assert!(
+            after
+                .iter()
+                .zip(&before)
+                .enumerate()
+                .all(|(i, (a, b))| i == 3 || a.distance(*b) < 0.011)
+        );
+        // One step.
+        harness.state_mut().session.apply(Command::Undo).expect("a step");
+        assert!(!path(&harness).is_edited, "{camera}");
+    }
+}
+
+#[test]
+fn a_finger_drags_a_point_too() {
+    let mut harness = lab(PHONE, LIGHT, "lab=path&a=walk&play=off");
+    let from = handle(3, &harness);
+    let touch = |phase, pos| Event::Touch {
+        device_id: TouchDeviceId(0),
+        id: TouchId(0),
+        phase,
+        pos,
+        force: None,
+    };
+    let to = from + vec2(40.0, 10.0);
+    step(
+        vec![touch(TouchPhase::Start, from), Event::PointerMoved(from), button(from, true)],
+        &mut harness,
+    );
+    step(
+        vec![
+            touch(TouchPhase::Move, from + vec2(20.0, 5.0)),
+            Event::PointerMoved(from + vec2(20.0, 5.0)),
+        ],
+        &mut harness,
+    );
+    step(vec![touch(TouchPhase::Move, to), Event::PointerMoved(to)], &mut harness);
+    step(
+        vec![touch(TouchPhase::End, to), button(to, false), Event::PointerGone],
+        &mut harness,
+    );
+    harness.run_steps(2);
+    assert!(path(&harness).is_edited);
+    assert!(handle(3, &harness).distance(to) < 4.0);
+}
+
+#[test]
+fn keys_move_a_point_go_to_the_next_and_take_one_out() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
+    harness.get_by_label_contains("Control point 3 of").focus();
+    harness.run_steps(2);
+    let before = points(&harness);
+    harness.key_press(Keyboard::ArrowRight);
+    harness.run_steps(2);
+    assert!((points(&harness)[2].distance(before[2]) - 0.05).abs() < 0.011);
+    harness.key_press_modifiers(Modifiers::SHIFT, Keyboard::ArrowUp);
+    harness.run_steps(2);
+    assert!(points(&harness)[2].distance(before[2]) > 0.2);
+    harness.key_press(Keyboard::Tab);
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.path.chosen, Some(3));
+    harness.key_press(Keyboard::Delete);
+    harness.run_steps(2);
+    assert_eq!(points(&harness).len(), 7);
+    // An end stays, and that is said.
+    harness.get_by_label_contains("Control point 1 of").focus();
+    harness.run_steps(2);
+    harness.key_press(Keyboard::Delete);
+    harness.run_steps(2);
+    assert!(harness.query_all_by_label_contains("cannot be removed").count() > 0);
+    assert_eq!(points(&harness).len(), 7);
+}
+
+#[test]
+fn a_double_click_on_the_path_adds_a_point_where_it_is() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
+    let [one, two] = [5, 6].map(|number| handle(number, &harness));
+    let middle = one.lerp(two, 0.45);
+    step(vec![Event::PointerMoved(middle)], &mut harness);
+    for _ in 0..2 {
+        step(vec![button(middle, true)], &mut harness);
+        step(vec![button(middle, false)], &mut harness);
+    }
+    harness.run_steps(2);
+    assert_eq!(points(&harness).len(), 9);
+}
+
+#[test]
+fn a_path_is_drawn_by_hand() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
+    press(text::DRAW, &mut harness);
+    harness.get_by_label(text::DRAW_HINT);
+    let stage = harness.state().state.stage;
+    let way: Vec<Pos2> = (0..30)
+        .map(|k| {
+            let share = k as f32 / 29.0;
+            stage.center() + vec2(300.0 * (share - 0.5), 90.0 + 60.0 * (share * 6.0).sin())
+        })
+        .collect();
+    let camera = harness.state().session.params().number(Key::CameraYaw);
+    drag(&way, &mut harness);
+    assert_eq!(
+        harness.state().session.params().number(Key::CameraYaw),
+        camera,
+        "the stage does not turn"
+    );
+    assert!(!harness.state().state.path.drawing);
+    assert!(path(&harness).is_edited);
+    let first = handle(1, &harness);
+    assert!(first.distance(way[0]) < 12.0, "{first:?} {:?}", way[0]);
+    // A point that is no curve is not taken, and that is said.
+    press(text::DRAW, &mut harness);
+    drag(&[stage.center(), stage.center() + vec2(3.0, 0.0)], &mut harness);
+    assert!(harness.query_all_by_label_contains("has no direction").count() > 0);
+}
+
+#[test]
+fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk_left&play=off");
+    let original = points(&harness);
+    for label in [
+        text::TURN_LEFT,
+        text::LARGER_PATH,
+        text::MIRROR,
+        text::STRAIGHTEN,
+        text::SMOOTH,
+        text::CLOSE_LOOP,
+    ] {
+        let before = points(&harness);
+        press(label, &mut harness);
+        assert_ne!(points(&harness), before, "{label}");
+    }
+    assert!(path(&harness).road.spline().is_closed());
+    harness.get_by_label(text::OPEN_LOOP);
+    picture("path-loop-dark", &mut harness);
+    press("Pin the start", &mut harness);
+    press(text::RESET_PATH, &mut harness);
+    assert_eq!(points(&harness), original);
+    press(text::ADD_POINT, &mut harness);
+    assert_eq!(points(&harness).len(), 9);
+    press(text::JOIN, &mut harness);
+    assert_eq!(harness.state().session.company().len(), 1);
+    picture("path-company-dark", &mut harness);
+}
+
+#[test]
+fn the_camera_goes_back_where_it_was_when_the_lab_is_left() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
+    assert_eq!(harness.state().session.params().text(Key::Follow), "off");
+    press("View", &mut harness);
+    assert_eq!(harness.state().session.params().text(Key::Follow), "result");
+    // A camera that somebody put somewhere stays there.
+    let harness = lab(DESK, DARK, "lab=path&a=walk&play=off&camera_yaw=10");
+    assert_eq!(harness.state().session.params().text(Key::Follow), "result");
+}
