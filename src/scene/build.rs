@@ -414,10 +414,12 @@ fn followed_point(shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
     })
 }
 
-/// What an unbound camera looks at: where the motion begins, which lies at `place`.
+/// What an unbound camera looks at: where the motion begins, which lies at `place`. Of a motion on an edited path it is where that began before: the
+/// ground must not move when the path does.
 #[must_use]
 pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
-    let start = outcome.motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
+    let motion = outcome.path.as_ref().map_or(&outcome.motion, |path| path.fitted.motion());
+    let start = motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
     place.apply(start).with_y(middle_height(&outcome.motion))
 }
 

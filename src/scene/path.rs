@@ -53,8 +53,8 @@ pub(super) fn add_path(path: &OnPath, marks: &PathMarks, look: &Look, colors: &C
         for (index, &point) in points.iter().enumerate() {
             let (chosen, hovered) = (marks.chosen == Some(index), marks.hovered == Some(index));
             let radius = if chosen || hovered { HANDLE + 1.5 } else { HANDLE };
-            let inside = if chosen { colors.result } else { look.background_top };
-            add_dot(point, radius, if hovered || chosen { look.clay } else { colors.result }, pane);
+            let inside = if chosen || hovered { colors.result } else { look.background_top };
+            add_dot(point, radius, if chosen { contrast(look) } else { colors.result }, pane);
             add_dot(point, radius - 2.0, inside, pane);
         }
         if let Some(place) = marks.place {
@@ -124,6 +124,12 @@ fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
             pane.add_line(tip, tip - ahead * 0.16 + left * (0.09 * side), colors.result, 2.5, Layer::Ground);
         }
     }
+}
+
+/// What stands out from the ground.
+fn contrast(look: &Look) -> Color {
+    let is_light = look.background_top[1] > 0.5;
+    with_alpha(if is_light { look.edge } else { look.clay }, 1.0)
 }
 
 fn curve(road: &Road) -> Vec<Waypoint> {

@@ -31,6 +31,12 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         note_ui(problem, palette.warning, ui);
     }
     ui.add_space(space::S);
+    let edited = path.filter(|path| path.is_edited);
+    let detail = Detail {
+        help: edited.map(|path| text::own_points(path.road.spline().points().len())),
+        ..Detail::default()
+    };
+    param_row_ui(Key::ControlPoints, &detail, session, out, ui);
     if let Some(path) = path {
         points_ui(path, session, state, out, ui);
     }
@@ -80,11 +86,18 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
             state.path.drawing = !state.path.drawing;
             state.path.said = None;
         }
-        if kit::button_ui(Button::new(text::ADD_POINT).icon(Icon::Plus).hint(text::ADD_POINT_HELP), ui).clicked() {
+        if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {
             state.path.add_point(path, session, out);
         }
-        if kit::button_ui(Button::new(text::REMOVE_POINT).icon(Icon::Trash).hint(text::REMOVE_POINT_HELP), ui).clicked() {
+        if kit::button_ui(Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP), ui).clicked() {
             state.path.remove_point(path, session, out);
+        }
+        for key in [Key::PinStart, Key::PinEnd] {
+            let on = session.params().is_on(key);
+            let button = Button::new(key.param().label).hint(key.param().help).selected(on);
+            if kit::button_ui(button, ui).clicked() {
+                out.toggle(key, on);
+            }
         }
     });
     let points = path.road.spline().points();
@@ -98,8 +111,6 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
 
 /// What is done with the whole path.
 fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    param_row_ui(Key::PinStart, &Detail::default(), session, out, ui);
-    param_row_ui(Key::PinEnd, &Detail::default(), session, out, ui);
     ui.label(RichText::new(text::WHOLE_PATH).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate {
         radians: degrees.to_radians(),
@@ -149,12 +160,6 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
 /// How the path is fitted to the motion, and how well.
 fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(text::FIT).font(theme_of(ui).font(Type::Strong)));
-    let edited = path.filter(|path| path.is_edited);
-    let detail = Detail {
-        help: edited.map(|path| text::own_points(path.road.spline().points().len())),
-        ..Detail::default()
-    };
-    param_row_ui(Key::ControlPoints, &detail, session, out, ui);
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     let label = if on { text::COMPARE_OFF } else { text::FOUR_EIGHT_SIXTEEN };
     if kit::button_ui(Button::new(label).selected(on), ui).clicked() {

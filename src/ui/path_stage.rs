@@ -84,13 +84,18 @@ pub(super) fn drawing_input(
         .filter(|_| response.dragged_by(egui::PointerButton::Primary));
     if let (Some(origin), Some(pos)) = (started, pos) {
         let pane = shown.iter().find(|(_, rect)| rect.contains(origin));
-        let place = pane.and_then(|&(index, rect)| {
+        let view = pane.and_then(|&(index, rect)| {
             let camera = state.cameras.get(index)?.as_ref()?;
-            View { camera, rect }.on_ground(pos)
+            Some(View { camera, rect })
         });
-        let last = state.path.drawn.last().copied();
-        if let Some(place) = place.filter(|&place| last.is_none_or(|last| last.distance(place) > DRAWN_STEP_M)) {
-            state.path.drawn.push(place);
+        // A drag is one only after some points of way: its beginning counts.
+        let from = Some(origin).filter(|_| state.path.drawn.is_empty());
+        let places = from.into_iter().chain([pos]).filter_map(|pos| view.as_ref()?.on_ground(pos));
+        for place in places.collect::<Vec<_>>() {
+            let last = state.path.drawn.last();
+            if last.is_none_or(|last| last.distance(place) > DRAWN_STEP_M) {
+                state.path.drawn.push(place);
+            }
         }
     }
     if response.drag_stopped() {

@@ -248,7 +248,7 @@ fn written(metric: &segue::metrics::Metric) -> String {
     let decimals = match metric.unit {
         "s" | "m" | "m/s" => 2,
         "cm" => 1,
-        "%" | "frames" => 0,
+        "%" | "frames" | "bends" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };

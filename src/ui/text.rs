@@ -308,11 +308,11 @@ pub(crate) const DRAW_HELP: &str = "Draw a path on the ground with one stroke; b
 /// Over the stage, until something was drawn.
 pub(crate) const DRAW_HINT: &str = "Draw the path on the ground in one stroke. Esc leaves it as it is.";
 /// A button.
-pub(crate) const ADD_POINT: &str = "Add";
+pub(crate) const ADD_POINT: &str = "Add a point";
 /// Its hint.
 pub(crate) const ADD_POINT_HELP: &str = "One more control point behind the chosen one; the path stays as it is";
 /// A button.
-pub(crate) const REMOVE_POINT: &str = "Take out";
+pub(crate) const REMOVE_POINT: &str = "Take it out";
 /// Its hint.
 pub(crate) const REMOVE_POINT_HELP: &str = "Takes the chosen control point out of the path";
 /// While no point is chosen.
@@ -400,7 +400,7 @@ pub(crate) fn path_lengths(path: &OnPath) -> String {
 
 /// How well the path follows the hips.
 pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> String {
-    format!("Hips beside the path: {rms_cm:.1} cm on average, at most {most_cm:.1} cm at {along_m:.1} m.")
+    format!("Hips beside the path: {rms_cm:.1} cm on average (root mean square), at most {most_cm:.1} cm at {along_m:.1} m.")
 }
 
 /// That an edited path does not change with the slider.

@@ -216,25 +216,25 @@ impl PathInputs {
                 "How far a planted foot slides in the worst stance without the foot lock.",
             ));
         }
-        metrics.extend([
-            fact(
+        if !self.code.is_empty() {
+            metrics.push(fact(
                 "path_original_m",
                 "Length of the original path",
                 fitted.road.length_m(),
                 "m",
                 "The fitted path from its start to its end.",
-            ),
-            Metric {
-                better: Better::Lower,
-                ..fact(
-                    "hard_turns",
-                    "Hard turns",
-                    made.hard_turns.len() as f64,
-                    "",
-                    "Places where curvature times speed is beyond what the original does.",
-                )
-            },
-        ]);
+            ));
+        }
+        metrics.push(Metric {
+            better: Better::Lower,
+            ..fact(
+                "hard_turns",
+                "Hard turns",
+                made.hard_turns.len() as f64,
+                "bends",
+                "Places where curvature times speed is beyond what the original does.",
+            )
+        });
         let motion = Motion {
             clip: Arc::new(made.clip),
             roles: fitted.motion.roles.clone(),
