@@ -43,10 +43,9 @@ impl ViewInputs {
     }
 }
 
-/// A clip with its feet held.
+/// What came of it.
 #[derive(Debug)]
 struct Held {
-    of: Arc<Motion>,
     motion: Arc<Motion>,
     slides: Vec<Metric>,
 }
@@ -54,7 +53,7 @@ struct Held {
 /// Holds the feet of clips slice by slice, and keeps the last one.
 #[derive(Debug, Default)]
 pub(in crate::session) struct FeetHolder {
-    known: Option<Result<Arc<Held>, (Arc<Motion>, String)>>,
+    known: Option<(Arc<Motion>, Result<Arc<Held>, String>)>,
     under_way: Option<UnderWay>,
     /// It has just been done, and nobody has asked for it yet.
     is_ready: bool,
@@ -81,15 +80,13 @@ impl FeetHolder {
     /// The clip with its feet held. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
     pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>) -> Result<Option<ViewInputs>, String> {
         loop {
-            match &self.known {
-                Some(Ok(held)) if Arc::ptr_eq(&held.of, motion) => {
-                    return Ok(Some(ViewInputs {
-                        motion: Arc::clone(motion),
-                        held: Some(Arc::clone(held)),
-                    }));
-                }
-                Some(Err((of, why))) if Arc::ptr_eq(of, motion) => return Err(why.clone()),
-                _ => {}
+            if let Some((of, held)) = &self.known
+                && Arc::ptr_eq(of, motion)
+            {
+                return Ok(Some(ViewInputs {
+                    motion: Arc::clone(motion),
+                    held: Some(held.clone()?),
+                }));
             }
             if !self
                 .under_way
@@ -170,14 +167,13 @@ impl FeetHolder {
                             // Hips are only raised and lowered.
                             ground_frames: ground_frames.clone(),
                         }),
-                        of: Arc::clone(&motion),
                     }))
                 }
             }
         };
         match next {
             Ok(stage) => self.under_way = Some(UnderWay { motion, stage }),
-            Err(held) => self.known = Some(held.map(Arc::new).map_err(|why| (motion, why))),
+            Err(held) => self.known = Some((motion, held.map(Arc::new))),
         }
     }
 }
