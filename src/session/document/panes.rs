@@ -280,7 +280,7 @@ impl Session {
             "view" => {
                 let motion = self.motion_of(params.text(Key::A))?;
                 if params.is_on(Key::FootLock) {
-                    return Ok(self.feet.inputs(&motion)?.map(Inputs::View));
+                    return Ok(self.feet.inputs(&motion).map(Inputs::View));
                 }
                 self.feet.stop();
                 Ok(Inputs::View(ViewInputs::plain(motion)))
@@ -305,7 +305,7 @@ impl Session {
             Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
             Ok(Some(inputs)) => {
                 let outcome = match &inputs {
-                    Inputs::View(view) => Ok(view.run()),
+                    Inputs::View(view) => view.run(),
                     Inputs::Make(_) => make(params),
                     Inputs::Blend(blend) => blend.run(),
                     Inputs::Speed(speed) => speed.run(),

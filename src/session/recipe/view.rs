@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use super::feet::{slide, slide_before};
-use crate::metrics::{Metric, SlideMeter};
+use crate::metrics::SlideMeter;
 use crate::session::motion::Motion;
 use crate::transition::{FootLockOptions, FootLocking};
 use std::sync::Arc;
@@ -32,13 +32,10 @@ impl ViewInputs {
     }
 
     /// The clip.
-    pub(in crate::session) fn run(&self) -> Outcome {
+    pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         match &self.held {
-            None => Outcome::plain(Arc::clone(&self.motion)),
-            Some(held) => Outcome {
-                metrics: held.slides.clone(),
-                ..Outcome::plain(Arc::clone(&held.motion))
-            },
+            None => Ok(Outcome::plain(Arc::clone(&self.motion))),
+            Some(held) => held.made.clone(),
         }
     }
 }
@@ -46,14 +43,14 @@ impl ViewInputs {
 /// What came of it.
 #[derive(Debug)]
 struct Held {
-    motion: Arc<Motion>,
-    slides: Vec<Metric>,
+    of: Arc<Motion>,
+    made: Result<Outcome, String>,
 }
 
 /// Holds the feet of clips slice by slice, and keeps the last one.
 #[derive(Debug, Default)]
 pub(in crate::session) struct FeetHolder {
-    known: Option<(Arc<Motion>, Result<Arc<Held>, String>)>,
+    known: Option<Arc<Held>>,
     under_way: Option<UnderWay>,
     /// It has just been done, and nobody has asked for it yet.
     is_ready: bool,
@@ -78,15 +75,13 @@ impl FeetHolder {
     }
 
     /// The clip with its feet held. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
-    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>) -> Result<Option<ViewInputs>, String> {
+    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>) -> Option<ViewInputs> {
         loop {
-            if let Some((of, held)) = &self.known
-                && Arc::ptr_eq(of, motion)
-            {
-                return Ok(Some(ViewInputs {
+            if let Some(held) = self.known.as_ref().filter(|held| Arc::ptr_eq(&held.of, motion)) {
+                return Some(ViewInputs {
                     motion: Arc::clone(motion),
-                    held: Some(held.clone()?),
-                }));
+                    held: Some(Arc::clone(held)),
+                });
             }
             if !self
                 .under_way
@@ -99,7 +94,7 @@ impl FeetHolder {
                 });
             }
             if motion.clip.frames() > AT_ONCE {
-                return Ok(None);
+                return None;
             }
             self.step();
         }
@@ -158,22 +153,22 @@ impl FeetHolder {
                     Ok(Stage::Locking { before_cm, locking })
                 } else {
                     let locked = locking.finish().map_err(|error| error.to_string());
-                    Err(locked.map(|locked| Held {
-                        slides: vec![slide(&locked, roles, contacts), slide_before(before_cm)],
-                        motion: Arc::new(Motion {
+                    Err(locked.map(|locked| Outcome {
+                        metrics: vec![slide(&locked, roles, contacts), slide_before(before_cm)],
+                        ..Outcome::plain(Arc::new(Motion {
                             clip: Arc::new(locked),
                             roles: roles.clone(),
                             contacts: contacts.clone(),
                             // Hips are only raised and lowered.
                             ground_frames: ground_frames.clone(),
-                        }),
+                        }))
                     }))
                 }
             }
         };
         match next {
             Ok(stage) => self.under_way = Some(UnderWay { motion, stage }),
-            Err(held) => self.known = Some((motion, held.map(Arc::new))),
+            Err(made) => self.known = Some(Arc::new(Held { of: motion, made })),
         }
     }
 }
