@@ -2,41 +2,21 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue::blend::{LayerOptions, Source, layer};
-use segue::clip::{Clip, ContactOptions, Contacts};
+use segue::clip::{ContactOptions, Contacts};
 use segue::gait::{GaitCycle, SpeedBlend, SpeedOptions, SpeedPlayer};
-use segue::skeleton::{Joint, Roles, Skeleton};
-use segue::synth::{Action, Params, synthesize};
+use segue::skeleton::Roles;
+use segue::synth::Action;
 use segue::transition::{FootLockOptions, foot_lock};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// 600 frames of a made gait on a body of 31 joints, as many as the CMU skeleton has: fingers are added.
-fn gait(action: Action) -> Clip {
-    let params = Params {
-        duration_secs: 10.2,
-        ..Params::new(action)
-    };
-    let made = synthesize(&params).expect("defaults can be made").clip;
-    let made = made.crop(0..600).expect("long enough");
-    let mut joints = made.skeleton().joints().to_vec();
-    while joints.len() < 31 {
-        joints.push(Joint {
-            name: format!("Finger{}", joints.len()),
-            parent: Some(21),
-            ..joints[21].clone()
-        });
-    }
-    let skeleton = Arc::new(Skeleton::new(joints).expect("fingers come last"));
-    let poses = (0..made.frames()).map(|frame| {
-        let mut pose = made.pose(frame);
-        pose.rotations.resize(31, glam::Quat::IDENTITY);
-        pose
-    });
-    Clip::from_poses(made.name(), skeleton, made.fps(), poses).expect("one rotation per joint")
-}
+#[path = "common/gait.rs"]
+mod common;
+
+use common::gait;
 
 fn living(c: &mut Criterion) {
-    let [walk, run] = [Action::Walk, Action::Run].map(gait);
+    let [walk, run] = [Action::Walk, Action::Run].map(|action| gait(action, 600, 0.0));
     let roles = Roles::detect(walk.skeleton());
     let contacts = [&walk, &run].map(|clip| Contacts::detect(clip, &roles, &ContactOptions::default()));
     c.bench_function("foot lock, 600 frames", |bench| {

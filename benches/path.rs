@@ -6,18 +6,18 @@ use segue::blend::Source;
 use segue::clip::{ContactOptions, Contacts};
 use segue::path::{CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins, Road, Timing, carry};
 use segue::skeleton::Roles;
-use segue::synth::{Action, Params, synthesize};
+use segue::synth::Action;
 use segue::transition::FootLockOptions;
 use std::hint::black_box;
 use std::sync::Arc;
 
+#[path = "common/gait.rs"]
+mod common;
+
+use common::gait;
+
 fn dragging(c: &mut Criterion) {
-    let walk = Params {
-        duration_secs: 50.0,
-        turn_rate_dps: 12.0,
-        ..Params::new(Action::Walk)
-    };
-    let clip = Arc::new(synthesize(&walk).expect("a walk can be made").clip);
+    let clip = Arc::new(gait(Action::Walk, 3_000, 12.0));
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let size = format!("{} frames, {} joints", clip.frames(), clip.skeleton().len());

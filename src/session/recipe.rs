@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod feet;
 mod kept;
 mod layers;
 mod looping;
@@ -16,6 +17,7 @@ mod path;
 mod register;
 mod rounds;
 mod speed;
+mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
@@ -23,13 +25,14 @@ pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recip
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
-pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
+pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath};
 pub(super) use path::{PathInputs, Paths};
 pub use register::{Beat, DistanceMap, Registered, write_pins};
 pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
+pub(super) use view::{FeetHolder, ViewInputs};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -62,6 +65,17 @@ pub struct Source {
     pub starts_at_secs: f64,
     /// Where it lies on the result's ground.
     pub world_from_clip: Planar,
+}
+
+impl Source {
+    fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
+        Self {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        }
+    }
 }
 
 /// Where one clip goes over into the other.
@@ -158,6 +172,11 @@ impl Outcome {
             path: None,
             metrics: Vec::new(),
         }
+    }
+
+    /// Its feet are to be planted, and are not yet.
+    pub(super) fn awaits_feet(&self) -> bool {
+        self.path.as_ref().is_some_and(|path| path.awaits_feet)
     }
 
     /// Seconds from the first frame to the last.

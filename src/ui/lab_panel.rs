@@ -39,6 +39,10 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     slot_row_ui(Slot::A, session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    if session.params().is_on(Key::FootLock) {
+        save_result_ui(session, state, out, ui);
+    }
     if let Some(entry) = session.slot(Slot::A) {
         ui.push_id(&entry.id, |ui| clip_panel_ui(entry, session, state, out, ui));
     }
@@ -64,6 +68,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         param_row_ui(param.key, &detail, session, out, ui);
     }
     compare_ui(Key::GaitSpeed, session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

@@ -66,6 +66,9 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    if path.is_some_and(|path| path.awaits_feet) {
+        note_ui(text::FEET_LATER, palette.muted, ui);
+    }
     ui.add_space(space::S);
     fit_ui(path, session, out, ui);
     ui.add_space(space::S);

@@ -429,6 +429,9 @@ pub(crate) fn more_hard_turns(count: usize) -> String {
     }
 }
 
+/// While the feet of a long motion are not planted yet.
+pub(crate) const FEET_LATER: &str = "A long motion: its feet are planted when the hand rests.";
+
 /// A button beside a companion.
 pub(crate) fn edit_companion(name: &str) -> String {
     format!("Edit the path of {name}; the present one takes its place")

@@ -115,7 +115,7 @@ impl Session {
         let id = recipe_id(&params, outcome, [1.0; 2]).ok_or(nothing)?;
         let name = recipe_name(&params);
         Ok(Entry {
-            motion: Some(Arc::clone(&outcome.motion)),
+            motion: (!outcome.awaits_feet()).then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)
         })
     }

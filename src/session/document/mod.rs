@@ -18,7 +18,9 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Paths, Registrar, Slot, read_pins};
+use super::recipe::{
+    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Layerer, Outcome, Pairs, Paths, Registrar, Slot, read_pins,
+};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -94,6 +96,7 @@ pub struct Session {
     registrar: Registrar,
     paths: Paths,
     company: Vec<Companion>,
+    feet: FeetHolder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -125,6 +128,7 @@ impl Session {
             registrar: Registrar::default(),
             paths: Paths::default(),
             company: Vec::new(),
+            feet: FeetHolder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -589,7 +593,7 @@ impl Session {
         self.remember(None);
         let said = format!("{name} is in the library now: choose it as A or B.");
         self.library.put(Entry {
-            motion: Some(Arc::clone(&outcome.motion)),
+            motion: (!outcome.awaits_feet()).then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)
         });
         self.library_revision += 1;

@@ -8,8 +8,10 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, Slot, SpeedInputs};
-use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_name, recipe_params};
+use crate::session::recipe::{
+    BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, Slot, SpeedInputs, ViewInputs,
+};
+use crate::session::recipe::{belongs_to, made_id, make, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -64,7 +66,7 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, `registering`, or the file that is read.
+    /// What it is: `matching`, `registering`, `holding feet`, or the file that is read.
     pub name: String,
     /// How much is done, 0 to 1.
     pub progress: f64,
@@ -75,7 +77,7 @@ pub struct Job {
 /// What a result depends on. Equal inputs, equal result: nothing is computed again.
 #[derive(Clone, Debug)]
 pub(super) enum Inputs {
-    View(Arc<Motion>),
+    View(ViewInputs),
     Make(String),
     Blend(BlendInputs),
     Speed(SpeedInputs),
@@ -88,7 +90,7 @@ pub(super) enum Inputs {
 impl PartialEq for Inputs {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::View(a), Self::View(b)) => Arc::ptr_eq(a, b),
+            (Self::View(a), Self::View(b)) => a == b,
             (Self::Make(a), Self::Make(b)) => a == b,
             (Self::Blend(a), Self::Blend(b)) => a == b,
             (Self::Speed(a), Self::Speed(b)) => a == b,
@@ -110,10 +112,10 @@ impl Session {
             }
             return true;
         }
-        if self.registrar.work() {
+        if self.registrar.work() || self.feet.work() || self.paths.work() {
             return true;
         }
-        if self.registrar.is_ready() {
+        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -150,7 +152,13 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
-        self.reading_jobs().chain(matching).chain(registering).collect()
+        let holding = self.feet.progress().or(self.paths.progress()).map(|progress| Job {
+            task: None,
+            name: "holding feet".into(),
+            progress: f64::from(progress),
+            size: None,
+        });
+        self.reading_jobs().chain(matching).chain(registering).chain(holding).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
@@ -217,7 +225,9 @@ impl Session {
         }
         let mut pane = Pane::default();
         self.refresh_pane(&mut pane, params, widest_window(params, None));
-        match (pane.outcome, pane.problem) {
+        // One that is being dragged may be seen before its feet are planted, and one that is kept may not.
+        let is_whole = |outcome: &Arc<Outcome>| !outcome.awaits_feet();
+        match (pane.outcome.filter(is_whole), pane.problem) {
             (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
             (None, problem) => Err(problem.unwrap_or_else(|| format!("{} is being made.", recipe_name(params)))),
         }
@@ -248,6 +258,8 @@ impl Session {
         };
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrar.ask_anew();
+        self.paths.ask_anew();
+        self.feet.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
@@ -273,7 +285,14 @@ impl Session {
                 let pair = self.pair_of(params)?;
                 return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
             }
-            "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
+            "view" => {
+                let motion = self.motion_of(params.text(Key::A))?;
+                if params.is_on(Key::FootLock) {
+                    return Ok(self.feet.inputs(&motion).map(Inputs::View));
+                }
+                self.feet.stop();
+                Ok(Inputs::View(ViewInputs::plain(motion)))
+            }
             "make" => Ok(Inputs::Make(made_id(params))),
             "loop" => (self.motion_of(params.text(Key::A)))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
@@ -297,8 +316,8 @@ impl Session {
             Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
             Ok(Some(inputs)) => {
                 let outcome = match &inputs {
-                    Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
-                    Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
+                    Inputs::View(view) => view.run(),
+                    Inputs::Make(_) => make(params),
                     Inputs::Blend(blend) => blend.run(),
                     Inputs::Speed(speed) => speed.run(),
                     Inputs::Loop(cycle) => cycle.run(),

@@ -223,3 +223,52 @@ fn a_kept_path_is_a_clip_for_every_other_lab() {
         session.main_outcome().unwrap().motion.clip.root_translations()
     );
 }
+
+/// A walk longer than what is planted while a hand moves.
+const LONG: &str = "walk(make_seconds:12)";
+
+#[test]
+fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
+    let mut session = Session::new();
+    let open = |session: &mut Session, query: &str| session.apply(Command::OpenLink(query.to_owned())).unwrap();
+    open(&mut session, &format!("lab=path&a={LONG}&foot_lock=on"));
+    assert!(path(&session).awaits_feet);
+    assert!(session.jobs().iter().any(|job| job.name == "holding feet"));
+    let value = moved(&session, 3, DVec2::new(0.8, 0.0));
+    set(&mut session, Key::Path, value);
+    assert!(path(&session).awaits_feet, "at once, without");
+    let free = metric(&session, "skate_cm");
+    while session.work() {}
+    assert!(!path(&session).awaits_feet);
+    assert!((metric(&session, "skate_before_cm") - free).abs() < 1e-9);
+    assert!(
+        metric(&session, "skate_cm") < 0.5 * free,
+        "{} of {free}",
+        metric(&session, "skate_cm")
+    );
+    assert!(session.jobs().is_empty());
+    // The same as done at once.
+    let known = path(&session).fitted.motion();
+    let roles = &known.roles;
+    let now = Arc::clone(session.main_outcome().unwrap());
+    let mut free = Session::new();
+    open(&mut free, &session.query().replace("foot_lock=on&", ""));
+    let carried = &free.main_outcome().unwrap().motion;
+    let locked = crate::transition::foot_lock(
+        &carried.clip,
+        roles,
+        &carried.contacts,
+        &crate::transition::FootLockOptions::default(),
+    )
+    .unwrap();
+    assert_eq!(locked.rotations(300), now.motion.clip.rotations(300));
+
+    // Who keeps it before that keeps what will come of it.
+    let value = moved(&session, 3, DVec2::new(0.8, 0.3));
+    set(&mut session, Key::Path, value);
+    session.apply(Command::Company(CompanyChange::JoinResult(0))).unwrap();
+    assert!(session.company()[0].motion.is_err());
+    while session.work() {}
+    let kept = session.company()[0].motion.as_ref().unwrap();
+    assert_eq!(kept.clip.rotations(300), session.main_outcome().unwrap().motion.clip.rotations(300));
+}

@@ -15,8 +15,8 @@ const DEEPEST: usize = 6;
 pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
     let group = key.param().group;
     match lab {
-        "view" => group == Group::View,
-        "make" => group == Group::Make,
+        "view" => group == Group::View || key == Key::FootLock,
+        "make" => group == Group::Make || key == Key::FootLock,
         "blend" => group == Group::Blend,
         "transition" => matches!(group, Group::Blend | Group::Transition),
         "speed" => group == Group::Speed || key == Key::FootLock,
@@ -32,7 +32,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
         Key::A => true,
-        Key::B => !matches!(lab, "loop" | "path"),
+        Key::B => !matches!(lab, "view" | "loop" | "path"),
         // Looked at or worked with, and not made from.
         Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
         _ => belongs_to(key, lab),
@@ -50,7 +50,7 @@ pub(in crate::session) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = 
 pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.text(Key::Lab);
     match lab {
-        "view" => return None,
+        "view" if !params.is_on(Key::FootLock) => return None,
         "make" => return Some(made_id(params)),
         _ => {}
     }
@@ -75,7 +75,7 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
     let (word, list) = id.strip_suffix(')')?.split_once('(')?;
     let mut params = Params::default();
     let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
-    let is_lab = Key::Lab.param().parse(word).is_ok() && !matches!(word, "view" | "make");
+    let is_lab = Key::Lab.param().parse(word).is_ok() && word != "make";
     let lab = if is_lab { word } else { "make" };
     set(Key::Lab, lab)?;
     if !is_lab {
@@ -92,7 +92,8 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
         };
         set(Some(key).filter(|_| allowed)?, &value)?;
     }
-    Some(params)
+    // A clip as it is has its own id.
+    (lab != "view" || params.is_on(Key::FootLock)).then_some(params)
 }
 
 /// What a person calls what the parameters make.
@@ -100,6 +101,7 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
     let [a, b] = [Key::A, Key::B].map(|key| params.text(key).split('~').next().unwrap_or_default());
     match params.text(Key::Lab) {
         "make" => made_id(params),
+        "view" => format!("{a}, feet held"),
         "loop" => format!("{a}, looped"),
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
@@ -195,8 +197,8 @@ mod tests {
     }
 
     fn id_of(params: &Params) -> String {
-        let motion = super::super::made_motion(&Params::default()).expect("a walk");
-        recipe_id(params, &Outcome::plain(std::sync::Arc::new(motion)), [60.0; 2]).expect("a recipe")
+        let outcome = super::super::make(&Params::default()).expect("a walk");
+        recipe_id(params, &outcome, [60.0; 2]).expect("a recipe")
     }
 
     #[test]
@@ -207,6 +209,7 @@ mod tests {
             "blend(gait:run)",
             "loop(a:walk,b:run)",
             "view(a:walk)",
+            "view(a:walk,b:run,foot_lock:on)",
             "make(gait:run)",
             "blend(a:walk,blend_window:0)",
             "blend((((((((((())))))))))))",

@@ -1,18 +1,22 @@
 //! The Path lab: a motion on another path.
 
-use super::rounds::fact;
+use super::feet::slide_before;
 use super::{Outcome, Slot, Source};
 use crate::blend;
 use crate::math::Planar;
-use crate::metrics::{Better, Metric};
+use crate::metrics::Metric;
 use crate::path::{
-    CarryOptions, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Orientation, PathEditor, Road, Timing, Waypoint,
+    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Orientation, PathEditor, Road,
+    Timing, Waypoint,
 };
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
 use crate::transition::FootLockOptions;
+use planter::{Planted, Planter};
 use std::sync::Arc;
+
+mod planter;
 
 /// A motion and the path that was fitted to its way: what stays while the path is edited.
 #[derive(Debug)]
@@ -84,6 +88,8 @@ pub struct OnPath {
     pub places: Vec<Waypoint>,
     /// Where the path turns faster than the motion can.
     pub hard_turns: Vec<HardTurn>,
+    /// Its feet will be planted as soon as the hand rests, and are not yet.
+    pub awaits_feet: bool,
 }
 
 /// What a motion on a path depends on. Equal inputs, equal result.
@@ -92,20 +98,67 @@ pub(in crate::session) struct PathInputs {
     fitted: Arc<FittedMotion>,
     /// The word of the edited path; empty for the fitted one.
     code: String,
-    options: MotionOptions,
+    carry: CarryOptions,
+    feet: Feet,
+}
+
+/// What becomes of the feet.
+#[derive(Clone, Debug)]
+enum Feet {
+    Free,
+    AtOnce,
+    Awaited,
+    Planted(Arc<Planted>),
+}
+
+/// The feet of so many frames are planted while the hand moves: about 3 ms for 31 joints in a browser.
+const AT_ONCE: usize = 400;
+
+impl PathInputs {
+    /// Whether it is the same motion on the same path, whatever becomes of the feet.
+    fn makes_the_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && self.carry == other.carry
+    }
 }
 
 impl PartialEq for PathInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && self.options == other.options
+        self.makes_the_same(other)
+            && match (&self.feet, &other.feet) {
+                (Feet::Planted(a), Feet::Planted(b)) => Arc::ptr_eq(a, b),
+                (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+            }
     }
 }
 
 /// Fits paths, and keeps the last ones: a hand that drags a point changes none of them.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Paths(Vec<Arc<FittedMotion>>);
+pub(in crate::session) struct Paths {
+    fitted: Vec<Arc<FittedMotion>>,
+    planter: Planter,
+}
 
 impl Paths {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(in crate::session) fn ask_anew(&mut self) {
+        self.planter.ask_anew();
+    }
+
+    /// One slice of what a pane waits for. `false` when there was nothing to do.
+    pub(in crate::session) fn work(&mut self) -> bool {
+        self.planter.work()
+    }
+
+    /// Whether what a pane waits for is there, so that it should ask again.
+    pub(in crate::session) fn is_ready(&self) -> bool {
+        self.planter.is_ready()
+    }
+
+    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    pub(in crate::session) fn progress(&self) -> Option<f32> {
+        self.planter.progress()
+    }
+
     /// What the parameters ask for, of this clip.
     pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<PathInputs, String> {
         let options = FitOptions {
@@ -113,111 +166,131 @@ impl Paths {
             smoothing: params.number(Key::PathSmoothing),
             pin_ends: false,
         };
-        Ok(PathInputs {
+        let mut inputs = PathInputs {
             fitted: self.fitted(motion, options)?,
             code: params.text(Key::Path).to_owned(),
-            options: motion_options(params),
-        })
+            carry: carry_options(params),
+            feet: Feet::Free,
+        };
+        if params.is_on(Key::FootLock) {
+            inputs.feet = if motion.clip.frames() <= AT_ONCE {
+                Feet::AtOnce
+            } else {
+                self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::Planted)
+            };
+        }
+        Ok(inputs)
     }
 
     fn fitted(&mut self, motion: &Arc<Motion>, options: FitOptions) -> Result<Arc<FittedMotion>, String> {
         let is_it = |known: &&Arc<FittedMotion>| Arc::ptr_eq(&known.motion, motion) && known.options == options;
-        if let Some(known) = self.0.iter().find(is_it) {
+        if let Some(known) = self.fitted.iter().find(is_it) {
             return Ok(Arc::clone(known));
         }
         let fitted = Arc::new(FittedMotion::new(motion, options)?);
-        if self.0.len() >= MAX_PANES {
-            self.0.remove(0);
+        if self.fitted.len() >= MAX_PANES {
+            self.fitted.remove(0);
         }
-        self.0.push(Arc::clone(&fitted));
+        self.fitted.push(Arc::clone(&fitted));
         Ok(fitted)
     }
 }
 
-fn motion_options(params: &Params) -> MotionOptions {
-    MotionOptions {
-        carry: CarryOptions {
-            timing: match params.text(Key::PathKeep) {
-                "duration" => Timing::Duration,
-                "whole" => Timing::Speed,
-                _ => Timing::Metres,
-            },
-            orientation: match params.text(Key::PathFacing) {
-                "world" => Orientation::World,
-                _ => Orientation::Path,
-            },
+fn carry_options(params: &Params) -> CarryOptions {
+    CarryOptions {
+        timing: match params.text(Key::PathKeep) {
+            "duration" => Timing::Duration,
+            "whole" => Timing::Speed,
+            _ => Timing::Metres,
         },
-        foot_lock: params.is_on(Key::FootLock).then(FootLockOptions::default),
+        orientation: match params.text(Key::PathFacing) {
+            "world" => Orientation::World,
+            _ => Orientation::Path,
+        },
     }
+}
+
+/// The path, and the motion on it as its feet come.
+fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String> {
+    motion_on(inputs, None)
+}
+
+fn motion_on(inputs: &PathInputs, foot_lock: Option<FootLockOptions>) -> Result<(Arc<Road>, EditedMotion), String> {
+    let fitted = &inputs.fitted;
+    let road = if inputs.code.is_empty() {
+        Arc::clone(&fitted.road)
+    } else {
+        let spline = GroundSpline::from_code(&inputs.code);
+        Arc::new(spline.and_then(Road::new).map_err(|error| error.to_string())?)
+    };
+    let options = MotionOptions {
+        carry: inputs.carry,
+        foot_lock,
+    };
+    let made = fitted.editor.motion(&road, &options).map_err(|error| error.to_string())?;
+    Ok((road, made))
 }
 
 impl PathInputs {
     /// The motion on the path.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
+        let lock = matches!(self.feet, Feet::AtOnce).then(FootLockOptions::default);
+        let (road, mut made) = motion_on(self, lock)?;
+        if let Feet::Planted(planted) = &self.feet {
+            let (clip, slide_cm) = planted.made.clone()?;
+            made.clip = (*clip).clone();
+            made.slide_cm.locked = slide_cm;
+        }
         let fitted = &self.fitted;
-        let road = if self.code.is_empty() {
-            Arc::clone(&fitted.road)
-        } else {
-            let spline = GroundSpline::from_code(&self.code);
-            Arc::new(spline.and_then(Road::new).map_err(|error| error.to_string())?)
-        };
-        let made = fitted.editor.motion(&road, &self.options).map_err(|error| error.to_string())?;
-        let slide = |id, label, value, better, help| Metric {
-            id,
-            label,
-            value,
-            unit: "cm",
-            better,
-            help,
-        };
         let mut metrics = vec![
-            fact(
+            Metric::lower(
+                "skate_cm",
+                "Foot slide",
+                made.slide_cm.locked,
+                "cm",
+                "How far a planted foot slides in the worst stance.",
+            ),
+            Metric::fact(
+                "skate_original_cm",
+                "Foot slide of the original",
+                made.slide_cm.original,
+                "cm",
+                "How far a planted foot slides in the worst stance before the path was edited.",
+            ),
+            Metric::fact(
                 "fit_rms_cm",
                 "Fit error",
                 fitted.error.rms_cm,
                 "cm",
                 "How far the hips are from the fitted path: the root of the mean squared distance. It is carried along, not lost.",
             ),
-            fact(
+            Metric::fact(
                 "fit_most_cm",
                 "Largest fit error",
                 fitted.error.most_cm,
                 "cm",
                 "The same where it is largest.",
             ),
-            fact(
+            Metric::fact(
                 "path_m",
                 "Length of the path",
                 road.length_m(),
                 "m",
                 "The edited path from its start to its end.",
             ),
-            slide(
-                "skate_cm",
-                "Foot slide",
-                made.slide_cm.locked,
-                Better::Lower,
-                "How far a planted foot slides in the worst stance.",
-            ),
-            slide(
-                "skate_original_cm",
-                "Foot slide of the original",
-                made.slide_cm.original,
-                Better::Neutral,
-                "How far a planted foot slides in the worst stance before the path was edited.",
+            Metric::lower(
+                "hard_turns",
+                "Hard turns",
+                made.hard_turns.len() as f64,
+                "bends",
+                "Places where curvature times speed is beyond what the original does.",
             ),
         ];
-        if self.options.foot_lock.is_some() {
-            metrics.push(slide(
-                "skate_before_cm",
-                "Foot slide before the lock",
-                made.slide_cm.carried,
-                Better::Neutral,
-                "How far a planted foot slides in the worst stance without the foot lock.",
-            ));
+        if matches!(self.feet, Feet::AtOnce | Feet::Planted(_)) {
+            metrics.push(slide_before(made.slide_cm.carried));
         }
         if !self.code.is_empty() {
-            metrics.push(fact(
+            metrics.push(Metric::fact(
                 "path_original_m",
                 "Length of the original path",
                 fitted.road.length_m(),
@@ -225,16 +298,6 @@ impl PathInputs {
                 "The fitted path from its start to its end.",
             ));
         }
-        metrics.push(Metric {
-            better: Better::Lower,
-            ..fact(
-                "hard_turns",
-                "Hard turns",
-                made.hard_turns.len() as f64,
-                "bends",
-                "Places where curvature times speed is beyond what the original does.",
-            )
-        });
         let motion = Motion {
             clip: Arc::new(made.clip),
             roles: fitted.motion.roles.clone(),
@@ -242,18 +305,14 @@ impl PathInputs {
             ground_frames: made.characters,
         };
         Ok(Outcome {
-            sources: vec![Source {
-                slot: Slot::A,
-                motion: Arc::clone(&fitted.motion),
-                starts_at_secs: 0.0,
-                world_from_clip: Planar::IDENTITY,
-            }],
+            sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
             path: Some(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
                 road,
                 is_edited: !self.code.is_empty(),
                 places: made.places,
                 hard_turns: made.hard_turns,
+                awaits_feet: matches!(self.feet, Feet::Awaited),
             })),
             metrics,
             ..Outcome::plain(Arc::new(motion))
