@@ -53,7 +53,7 @@ impl PathHand {
     pub(crate) fn marks(&self, session: &Session) -> PathMarks {
         let is_open = session.params().text(Key::Lab) == "path";
         PathMarks {
-            handles: is_open && !session.params().is_on(Key::Embed) && self.drawn.is_empty(),
+            handles: is_open && self.drawn.is_empty(),
             chosen: self.chosen,
             hovered: self.hovered,
             place: self.place.map(|(place, _)| place),
@@ -92,6 +92,12 @@ impl PathHand {
                 false
             }
         }
+    }
+
+    /// Nothing is drawn after all.
+    pub(super) fn stop_drawing(&mut self) {
+        self.drawing = false;
+        self.drawn.clear();
     }
 
     /// Makes a path of what was drawn.

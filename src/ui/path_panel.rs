@@ -99,6 +99,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
             let on = session.params().is_on(key);
             let button = Button::new(key.param().label).hint(key.param().help).selected(on);
             if kit::button_ui(button, ui).clicked() {
+                state.path.said = None;
                 out.toggle(key, on);
             }
         }

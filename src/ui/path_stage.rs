@@ -63,18 +63,15 @@ pub(super) fn drawing_input(
     out: &mut Out,
     ui: &Ui,
 ) -> bool {
-    if session.params().text(Key::Lab) != "path" {
-        state.path.drawing = false;
-    }
-    if !state.path.drawing {
-        state.path.drawn.clear();
+    if session.params().text(Key::Lab) != "path" || !state.path.drawing {
+        state.path.stop_drawing();
         return false;
     }
     if response.hovered() {
         ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
     }
-    if ui.input(|input| input.key_pressed(Keyboard::Escape) || input.multi_touch().is_some()) {
-        state.path.drawing = false;
+    if ui.input(egui::InputState::multi_touch).is_some() {
+        // Two fingers move the camera.
         state.path.drawn.clear();
         return false;
     }
@@ -125,7 +122,8 @@ pub(super) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Res
         let id = ui.make_persistent_id(("control point", pane, index));
         let hit = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
         let response = ui.interact(hit, id, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::control_point(index, shown, point)));
+        let chosen = state.path.chosen == Some(index);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, text::control_point(index, shown, point)));
         handle_input(index, pane, point, &view, path, &response, session, state, out, ui);
     }
     if state.path.held.is_none() && state.path.hovered.is_none() {
@@ -288,6 +286,7 @@ pub(super) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) 
                 out.commands.push(Command::Set(defaults.collect()));
             }
             state.path.framed = None;
+            state.path.said = None;
         }
         _ => {}
     }

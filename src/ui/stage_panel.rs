@@ -29,7 +29,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
     let draws = drawing_input(session, &shown, &response, state, out, ui);
-    camera_input(session, &response, draws, out, ui);
+    camera_input(session, &response, draws || state.path.held.is_some(), out, ui);
     paint(stage, &shown, ui);
     (state.path.hovered, state.path.place) = (None, None);
     for &(index, rect) in &shown {

@@ -354,6 +354,8 @@ pub(crate) const FOUR_EIGHT_SIXTEEN: &str = "4, 8, 16 points";
 pub(crate) const FOUR_EIGHT_SIXTEEN_QUERY: &str = "control_points:4,8,16";
 /// A chip over a pane whose path turns harder than the motion can.
 pub(crate) const TOO_HARD: &str = "turns too hard";
+/// Where that is, on the timeline.
+pub(crate) const HARD_MOMENT: &str = "The path turns faster than the original";
 /// Over the list of those who play along.
 pub(crate) const COMPANY: &str = "On the stage together";
 /// A button.
@@ -362,6 +364,8 @@ pub(crate) const JOIN: &str = "This one joins";
 pub(crate) const JOIN_HELP: &str = "Leaves this character on the stage as it is, so that another path can be made beside it";
 /// A list of clips.
 pub(crate) const JOIN_CLIP: &str = "A clip joins";
+/// While none is chosen.
+pub(crate) const CHOOSE_CLIP: &str = "choose…";
 /// What that is for.
 pub(crate) const COMPANY_HELP: &str = "Each on its own path and in its own colour, all in the same time. The link carries them.";
 

@@ -117,7 +117,8 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         include: (quantity != "turn").then_some(0.0),
         series: &series,
     };
-    let seams = seams(outcome, palette.accent);
+    let mut seams = seams(outcome, palette.accent);
+    seams.extend(hard_turns(outcome, palette.warning));
     let feet = feet_names(session, layout);
     let stripes = stripes(session, &feet);
     let timeline = Timeline {
@@ -187,6 +188,17 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
         name: text::CYCLE_BEGINS,
     };
     (1..count).map(seam).collect()
+}
+
+/// Where the path turns harder than the motion can.
+fn hard_turns(outcome: &Outcome, color: Color32) -> impl Iterator<Item = Moment<'static>> {
+    let fps = outcome.motion.clip.fps();
+    let turns = outcome.path.iter().flat_map(|path| &path.hard_turns);
+    turns.map(move |turn| Moment {
+        time: turn.worst as f64 / fps,
+        color,
+        name: text::HARD_MOMENT,
+    })
 }
 
 /// What stands before the stripes of each pane's feet: A, B, result. A phone has room for one pane.

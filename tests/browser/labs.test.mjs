@@ -51,6 +51,25 @@ onBothBackends("a classic mistake stands beside the right way", async ({ open })
   assert.ok(spins[2] > 90 && spins[0] < 10, `spins: ${spins}`);
 });
 
+// Fails when the character does not go where its path goes, and when its way there is not part of the link.
+onBothBackends("a character goes on the path of the link, beside others", async ({ open }) => {
+  const { segue } = await open("lab=path&a=walk&play=off", DESK);
+  await segue("set", {});
+  const half = async (which) => (await segue("pose", which, 1.6)).positions.slice(0, 3);
+  const before = await half("result");
+  assert.ok(apart(await segue("pose", "result", 1), await segue("pose", "walk", 1)) < 1e-3, "nobody edited it");
+  await segue("set", { path: "AAUAAADIAfAByAF3yAF3rAI", others: "run,walk_left" });
+  const [x] = await half("result");
+  assert.ok(x - before[0] > 0.3, `the hips are ${x - before[0]} m to the left`);
+  assert.ok((await panes(segue, "path_m"))[0] > (await panes(segue, "path_original_m"))[0]);
+  const url = new URL(await segue("url"));
+  const other = await open(url.search.slice(1), DESK);
+  await other.segue("set", {});
+  assert.ok(apart(await other.segue("pose", "result", 1.6), await segue("pose", "result", 1.6)) < 1e-6);
+  const id = await segue("keep", "result");
+  assert.match(id, /^path\(a:walk,path:[\w-]+\)$/);
+});
+
 // Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
 onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);
