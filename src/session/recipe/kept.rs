@@ -85,7 +85,7 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
         let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
-        let value = if key.param().kind == Kind::Clip && !value.ends_with(')') {
+        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')') {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
@@ -154,7 +154,7 @@ fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
 /// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
-    if param.kind == Kind::Clip && recipe_params(&text).is_none() {
+    if matches!(param.kind, Kind::Clip | Kind::Text) && recipe_params(&text).is_none() {
         utf8_percent_encode(&text, RESERVED).to_string()
     } else {
         text
@@ -216,6 +216,14 @@ mod tests {
         ] {
             assert_eq!(recipe_params(id), None, "{id}");
         }
+    }
+
+    #[test]
+    fn lists_stay_whole_inside_of_an_id() {
+        let mut params = Params::default();
+        params.set(Key::Lab, Value::Choice("register")).expect("a lab");
+        params.set(Key::Pins, Value::Text("12-30,50-71".into())).expect("a text");
+        assert_eq!(recipe_params(&id_of(&params)), Some(params));
     }
 
     proptest! {
