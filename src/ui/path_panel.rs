@@ -236,11 +236,8 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
         out.commands.push(Command::Company(CompanyChange::JoinResult(state.saved_pane)));
     }
     let entries = session.library().entries();
-    let options: Vec<(usize, &str)> = entries
-        .iter()
-        .enumerate()
-        .map(|(index, entry)| (index, entry.name.as_str()))
-        .collect();
+    let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
+    let options: Vec<(usize, &str)> = std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));

@@ -98,7 +98,10 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
 
 /// What a person calls what the parameters make.
 pub(in crate::session) fn recipe_name(params: &Params) -> String {
-    let [a, b] = [Key::A, Key::B].map(|key| params.text(key).split('~').next().unwrap_or_default());
+    let [a, b] = [Key::A, Key::B].map(|key| match recipe_params(params.text(key)) {
+        Some(kept) => recipe_name(&kept),
+        None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
+    });
     match params.text(Key::Lab) {
         "make" => made_id(params),
         "view" => format!("{a}, feet held"),

@@ -10,12 +10,14 @@ use std::sync::Arc;
 /// Frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
 
+/// The motion with its feet planted, and how far they slide now, centimetres.
+type Made = Result<(Arc<Clip>, Option<f64>), String>;
+
 /// What came of it.
 #[derive(Debug)]
 pub(super) struct Planted {
     of: PathInputs,
-    /// The motion with its feet planted, and how far they slide now, centimetres.
-    pub(super) made: Result<(Arc<Clip>, Option<f64>), String>,
+    pub(super) made: Made,
 }
 
 #[derive(Debug)]
@@ -96,7 +98,7 @@ fn begin(of: &PathInputs) -> Result<Stage, String> {
 }
 
 /// The next stage, or what came of it all.
-fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Result<(Arc<Clip>, Option<f64>), String>> {
+fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
     match stage {
         Stage::Locking(mut locking, contacts) => {
             if locking.advance(PER_SLICE) {
