@@ -31,6 +31,8 @@ pub struct Road {
     parameters: Vec<f64>,
     /// Metres from the start to these ends.
     lengths: Vec<f64>,
+    /// Metres per unit of the parameter at these ends.
+    speeds: Vec<f64>,
 }
 
 /// The frame of a path at one place, `world_from_path`: +Z runs along the path.
@@ -51,6 +53,8 @@ impl Road {
     /// [`PathEditError::NoLength`] when it is shorter than a millimetre.
     pub fn new(spline: GroundSpline) -> Result<Self, PathEditError> {
         let (mut parameters, mut lengths) = (vec![0.0], vec![0.0]);
+        let speed = |u: f64| spline.jet(u).first.length();
+        let mut speeds = vec![speed(0.0)];
         let mut total = 0.0;
         for piece in spline.breaks().windows(2) {
             for part in 0..PARTS {
@@ -58,6 +62,7 @@ impl Road {
                 total += length_between(&spline, at(part), at(part + 1));
                 parameters.push(at(part + 1));
                 lengths.push(total);
+                speeds.push(speed(at(part + 1)));
             }
         }
         if total < LEAST_LENGTH_M {
@@ -67,6 +72,7 @@ impl Road {
             spline,
             parameters,
             lengths,
+            speeds,
         })
     }
 
@@ -102,7 +108,7 @@ impl Road {
         }
         // Newton's method, held between bounds that close in: the length rises.
         let (mut left, mut right) = (from, to);
-        let mut u = from + (to - from) * (wanted - low) / (high - low);
+        let mut u = self.guess(part, wanted).clamp(from, to);
         for _ in 0..40 {
             let missing = wanted - low - length_between(&self.spline, from, u);
             if missing.abs() < TOLERANCE_M {
@@ -118,6 +124,21 @@ impl Road {
             u = if next > left && next < right { next } else { 0.5 * (left + right) };
         }
         u
+    }
+
+    /// The parameter at a length inside of a part, nearly: the cubic that has its ends and its slopes there, or the straight line where the path stands.
+    fn guess(&self, part: usize, wanted: f64) -> f64 {
+        let (from, to) = (self.parameters[part], self.parameters[part + 1]);
+        let length = self.lengths[part + 1] - self.lengths[part];
+        let t = (wanted - self.lengths[part]) / length;
+        let slopes = [self.speeds[part], self.speeds[part + 1]].map(|speed| length / speed);
+        let line = from + (to - from) * t;
+        // Beyond three times the mean slope the cubic turns back.
+        if slopes.iter().any(|&slope| slope.is_nan() || slope > 3.0 * (to - from)) {
+            return line;
+        }
+        let bow = slopes.map(|slope| slope - (to - from));
+        line + t * (1.0 - t) * (bow[0] * (1.0 - t) - bow[1] * t)
     }
 
     /// The frame of the path at `parameter`, which is clamped to the path.
