@@ -4,6 +4,7 @@ use super::motion::{FeatureJoints, Motion, mirrored_contacts};
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
+use crate::blend::moving_joints_of;
 use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget};
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
 use crate::skeleton::{Roles, Skeleton};
@@ -206,6 +207,7 @@ impl DatabaseBuilder {
                         roles: self.roles,
                         masks: index.masks(&tags),
                         index: Arc::new(index),
+                        moving: moving_joints_of(self.motions.iter().map(|motion| &**motion.clip())),
                         motions: self.motions,
                         starts: sorting.starts,
                         features: sorting.features,

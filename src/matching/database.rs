@@ -64,6 +64,8 @@ pub struct Database {
     pub(super) skeleton: Arc<Skeleton>,
     pub(super) roles: Roles,
     pub(super) motions: Vec<Arc<Motion>>,
+    /// The joints other than the root that move against their parent in any of them.
+    pub(super) moving: Vec<usize>,
     /// The number of each motion's first frame; behind them the number of frames.
     pub(super) starts: Vec<usize>,
     pub(super) features: Arc<Features>,
