@@ -21,12 +21,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         start.elapsed().as_secs_f64() - made
     );
     println!();
-    println!("| scenario | position error, worst (cm) | time to turn (s) | skate, worst (cm) | without planting (cm) | seams per minute | shortest run (s) | frames visited |");
+    println!(
+        "| scenario | position error, worst (cm) | time to turn (s) | skate, worst (cm) | without planting (cm) | seams per minute | shortest run (s) | frames visited |"
+    );
     println!("|---|---|---|---|---|---|---|---|");
     for scenario in Scenario::ALL {
         let recording = scenario.recording();
         let played = drive(&database, ControllerOptions::default(), &recording)?;
-        let free = drive(&database, ControllerOptions { planting: None, ..ControllerOptions::default() }, &recording)?;
+        let free = drive(
+            &database,
+            ControllerOptions {
+                planting: None,
+                ..ControllerOptions::default()
+            },
+            &recording,
+        )?;
         let (metrics, free) = (played.metrics(&database), free.metrics(&database));
         let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
         println!(
@@ -43,11 +52,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             number(metrics.shortest_secs),
             played.visited / played.searches.max(1),
         );
-        if std::env::args().any(|arg| arg == "--jumps") {
-            for (frame, reason) in &played.jumps {
-                println!("    {:.2} s {reason:?}", *frame as f64 / 60.0);
-            }
-        }
     }
     Ok(())
 }

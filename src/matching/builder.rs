@@ -95,7 +95,11 @@ impl DatabaseBuilder {
     /// # Errors
     /// [`MatchError::Times`].
     pub fn retimed(database: &Database, features: &super::FeatureOptions) -> Result<Self, MatchError> {
-        let longest = database.motions.iter().map(|motion| motion.clip().duration_secs()).fold(0.0, f64::max);
+        let longest = database
+            .motions
+            .iter()
+            .map(|motion| motion.clip().duration_secs())
+            .fold(0.0, f64::max);
         Ok(Self {
             clips: Vec::new(),
             options: DatabaseOptions {

@@ -134,7 +134,9 @@ impl Recording {
 
     /// The input of every tick.
     pub fn controls(&self) -> impl Iterator<Item = Control> + '_ {
-        self.stretches.iter().flat_map(|&(control, ticks)| std::iter::repeat_n(control, ticks as usize))
+        self.stretches
+            .iter()
+            .flat_map(|&(control, ticks)| std::iter::repeat_n(control, ticks as usize))
     }
 
     /// The input of one tick.
@@ -272,13 +274,22 @@ mod tests {
         let control = Control::new(DVec2::new(1.42, f64::NAN), Some(-0.01));
         assert!((control.velocity() - DVec2::new(1.4, 0.0)).length() < 1e-12);
         assert_eq!(control.facing(), Some(0.0));
-        assert_eq!(Control::new(DVec2::splat(f64::INFINITY), Some(f64::NAN)).velocity(), DVec2::splat(12.0));
-        let walk = Control::default().with_filter(TagFilter { ask: TagSet::of(&[Tag::Walk]), forbid: TagSet::NONE });
+        assert_eq!(
+            Control::new(DVec2::splat(f64::INFINITY), Some(f64::NAN)).velocity(),
+            DVec2::splat(12.0)
+        );
+        let walk = Control::default().with_filter(TagFilter {
+            ask: TagSet::of(&[Tag::Walk]),
+            forbid: TagSet::NONE,
+        });
         let mut recording = Recording::new();
         assert!(recording.push(walk) && recording.to_text() == "1.0.0.a1");
         assert!(!recording.hold(walk, Recording::MOST_TICKS));
         for wrong in ["x", "1.0", "1.0.99999", "1.0.0.q3", "-1.0.0", "1.0.0.f", "1.0.0.é"] {
-            assert!(matches!(Recording::from_text(wrong), Err(RecordingError::Part { part: 1, .. })), "{wrong}");
+            assert!(
+                matches!(Recording::from_text(wrong), Err(RecordingError::Part { part: 1, .. })),
+                "{wrong}"
+            );
         }
         assert_eq!(Recording::from_text("zzzzz.0.0"), Err(RecordingError::TooLong));
         assert_eq!(Recording::from_text(""), Ok(Recording::new()));

@@ -226,10 +226,14 @@ impl Database {
     /// Where the character will be at the trajectory times if a motion goes on from `place`, standing at `world_from_character`.
     #[must_use]
     pub fn trajectory(&self, place: Place, world_from_character: &Planar) -> Vec<Planar> {
-        let Some(motion) = self.motion(place.motion) else { return Vec::new() };
+        let Some(motion) = self.motion(place.motion) else {
+            return Vec::new();
+        };
         let world_from_clip = world_from_character.after(&motion.root(place.frame).inverse());
         let ahead = self.features.layout().ahead().iter();
-        ahead.map(|ahead| world_from_clip.after(&motion.root(place.frame + ahead))).collect()
+        ahead
+            .map(|ahead| world_from_clip.after(&motion.root(place.frame + ahead)))
+            .collect()
     }
 
     /// The same database with other tags on a clip and its mirror image: `source` is the clip's number among those it was built from, `tags` are

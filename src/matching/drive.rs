@@ -1,7 +1,7 @@
 use super::control::Recording;
 use super::database::Database;
 use super::features::RATE;
-use super::{Controller, ControllerOptions, MatchError, Reason};
+use super::{Candidate, Controller, ControllerOptions, MatchError, Reason};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::math::{Planar, wrap_angle};
 use crate::metrics::{Better, Metric, foot_slides_cm};
@@ -20,12 +20,25 @@ pub struct Drive {
     pub desired: Vec<Planar>,
     /// The yaw that was asked for in each frame, radians.
     pub goals: Vec<f64>,
-    /// Frames in which the controller jumped, and why it had searched.
-    pub jumps: Vec<(usize, Reason)>,
+    /// The jumps.
+    pub jumps: Vec<Jump>,
     /// Searches, and the frames that they looked at.
     pub searches: usize,
     /// Frames that the searches looked at.
     pub visited: usize,
+}
+
+/// Where a controller went over from one place to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// The first frame of the drive that is played from the new place.
+    pub frame: usize,
+    /// Why it had searched.
+    pub reason: Reason,
+    /// Where it was, and what going on there cost.
+    pub from: Candidate,
+    /// Where it went, and what that cost.
+    pub to: Candidate,
 }
 
 /// A change of the facing that is asked for by more than this is a turn, radians.
@@ -68,8 +81,13 @@ pub fn drive(database: &Arc<Database>, options: ControllerOptions, recording: &R
         if let Some(search) = controller.last_search().filter(|search| search.tick + 1 == controller.ticks()) {
             searches += 1;
             visited += search.visited;
-            if controller.jumps() > before {
-                jumps.push((frame, search.reason));
+            if let Some(to) = search.winner.filter(|_| controller.jumps() > before) {
+                jumps.push(Jump {
+                    frame,
+                    reason: search.reason,
+                    from: search.current,
+                    to,
+                });
             }
         }
         poses.push(controller.pose().clone());
@@ -102,7 +120,10 @@ impl Drive {
         let frames = errors.len().max(1) as f64;
         let slides = foot_slides_cm(&self.clip, database.roles(), &self.contacts);
         let mean = |sum: f64, count: usize| (count > 0).then(|| sum / count as f64);
-        let gaps = self.jumps.windows(2).map(|pair| (pair[1].0 - pair[0].0) as f64 / RATE as f64);
+        let gaps = self
+            .jumps
+            .windows(2)
+            .map(|pair| (pair[1].frame - pair[0].frame) as f64 / RATE as f64);
         DriveMetrics {
             error_cm: errors.iter().sum::<f64>() / frames,
             worst_error_cm: errors.iter().copied().fold(0.0, f64::max),

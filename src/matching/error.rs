@@ -9,7 +9,9 @@ pub enum MatchError {
     #[error("motion matching needs clips: choose at least one")]
     NoClips,
     /// A clip has no frame whose future is known.
-    #[error("`{name}` lasts {secs:.2} s, which is too short to look {horizon_secs:.2} s ahead: shorten the trajectory, or take a longer clip")]
+    #[error(
+        "`{name}` lasts {secs:.2} s, which is too short to look {horizon_secs:.2} s ahead: shorten the trajectory, or take a longer clip"
+    )]
     TooShort {
         /// The clip's name.
         name: String,
@@ -27,7 +29,9 @@ pub enum MatchError {
         missing: &'static str,
     },
     /// All clips are too short.
-    #[error("none of the {clips} clips has a frame that can be searched: the longest lasts {longest_secs:.2} s, the trajectory looks {horizon_secs:.2} s ahead")]
+    #[error(
+        "none of the {clips} clips has a frame that can be searched: the longest lasts {longest_secs:.2} s, the trajectory looks {horizon_secs:.2} s ahead"
+    )]
     NoValidFrame {
         /// Clips given.
         clips: usize,

@@ -150,7 +150,7 @@ pub struct Weights(pub [f32; Block::COUNT]);
 
 impl Default for Weights {
     fn default() -> Self {
-        Self([1.0, 1.5, 0.75, 1.0, 1.0])
+        Self([1.0, 1.25, 0.75, 1.0, 1.0])
     }
 }
 
@@ -212,7 +212,12 @@ impl Features {
         let dims = layout.dims();
         rows.truncate(rows.len() / dims * dims);
         let (mut sums, mut squares, mut number) = (vec![0.0f64; dims], vec![0.0f64; dims], 0usize);
-        let counted = || rows.chunks_exact(dims).enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
+        let counted = || {
+            rows.chunks_exact(dims)
+                .enumerate()
+                .filter(|(row, _)| counts(*row))
+                .map(|(_, row)| row)
+        };
         for row in counted() {
             number += 1;
             for (sum, &value) in sums.iter_mut().zip(row) {
@@ -312,7 +317,15 @@ mod tests {
             next = layout.range(block).end;
         }
         assert_eq!(next, 27);
-        for times in [vec![], vec![0.0], vec![1.0, 0.5], vec![0.5, 0.501], vec![f64::NAN], vec![9.0], vec![0.1; 7]] {
+        for times in [
+            vec![],
+            vec![0.0],
+            vec![1.0, 0.5],
+            vec![0.5, 0.501],
+            vec![f64::NAN],
+            vec![9.0],
+            vec![0.1; 7],
+        ] {
             let options = FeatureOptions { trajectory_secs: times };
             assert!(matches!(Layout::new(&options), Err(MatchError::Times { .. })), "{options:?}");
         }

@@ -43,18 +43,12 @@ impl FeatureJoints {
 
 impl Motion {
     /// Measures a clip at [`RATE`].
-    pub(super) fn new(
-        clip: Arc<Clip>,
-        roles: &Roles,
-        contacts: Contacts,
-        source: usize,
-        mirrored: bool,
-    ) -> Result<Self, MatchError> {
+    pub(super) fn new(clip: Arc<Clip>, roles: &Roles, contacts: Contacts, source: usize, mirrored: bool) -> Result<Self, MatchError> {
         let joints = FeatureJoints::find(&clip, roles)?;
         let roots = simulation_roots(&character_frames(&clip, roles));
         let body = body_features(&clip, joints, &roots);
-        let finite = body.iter().flatten().all(|value| value.is_finite())
-            && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
+        let finite =
+            body.iter().flatten().all(|value| value.is_finite()) && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
         if !finite {
             let name = clip.name().to_owned();
             return Err(MatchError::NotFinite { name });
@@ -117,27 +111,32 @@ impl Motion {
         self.frames().saturating_sub(layout.horizon())
     }
 
-    /// Where the simulation root is in a frame; behind the clip's end it goes on as it did last.
+    /// Where the simulation root is in a frame; behind the clip's end it goes on as it did over the last half second.
     #[must_use]
     pub fn root(&self, frame: usize) -> Planar {
         if let Some(root) = self.roots.get(frame) {
             return *root;
         }
         let Some(last) = self.roots.last() else { return Planar::IDENTITY };
-        let over = (frame - (self.roots.len() - 1)) as f64;
-        let Some(before) = self.roots.len().checked_sub(2).and_then(|at| self.roots.get(at)) else {
+        let behind = self.roots.len() - 1;
+        let over = (frame - behind) as f64;
+        // The steps of half a second: a single one would go on with what the smoothing made of the end.
+        let steps = behind.min(RATE / 2);
+        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.roots.get(at)) else {
             return *last;
         };
-        let step = before.inverse().after(last);
-        // Along the circle that the last step is an arc of; straight where it does not turn.
-        let (turn, middle) = (step.yaw * over, 0.5 * step.yaw * (over - 1.0));
-        let stretch = if step.yaw.abs() < 1e-9 {
-            over
+        let made = before.inverse().after(last);
+        // Along the circle that these steps are an arc of; straight where they do not turn.
+        let share = over / steps as f64;
+        let (turn, whole) = (made.yaw * share, made.yaw);
+        let stretch = if whole.abs() < 1e-6 {
+            share
         } else {
-            libm::sin(0.5 * turn) / libm::sin(0.5 * step.yaw)
+            libm::sin(0.5 * turn) / libm::sin(0.5 * whole)
         };
+        let middle = 0.5 * (turn - whole);
         let (sin, cos) = (libm::sin(middle), libm::cos(middle));
-        let way = DVec2::new(step.shift.x * cos + step.shift.y * sin, step.shift.y * cos - step.shift.x * sin) * stretch;
+        let way = DVec2::new(made.shift.x * cos + made.shift.y * sin, made.shift.y * cos - made.shift.x * sin) * stretch;
         last.after(&Planar {
             yaw: wrap_angle(turn),
             shift: way,

@@ -5,15 +5,16 @@ use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 
 /// Over this time positions are smoothed, and directions, seconds.
-const POSITION_SECS: f64 = 0.5;
-const DIRECTION_SECS: f64 = 1.0;
+const POSITION_SECS: f64 = 1.0;
+const DIRECTION_SECS: f64 = 1.6;
 
 /// The simulation root of a clip at [`RATE`] frames per second: `world_from_simulation` of each frame, from `frames`
 /// ([`crate::clip::character_frames`]).
 ///
-/// Positions of the hips over the ground are smoothed by a Savitzky-Golay filter of third degree over half a second, and facing directions, as
-/// vectors, over a second (Holden et al., "Learned Motion Matching", 2020, section 3, and his notes on the simulation bone). Unlike a mean it
-/// does not cut corners. At the ends of the clip the polynomial of the first or last window goes on; clips shorter than a window are
+/// Positions of the hips over the ground are smoothed by a Savitzky-Golay filter of third degree over a second, and facing directions, as
+/// vectors, over 1.6 s (Holden et al., "Learned Motion Matching", 2020, section 3, and his notes on the simulation bone). Unlike a mean it
+/// does not cut corners. The windows are longer than his (0.5 s and 1 s), which let the sway of a stride of a second pass: with it left in, every
+/// other half stride of a straight walk looks a little better than the one that is playing. At the ends of the clip the polynomial of the first or last window goes on; clips shorter than a window are
 /// smoothed over what there is.
 #[must_use]
 pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
@@ -69,7 +70,11 @@ fn savitzky_golay(values: &[DVec2], half: usize) -> Vec<DVec2> {
                 ends[1].at((index - last) as f64 - m)
             } else {
                 let start = index - half;
-                values[start..start + window].iter().zip(&middle).map(|(value, share)| *value * *share).sum()
+                values[start..start + window]
+                    .iter()
+                    .zip(&middle)
+                    .map(|(value, share)| *value * *share)
+                    .sum()
             }
         })
         .collect()
@@ -83,7 +88,12 @@ struct Cubic {
 
 impl Cubic {
     fn basis(m: f64, i: f64) -> [f64; 4] {
-        [1.0, i, i * i - m * (m + 1.0) / 3.0, i * (i * i - (3.0 * m * m + 3.0 * m - 1.0) / 5.0)]
+        [
+            1.0,
+            i,
+            i * i - m * (m + 1.0) / 3.0,
+            i * (i * i - (3.0 * m * m + 3.0 * m - 1.0) / 5.0),
+        ]
     }
 
     fn fit(values: &[DVec2], m: f64) -> Self {
@@ -101,7 +111,11 @@ impl Cubic {
     }
 
     fn at(&self, i: f64) -> DVec2 {
-        self.shares.iter().zip(Self::basis(self.m, i)).map(|(share, basis)| *share * basis).sum()
+        self.shares
+            .iter()
+            .zip(Self::basis(self.m, i))
+            .map(|(share, basis)| *share * basis)
+            .sum()
     }
 }
 

@@ -75,7 +75,11 @@ impl TagSet {
     /// With a tag, or without it.
     #[must_use]
     pub const fn with(self, tag: Tag, wanted: bool) -> Self {
-        if wanted { Self(self.0 | tag.bit()) } else { Self(self.0 & !tag.bit()) }
+        if wanted {
+            Self(self.0 | tag.bit())
+        } else {
+            Self(self.0 & !tag.bit())
+        }
     }
 
     /// Whether both have a tag in common.
@@ -212,13 +216,22 @@ mod tests {
     #[test]
     fn filters_ask_for_one_and_forbid_all() {
         let [walk, turn, own] = [Tag::Walk, Tag::Turn, Tag::Own(26)].map(|tag| TagSet::of(&[tag]));
-        let filter = TagFilter { ask: TagSet(walk.0 | own.0), forbid: turn };
+        let filter = TagFilter {
+            ask: TagSet(walk.0 | own.0),
+            forbid: turn,
+        };
         assert!(filter.admits(walk) && filter.admits(own) && !filter.admits(TagSet::NONE) && !filter.admits(TagSet(walk.0 | turn.0)));
         assert!(!TagFilter::default().admits(TagSet::of(&[Tag::Exclude, Tag::Walk])));
         assert_eq!(TagSet::of(&[Tag::Own(27), Tag::Own(255)]), TagSet::NONE);
         // Ranges beyond the clip, and the other way round, say nothing.
-        let odd = TagRange { tag: Tag::Run, frames: Range { start: 9, end: 3 } };
-        let far = TagRange { tag: Tag::Run, frames: 70..usize::MAX };
+        let odd = TagRange {
+            tag: Tag::Run,
+            frames: Range { start: 9, end: 3 },
+        };
+        let far = TagRange {
+            tag: Tag::Run,
+            frames: 70..usize::MAX,
+        };
         assert!(spread(&[odd, far], 60.0, 50).iter().all(|tags| *tags == TagSet::NONE));
     }
 }

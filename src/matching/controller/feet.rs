@@ -11,6 +11,8 @@ use glam::Vec3;
 /// While a foot is said to stand, the slide of the point of it that moves least is taken back, tick by tick, so that this point stands exactly. The
 /// shift that has come together then decays, with its velocity, when the foot is lifted. A foot that would be held too far from its own way is
 /// let go until it is lifted. What is below the ground is lifted out of it.
+///
+/// A foot comes to stand when the clip says so *and* it has come down: right after a jump it may still be on its way to where the new clip has it.
 #[derive(Clone, Debug)]
 pub(super) struct Feet {
     feet: Vec<Foot>,
@@ -18,6 +20,11 @@ pub(super) struct Feet {
     scale: f32,
     world: WorldPose,
 }
+
+/// A foot has come down when it is no higher than this above the ground, metres for a body of 1.75 m, and slower than this, metres per second:
+/// a little more than what [`crate::clip::ContactOptions`] asks for, since what is left of a transition sways it.
+const DOWN_M: f32 = 0.06;
+const DOWN_MPS: f32 = 0.6;
 
 #[derive(Clone, Debug)]
 struct Foot {
@@ -59,8 +66,16 @@ impl Feet {
         }
     }
 
-    /// One tick of `dt_secs`: `planted` says which feet stand; `pose` is in the world and is corrected.
-    pub(super) fn apply(&mut self, skeleton: &Skeleton, pose: &mut Pose, planted: [bool; 2], options: &FootPlanting, dt_secs: f64) {
+    /// One tick of `dt_secs`: `planted` says which feet the clip has on the ground; `pose` is in the world and is corrected, where there are options.
+    /// Which feet stand.
+    pub(super) fn apply(
+        &mut self,
+        skeleton: &Skeleton,
+        pose: &mut Pose,
+        planted: [bool; 2],
+        options: Option<&FootPlanting>,
+        dt_secs: f64,
+    ) -> [bool; 2] {
         world_pose_of(
             skeleton,
             pose.root_translation,
@@ -69,12 +84,23 @@ impl Feet {
             &self.needed,
             &mut self.world,
         );
-        let back = spring::response(options.half_life_secs, dt_secs);
+        let mut stand = [false; 2];
         for foot in &mut self.feet {
             let now: Vec<Vec3> = foot.points.iter().map(|&(joint, point)| self.world.point(joint, point)).collect();
-            let planted = planted[foot.side.index()];
+            let lowest = now.iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
+            let step = stillest_step(&foot.before, &now);
+            let slow = step.is_some_and(|step| step.length() < DOWN_MPS * self.scale * dt_secs as f32);
+            let stood = foot.stands;
+            let planted = planted[foot.side.index()] && (stood || (slow && lowest < DOWN_M * self.scale));
+            foot.stands = planted;
+            foot.before = now;
+            stand[foot.side.index()] = planted;
+            let Some(options) = options else {
+                (foot.shift, foot.rate) = (Vec3::ZERO, Vec3::ZERO);
+                continue;
+            };
             foot.let_go &= planted;
-            match stillest_step(&foot.before, &now).filter(|_| planted && foot.stands && !foot.let_go) {
+            match step.filter(|_| planted && stood && !foot.let_go) {
                 Some(step) => {
                     foot.shift -= step;
                     foot.rate = -step / dt_secs as f32;
@@ -82,16 +108,14 @@ impl Feet {
                 }
                 // Set down just now: it stays where it is.
                 None if planted && !foot.let_go => foot.rate = Vec3::ZERO,
-                None => (foot.shift, foot.rate) = back.of_vec3(foot.shift, foot.rate),
+                None => (foot.shift, foot.rate) = spring::response(options.half_life_secs, dt_secs).of_vec3(foot.shift, foot.rate),
             }
-            foot.stands = planted;
-            let lowest = now.iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
             let shift = foot.shift + Vec3::Y * (-lowest).max(0.0);
             // A hundredth of a millimetre is not seen.
             if shift.length_squared() > 1e-10 {
                 foot.leg.move_ankle(&self.world, shift, foot.axis, &mut pose.rotations);
             }
-            foot.before = now;
         }
+        stand
     }
 }

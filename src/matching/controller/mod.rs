@@ -5,7 +5,7 @@ mod options;
 mod record;
 mod seek;
 
-pub use options::{ControllerOptions, FootPlanting, Following, Hysteresis, SearchMethod};
+pub use options::{ControllerOptions, Following, FootPlanting, Hysteresis, SearchMethod};
 pub use record::{Candidate, Held, Reason, SearchRecord};
 
 use super::control::Control;
@@ -143,7 +143,9 @@ impl Controller {
     /// Goes on in another database of the same clips: with other tags, or other trajectory times.
     pub fn set_database(&mut self, database: Arc<Database>) {
         self.weights = self.options.weights.spread(database.features().layout());
-        let known = database.motion(self.place.motion).is_some_and(|motion| self.place.frame < motion.frames());
+        let known = database
+            .motion(self.place.motion)
+            .is_some_and(|motion| self.place.frame < motion.frames());
         let same = database.skeleton() == self.database.skeleton() && known;
         self.database = database;
         self.tree = None;
@@ -167,7 +169,9 @@ impl Controller {
         let (from, to) = (&self.previous, &self.pose);
         Pose {
             root_translation: from.root_translation.lerp(to.root_translation, part),
-            rotations: (from.rotations.iter().zip(&to.rotations)).map(|(&a, &b)| quat::slerp(a, b, part)).collect(),
+            rotations: (from.rotations.iter().zip(&to.rotations))
+                .map(|(&a, &b)| quat::slerp(a, b, part))
+                .collect(),
             translations: (from.translations.iter().zip(&to.translations))
                 .map(|(a, b)| (b.0, a.1.lerp(b.1, part)))
                 .collect(),
@@ -192,7 +196,7 @@ impl Controller {
         self.place
     }
 
-    /// Which feet stand, as the clip has it: left, right.
+    /// Which feet stand: left, right. The clip has them on the ground, and they have come down there.
     #[must_use]
     pub fn planted(&self) -> [bool; 2] {
         self.planted
@@ -297,7 +301,9 @@ impl Controller {
     }
 
     fn write_pose(&mut self) {
-        let Some(motion) = self.database.motion(self.place.motion) else { return };
+        let Some(motion) = self.database.motion(self.place.motion) else {
+            return;
+        };
         let (clip, frame) = (motion.clip(), self.place.frame.min(motion.frames().saturating_sub(1)));
         let here = motion.root(frame).inverse();
         let pose = &mut self.pose;
@@ -316,11 +322,11 @@ impl Controller {
         }
         pose.root_translation = self.root.apply(translations[0]);
         pose.translations.clear();
-        pose.translations.extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
-        self.planted = Side::BOTH.map(|side| motion.contacts().planted(side, frame));
-        if let Some(planting) = &self.options.planting {
-            self.feet.apply(self.database.skeleton(), pose, self.planted, planting, TICK_SECS);
-        }
+        pose.translations
+            .extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
+        let planted = Side::BOTH.map(|side| motion.contacts().planted(side, frame));
+        let planting = self.options.planting.as_ref();
+        self.planted = self.feet.apply(self.database.skeleton(), pose, planted, planting, TICK_SECS);
     }
 
     /// Stands where the simulation object is.
@@ -345,7 +351,11 @@ impl Controller {
         let last = motion.frames().saturating_sub(1);
         let (clip, frame) = (motion.clip(), place.frame.min(last));
         // The step from this frame to the next; behind the last one it is the one before.
-        let (from, to) = if frame < last { (frame, frame + 1) } else { (last.saturating_sub(1), last) };
+        let (from, to) = if frame < last {
+            (frame, frame + 1)
+        } else {
+            (last.saturating_sub(1), last)
+        };
         let at = |frame: usize| {
             let here = motion.root(frame).inverse();
             let mut rotations = clip.rotations(frame).to_vec();
@@ -373,6 +383,3 @@ impl Controller {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -91,23 +91,23 @@ impl Default for ControllerOptions {
             method: SearchMethod::default(),
             hysteresis: Hysteresis::ContinuingBias {
                 share: 0.15,
-                constant: 0.05,
+                constant: 0.2,
             },
             prefer_current: 0.2,
             transition: Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
             steering: Steering {
-                velocity_half_life_secs: 0.24,
-                facing_half_life_secs: 0.24,
+                velocity_half_life_secs: 0.28,
+                facing_half_life_secs: 0.3,
             },
             following: Some(Following {
                 half_life_secs: 0.1,
                 most_share: 0.5,
-                most_m: 0.25,
-                most_radians: std::f64::consts::FRAC_PI_4,
+                most_m: 0.35,
+                most_radians: 1.0,
             }),
             planting: Some(FootPlanting {
                 half_life_secs: 0.08,
-                most_shift_m: 0.2,
+                most_shift_m: 0.3,
             }),
             candidates: 1,
         }
@@ -124,12 +124,7 @@ impl ControllerOptions {
             if (least..=most).contains(&value) {
                 Ok(())
             } else {
-                Err(MatchError::Setting {
-                    what,
-                    value,
-                    least,
-                    most,
-                })
+                Err(MatchError::Setting { what, value, least, most })
             }
         };
         self.weights.validate()?;

@@ -150,14 +150,17 @@ impl Controller {
             return Some(Held::Same);
         }
         // A frame that has not the tags that are asked for is left as soon as may be.
-        if admitted || self.database.number(self.place).is_some_and(|here| self.asked.filter.admits(self.database.tags(here))) {
+        if admitted
+            || self
+                .database
+                .number(self.place)
+                .is_some_and(|here| self.asked.filter.admits(self.database.tags(here)))
+        {
             match self.options.hysteresis {
                 Hysteresis::ContinuingBias { share, constant } if best.cost + constant >= current.cost * (1.0 - share) => {
                     return Some(Held::Bias);
                 }
-                Hysteresis::MinimumTime { secs }
-                    if self.last_jump.is_some_and(|last| (self.tick - last) as f64 * TICK_SECS < secs) =>
-                {
+                Hysteresis::MinimumTime { secs } if self.last_jump.is_some_and(|last| (self.tick - last) as f64 * TICK_SECS < secs) => {
                     return Some(Held::MinimumTime);
                 }
                 Hysteresis::ThreeVotes => {

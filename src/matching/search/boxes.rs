@@ -101,12 +101,17 @@ impl BoxIndex {
             .map(|&id| tags.get(id as usize).copied().unwrap_or_default())
             .collect();
         let joined = |parts: &mut dyn Iterator<Item = (TagSet, TagSet)>| {
-            parts.fold((TagSet::NONE, TagSet(u32::MAX)), |(any, all), (a, b)| (TagSet(any.0 | a.0), TagSet(all.0 & b.0)))
+            parts.fold((TagSet::NONE, TagSet(u32::MAX)), |(any, all), (a, b)| {
+                (TagSet(any.0 | a.0), TagSet(all.0 & b.0))
+            })
         };
         let mut levels: Vec<Vec<(TagSet, TagSet)>> = Vec::with_capacity(self.levels.len());
         for _ in &self.levels {
             let level = match levels.last() {
-                None => frames.chunks(LEAF).map(|leaf| joined(&mut leaf.iter().map(|&tags| (tags, tags)))).collect(),
+                None => frames
+                    .chunks(LEAF)
+                    .map(|leaf| joined(&mut leaf.iter().map(|&tags| (tags, tags))))
+                    .collect(),
                 Some(below) => below.chunks(LANES).map(|children| joined(&mut children.iter().copied())).collect(),
             };
             levels.push(level);
@@ -193,7 +198,9 @@ impl Search<'_> {
     fn open(&mut self, level: usize, pack: usize, stack: &mut Vec<Open>) {
         let boxes = &self.index.levels[level];
         let size = self.index.dims * 2 * LANES;
-        let Some(cells) = boxes.packs.get(pack * size..(pack + 1) * size) else { return };
+        let Some(cells) = boxes.packs.get(pack * size..(pack + 1) * size) else {
+            return;
+        };
         let limit = self.limit();
         let bounds = box_bounds(cells, self.question, limit);
         let first = pack * LANES;
@@ -227,17 +234,18 @@ impl Search<'_> {
     fn leaf(&mut self, leaf: usize) {
         let size = self.index.dims * LANES;
         for group in leaf * GROUPS..(leaf + 1) * GROUPS {
-            let Some(cells) = self.index.cells.get(group * size..(group + 1) * size) else { return };
+            let Some(cells) = self.index.cells.get(group * size..(group + 1) * size) else {
+                return;
+            };
             let first = group * LANES;
             let ids = &self.index.ids[first..(first + LANES).min(self.index.ids.len())];
             self.visited += ids.len();
             let limit = self.limit();
-            let Some(costs) = frame_costs(cells, self.question, limit) else { continue };
+            let Some(costs) = frame_costs(cells, self.question, limit) else {
+                continue;
+            };
             for (lane, (&id, &cost)) in ids.iter().zip(&costs).enumerate() {
-                let hit = Hit {
-                    frame: id as usize,
-                    cost,
-                };
+                let hit = Hit { frame: id as usize, cost };
                 if self.best.is_none_or(|best| hit.beats(&best)) && self.admits(first + lane) {
                     self.best = Some(hit);
                 }
@@ -257,7 +265,9 @@ const STRIDE: usize = 9;
 #[inline]
 fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lane> {
     let mut costs = [0.0; LANES];
-    let parts = cells.chunks(STRIDE * LANES).zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+    let parts = cells
+        .chunks(STRIDE * LANES)
+        .zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
     for (cells, (query, weights)) in parts {
         for (cell, (&q, &w)) in cells.as_chunks::<LANES>().0.iter().zip(query.iter().zip(weights)) {
             for (cost, x) in costs.iter_mut().zip(cell) {

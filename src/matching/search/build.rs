@@ -118,7 +118,11 @@ fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
     let dims = features.layout().dims();
     let stride = ids.len().div_ceil(SAMPLE).max(1);
     let rows = ids.iter().step_by(stride).filter_map(|&id| features.row(id as usize));
-    let (mut sums, mut squares, mut count) = ([0.0f32; super::super::features::MOST_DIMS], [0.0f32; super::super::features::MOST_DIMS], 0.0);
+    let (mut sums, mut squares, mut count) = (
+        [0.0f32; super::super::features::MOST_DIMS],
+        [0.0f32; super::super::features::MOST_DIMS],
+        0.0,
+    );
     for row in rows {
         count += 1.0;
         for ((sum, square), &value) in sums.iter_mut().zip(&mut squares).zip(row) {

@@ -38,13 +38,16 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
             rows.extend_from_slice(&at);
         }
         let kind = (frame / 41) % 5;
-        tags.push(TagSet::of(match kind {
-            0 => &[Tag::Walk],
-            1 => &[Tag::Run, Tag::Turn],
-            2 => &[Tag::Idle],
-            3 => &[Tag::Walk, Tag::Own(3)],
-            _ => &[],
-        }).with(Tag::Exclude, frame % 211 < 9));
+        tags.push(
+            TagSet::of(match kind {
+                0 => &[Tag::Walk],
+                1 => &[Tag::Run, Tag::Turn],
+                2 => &[Tag::Idle],
+                3 => &[Tag::Walk, Tag::Own(3)],
+                _ => &[],
+            })
+            .with(Tag::Exclude, frame % 211 < 9),
+        );
         if frame % 97 < 70 {
             valid.push(frame as u32);
         }
@@ -72,11 +75,26 @@ fn filters() -> [TagFilter; 6] {
     let none = TagSet::NONE;
     [
         TagFilter::default(),
-        TagFilter { ask: of(&[Tag::Walk]), forbid: none },
-        TagFilter { ask: none, forbid: of(&[Tag::Turn, Tag::Idle]) },
-        TagFilter { ask: of(&[Tag::Run, Tag::Own(3)]), forbid: of(&[Tag::Idle]) },
-        TagFilter { ask: of(&[Tag::Own(3)]), forbid: none },
-        TagFilter { ask: of(&[Tag::Own(9)]), forbid: none },
+        TagFilter {
+            ask: of(&[Tag::Walk]),
+            forbid: none,
+        },
+        TagFilter {
+            ask: none,
+            forbid: of(&[Tag::Turn, Tag::Idle]),
+        },
+        TagFilter {
+            ask: of(&[Tag::Run, Tag::Own(3)]),
+            forbid: of(&[Tag::Idle]),
+        },
+        TagFilter {
+            ask: of(&[Tag::Own(3)]),
+            forbid: none,
+        },
+        TagFilter {
+            ask: of(&[Tag::Own(9)]),
+            forbid: none,
+        },
     ]
 }
 
@@ -93,7 +111,13 @@ fn all_searches_agree_on_ten_thousand_queries() {
         let mut random = Pcg64Mcg::seed_from_u64(99 + round as u64);
         for set in 0..20 {
             let weights: Vec<f32> = (0..dims)
-                .map(|_| if set % 4 == 3 && random.next_u32() % 3 == 0 { 0.0 } else { 1.0 + number(&mut random) })
+                .map(|_| {
+                    if set % 4 == 3 && random.next_u32() % 3 == 0 {
+                        0.0
+                    } else {
+                        1.0 + number(&mut random)
+                    }
+                })
                 .collect();
             let filter = filters()[set % 6];
             let tree = TreeIndex::new(&candidates, &weights, filter);
@@ -103,11 +127,19 @@ fn all_searches_agree_on_ten_thousand_queries() {
                 let query: Vec<f32> = (near.iter())
                     .map(|x| if kind % 4 == 0 { 0.0 } else { *x } + noise * number(&mut random))
                     .collect();
-                let question = Question { query: &query, weights: &weights, filter };
+                let question = Question {
+                    query: &query,
+                    weights: &weights,
+                    filter,
+                };
                 let oracle = scan(&candidates, &question);
                 let boxes = index.search(&masks, &question, None);
                 assert_eq!(boxes.best, oracle.best, "{round} {set} {kind}");
-                assert_eq!(tree.as_ref().and_then(|tree| tree.search(&candidates, &question).best), oracle.best, "{round} {set} {kind}");
+                assert_eq!(
+                    tree.as_ref().and_then(|tree| tree.search(&candidates, &question).best),
+                    oracle.best,
+                    "{round} {set} {kind}"
+                );
                 let known = field.valid[random.next_u32() as usize % field.valid.len()] as usize;
                 if filter.admits(field.tags[known]) {
                     let cost = question.cost(field.features.row(known).unwrap());
@@ -133,7 +165,11 @@ fn near_frames_are_found_without_looking_at_many() {
     let mut visited = 0;
     for frame in (0..20_000).step_by(501) {
         let query: Vec<f32> = field.features.row(frame).unwrap().iter().map(|x| x + 0.02).collect();
-        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+        let question = Question {
+            query: &query,
+            weights: &weights,
+            filter: TagFilter::default(),
+        };
         visited += index.search(&masks, &question, None).visited;
     }
     assert!(visited / 40 < 3_000, "{}", visited / 40);
@@ -146,13 +182,21 @@ fn what_is_no_question_finds_nothing() {
     let masks = index.masks(&field.tags);
     let weights = vec![1.0; 27];
     for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
-        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+        let question = Question {
+            query: &query,
+            weights: &weights,
+            filter: TagFilter::default(),
+        };
         assert_eq!(scan(&candidates, &question), Found::default());
         assert_eq!(index.search(&masks, &question, None), Found::default());
     }
     // Costs that overflow are all the same.
     let far = vec![1e30; 27];
-    let question = Question { query: &far, weights: &weights, filter: TagFilter::default() };
+    let question = Question {
+        query: &far,
+        weights: &weights,
+        filter: TagFilter::default(),
+    };
     assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
     let empty = Candidates { valid: &[], ..candidates };
     assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
@@ -161,11 +205,23 @@ fn what_is_no_question_finds_nothing() {
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
     let same = Features::normalise(layout, vec![1.0; 27 * 5_000], |_| true);
     let valid: Vec<u32> = (0..5_000).collect();
-    let candidates = Candidates { features: &same, tags: &[], valid: &valid };
+    let candidates = Candidates {
+        features: &same,
+        tags: &[],
+        valid: &valid,
+    };
     let query = vec![0.5; 27];
-    let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+    let question = Question {
+        query: &query,
+        weights: &weights,
+        filter: TagFilter::default(),
+    };
     let index = BoxBuilder::new(&valid, &[]).finish(&same);
     assert_eq!(index.search(&index.masks(&[]), &question, None).best.map(|hit| hit.frame), Some(0));
     let tree = TreeIndex::new(&candidates, &weights, TagFilter::default());
-    assert_eq!(tree.and_then(|tree| tree.search(&candidates, &question).best).map_or(0, |hit| hit.frame), 0);
+    assert_eq!(
+        tree.and_then(|tree| tree.search(&candidates, &question).best)
+            .map_or(0, |hit| hit.frame),
+        0
+    );
 }

@@ -72,7 +72,9 @@ impl TreeIndex {
         };
         for item in near {
             let Some(&id) = self.ids.get(item) else { continue };
-            let Some(row) = candidates.features.row(id as usize) else { continue };
+            let Some(row) = candidates.features.row(id as usize) else {
+                continue;
+            };
             found.visited += 1;
             let hit = Hit {
                 frame: id as usize,
