@@ -168,13 +168,11 @@ impl TwoLevels {
             }
             false
         };
-        for (large, rows) in self
-            .large
-            .chunks_exact(2 * dims)
-            .zip(self.rows.chunks(64 * dims))
-            .enumerate()
-            .filter_map(|(index, (ends, rows))| (!outside(ends, best)).then_some((index, rows)))
-        {
+        let parts = self.large.chunks_exact(2 * dims).zip(self.rows.chunks(64 * dims));
+        for (large, (ends, rows)) in parts.enumerate() {
+            if outside(ends, best) {
+                continue;
+            }
             for (index, rows) in rows.chunks(16 * dims).enumerate() {
                 let at = (4 * large + index) * 2 * dims;
                 if outside(&self.small[at..at + 2 * dims], best) {

@@ -29,9 +29,9 @@ const MOST_TICKS_AT_ONCE: usize = 30;
 
 /// A character that is driven by a database.
 ///
-/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is, and decides by sums, products and the exponential and sine of `libm`
-/// alone: the same input gives the same motion, on any machine that has the same database. [`Self::step`] runs as many ticks as fit
-/// into a frame of the screen; [`Self::shown`] is the pose between the last two.
+/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input gives the same motion, bit for bit. Features and queries are
+/// rounded to a grid, so that machines whose trigonometry differs in its last digit choose the same frames, but for ties of less than that.
+/// [`Self::step`] runs as many ticks as fit into a frame of the screen; [`Self::shown`] is the pose between the last two.
 #[derive(Debug)]
 pub struct Controller {
     database: Arc<Database>,

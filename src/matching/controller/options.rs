@@ -69,7 +69,8 @@ pub struct ControllerOptions {
     pub method: SearchMethod,
     /// What keeps it from jumping too often.
     pub hysteresis: Hysteresis,
-    /// While the input stays as it is, other clips must be cheaper than the best frame of the one that is playing by this share of the cost, from 0 (no matter) to 1.
+    /// While the input stays as it is, a frame of another clip must be cheaper than the one that is playing by this share of the cost, from 0 (no
+    /// matter) to 1.
     pub prefer_current: f32,
     /// How a jump is hidden.
     pub transition: Inertialization,

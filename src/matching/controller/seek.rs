@@ -100,7 +100,7 @@ impl Controller {
         let held = match found.best.and_then(|best| Some((best, self.database.place(best.frame)?))) {
             None => Some(Held::Nothing),
             Some((best, to)) => {
-                let held = self.held(reason, current, admitted, best, to);
+                let held = self.held(reason, filter, current, best, to);
                 if held.is_none() {
                     self.jump(to);
                 }
@@ -139,7 +139,7 @@ impl Controller {
     }
 
     /// What speaks against going to the winner.
-    fn held(&mut self, reason: Reason, current: Hit, admitted: bool, best: Hit, to: Place) -> Option<Held> {
+    fn held(&mut self, reason: Reason, filter: TagFilter, current: Hit, best: Hit, to: Place) -> Option<Held> {
         let same = to.motion == self.place.motion && to.frame.abs_diff(self.place.frame) <= SAME_FRAMES;
         if reason == Reason::ClipEnd {
             self.votes = 0;
@@ -150,12 +150,7 @@ impl Controller {
             return Some(Held::Same);
         }
         // A frame that has not the tags that are asked for is left as soon as may be.
-        if admitted
-            || self
-                .database
-                .number(self.place)
-                .is_some_and(|here| self.asked.filter.admits(self.database.tags(here)))
-        {
+        if filter.admits(self.database.tags(current.frame)) {
             match self.options.hysteresis {
                 Hysteresis::ContinuingBias { share, constant } if best.cost + constant >= current.cost * (1.0 - share) => {
                     return Some(Held::Bias);

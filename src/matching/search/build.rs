@@ -1,6 +1,7 @@
 use super::BoxIndex;
 use super::boxes::{LANES, LEAF, Level};
 use crate::matching::Features;
+use crate::matching::features::MOST_DIMS;
 use crate::registration::Progress;
 
 /// Builds a [`BoxIndex`] in slices.
@@ -83,7 +84,7 @@ impl BoxBuilder {
         let dims = features.layout().dims();
         let groups = self.ids.len().div_ceil(LANES);
         let mut cells = vec![0.0; groups * dims * LANES];
-        for (group, (ids, cell)) in self.ids.chunks(LANES).zip(cells.chunks_exact_mut(dims * LANES)).enumerate() {
+        for (ids, cell) in self.ids.chunks(LANES).zip(cells.chunks_exact_mut(dims * LANES)) {
             for lane in 0..LANES {
                 // Lanes beyond the last frame repeat it.
                 let id = ids.get(lane).or(ids.last()).copied().unwrap_or(0);
@@ -94,7 +95,6 @@ impl BoxBuilder {
                     }
                 }
             }
-            debug_assert!(group < groups, "one cell per group");
         }
         let mut levels = Vec::new();
         let mut bounds: Vec<(Vec<f32>, Vec<f32>)> = (self.ids.chunks(LEAF))
@@ -118,11 +118,7 @@ fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
     let dims = features.layout().dims();
     let stride = ids.len().div_ceil(SAMPLE).max(1);
     let rows = ids.iter().step_by(stride).filter_map(|&id| features.row(id as usize));
-    let (mut sums, mut squares, mut count) = (
-        [0.0f32; super::super::features::MOST_DIMS],
-        [0.0f32; super::super::features::MOST_DIMS],
-        0.0,
-    );
+    let (mut sums, mut squares, mut count) = ([0.0f32; MOST_DIMS], [0.0f32; MOST_DIMS], 0.0);
     for row in rows {
         count += 1.0;
         for ((sum, square), &value) in sums.iter_mut().zip(&mut squares).zip(row) {
