@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod feet;
 mod kept;
 mod layers;
 mod looping;
@@ -15,6 +16,7 @@ mod pair;
 mod register;
 mod rounds;
 mod speed;
+mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
@@ -22,11 +24,12 @@ pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
-pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
+pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use register::{Beat, DistanceMap, Registered, write_pins};
 pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
+pub(super) use view::{FeetHolder, ViewInputs};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,6 +62,17 @@ pub struct Source {
     pub starts_at_secs: f64,
     /// Where it lies on the result's ground.
     pub world_from_clip: Planar,
+}
+
+impl Source {
+    fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
+        Self {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        }
+    }
 }
 
 /// Where one clip goes over into the other.

@@ -16,7 +16,9 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
+use super::recipe::{
+    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Layerer, Outcome, Pairs, Registrar, Slot, read_pins,
+};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -90,6 +92,7 @@ pub struct Session {
     cycles: CycleFinder,
     layerer: Layerer,
     registrar: Registrar,
+    feet: FeetHolder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -119,6 +122,7 @@ impl Session {
             cycles: CycleFinder::default(),
             layerer: Layerer::default(),
             registrar: Registrar::default(),
+            feet: FeetHolder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,

@@ -1,10 +1,11 @@
 //! The Speed lab: two gaits at a speed.
 
 use super::pair::Pair;
-use super::rounds::{Rounds, fact, rounds};
+use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
 use crate::clip::ground_speed;
 use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
+use crate::metrics::Metric;
 use crate::session::params::{Key, Kind, Params};
 use std::sync::Arc;
 
@@ -107,26 +108,21 @@ impl SpeedInputs {
         let roles = &pair.a.roles;
         let blend = SpeedBlend::new(a, b, roles, &options).map_err(|error| error.to_string())?;
         let fps = pair.a.clip.fps();
-        let one = blend.cycle_at(self.asked_mps).map_err(|error| error.to_string())?;
-        let cycle_frames = one.clip.frames() - 1;
-        let made = rounds(roles, cycle_frames, fps, self.foot_lock, |cycles| {
-            let made = blend.cycles_at(self.asked_mps, cycles).map_err(|error| error.to_string())?;
-            Ok((made.clip, made.contacts))
-        })?;
-        let Rounds { motion, mut slides } = made;
-        let facts = one.facts;
+        let three = blend.cycles_at(self.asked_mps, 3).map_err(|error| error.to_string())?;
+        let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
+        let Rounds { motion, mut slides } = rounds(roles, cycle_frames, three.clip, &three.contacts, self.foot_lock)?;
         let measured = f64::from(ground_speed(&motion.ground_frames, fps));
         let mut metrics = vec![
-            fact(
+            Metric::fact(
                 "speed_mps",
                 "Speed",
                 measured,
                 "m/s",
                 "The way over the ground by its time, measured on the result.",
             ),
-            fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
-            fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
-            fact(
+            Metric::fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
+            Metric::fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
+            Metric::fact(
                 "weight_percent",
                 "Weight of B",
                 100.0 * facts.weight,
