@@ -88,6 +88,8 @@ fn recording(seed: u64, ticks: u32) -> Recording {
     recording
 }
 
+type Search<'a> = dyn FnMut(&Asked) + 'a;
+
 /// What was asked, and the frame that was playing.
 type Asked = (Vec<f32>, Option<Hit>);
 
@@ -194,15 +196,16 @@ impl TwoLevels {
     }
 }
 
-/// Median and 99th percentile, microseconds.
+/// Median and 99th percentile, microseconds. Of each question the fastest of three passes over all of them: what else the machine does is not counted.
 fn percentiles(asked: &[Asked], search: &mut dyn FnMut(&Asked)) -> (f64, f64) {
-    let mut times: Vec<Duration> = (asked.iter())
-        .map(|asked| {
+    let mut times = vec![Duration::MAX; asked.len()];
+    for _ in 0..3 {
+        for (asked, time) in asked.iter().zip(&mut times) {
             let start = Instant::now();
             search(asked);
-            start.elapsed()
-        })
-        .collect();
+            *time = start.elapsed().min(*time);
+        }
+    }
     times.sort_unstable();
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e6;
     (at(0.5), at(0.99))
@@ -274,7 +277,7 @@ fn searches(c: &mut Criterion) {
                 .sample_size(10)
                 .measurement_time(Duration::from_secs(2))
                 .warm_up_time(Duration::from_millis(500));
-            let methods: [(&str, &mut dyn FnMut(&Asked)); 4] = [
+            let methods: [(&str, &mut Search); 4] = [
                 ("boxes", &mut boxes),
                 ("two levels", &mut levels),
                 ("k-d tree", &mut kiddo),

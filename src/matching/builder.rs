@@ -250,20 +250,16 @@ impl DatabaseBuilder {
 
     fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
         let Some(from) = self.clips.get(self.next) else { return Vec::new() };
-        match &from.tags {
-            Some(tags) => {
-                let at = |frame: usize| (frame as f64 * RATE as f64 / from.clip.fps()).round() as usize;
-                let range = |range: &TagRange| TagRange {
-                    tag: range.tag,
-                    frames: at(range.frames.start)..at(range.frames.end),
-                };
-                tags.iter().map(range).collect()
-            }
-            None => {
-                let scale = f64::from(self.roles.body_height(&self.skeleton)) / REFERENCE_HEIGHT_M;
-                suggest_tags(motion.roots(), RATE as f64, scale)
-            }
+        if let Some(tags) = &from.tags {
+            let at = |frame: usize| (frame as f64 * RATE as f64 / from.clip.fps()).round() as usize;
+            let range = |range: &TagRange| TagRange {
+                tag: range.tag,
+                frames: at(range.frames.start)..at(range.frames.end),
+            };
+            return tags.iter().map(range).collect();
         }
+        let scale = f64::from(self.roles.body_height(&self.skeleton)) / REFERENCE_HEIGHT_M;
+        suggest_tags(motion.roots(), RATE as f64, scale)
     }
 
     fn normalised(&self) -> Result<Sorting, MatchError> {

@@ -101,16 +101,16 @@ pub struct TagFilter {
 impl TagFilter {
     /// Whether a frame with these tags may be found.
     #[must_use]
-    pub fn admits(&self, tags: TagSet) -> bool {
+    pub fn admits(self, tags: TagSet) -> bool {
         (self.ask == TagSet::NONE || tags.meets(self.ask)) && !tags.meets(self.forbidden())
     }
 
     /// Whether among frames that have `any` tags between them and `all` of these in common there can be one that is admitted.
-    pub(super) fn may_admit(&self, any: TagSet, all: TagSet) -> bool {
+    pub(super) fn may_admit(self, any: TagSet, all: TagSet) -> bool {
         (self.ask == TagSet::NONE || any.meets(self.ask)) && !all.meets(self.forbidden())
     }
 
-    fn forbidden(&self) -> TagSet {
+    fn forbidden(self) -> TagSet {
         self.forbid.with(Tag::Exclude, true)
     }
 }

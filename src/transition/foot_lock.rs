@@ -173,7 +173,9 @@ impl State {
         check("blend time (s)", options.blend_secs, MOST_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         let sides = Side::BOTH.into_iter();
-        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides.filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?))).unzip();
+        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides
+            .filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?)))
+            .unzip();
         if legs.is_empty() {
             return Err(FootLockError::NoLegs);
         }

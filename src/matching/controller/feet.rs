@@ -15,7 +15,7 @@ use glam::Vec3;
 /// A foot comes to stand when the clip says so *and* it has come down: right after a jump it may still be on its way to where the new clip has it.
 #[derive(Clone, Debug)]
 pub(super) struct Feet {
-    feet: Vec<Foot>,
+    both: Vec<Foot>,
     needed: Vec<usize>,
     scale: f32,
     world: WorldPose,
@@ -60,7 +60,7 @@ impl Feet {
         let joints = feet.iter().flat_map(|foot| foot.points.iter().map(|&(joint, _)| joint));
         Self {
             needed: skeleton.with_ancestors(joints),
-            feet,
+            both: feet,
             scale: roles.body_height(skeleton) / REFERENCE_HEIGHT_M as f32,
             world: WorldPose::default(),
         }
@@ -85,7 +85,7 @@ impl Feet {
             &mut self.world,
         );
         let mut stand = [false; 2];
-        for foot in &mut self.feet {
+        for foot in &mut self.both {
             let now: Vec<Vec3> = foot.points.iter().map(|&(joint, point)| self.world.point(joint, point)).collect();
             let lowest = now.iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
             let step = stillest_step(&foot.before, &now);

@@ -13,7 +13,7 @@ use super::database::{Database, Place};
 use super::desired::Simulation;
 use super::features::RATE;
 use super::search::TreeIndex;
-use super::{MatchError, TagFilter};
+use super::{MatchError, Motion, TagFilter};
 use crate::blend::translation_of;
 use crate::math::{Planar, quat, spring, wrap_angle};
 use crate::skeleton::{Pose, Side};
@@ -74,7 +74,7 @@ impl Controller {
     /// [`MatchError::Setting`] when an option is out of range.
     pub fn new(database: Arc<Database>, options: ControllerOptions, start: &Planar) -> Result<Self, MatchError> {
         options.validate()?;
-        let first = database.motion(0).map(|motion| motion.clip());
+        let first = database.motion(0).map(Motion::clip);
         let step = first.map_or(1, |clip| clip.frames().div_ceil(60).max(1));
         let examples: Vec<_> = first
             .into_iter()

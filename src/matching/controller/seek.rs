@@ -1,7 +1,7 @@
 //! When to search, what for, and whether to go there.
 
 use super::super::features::{MOST_DIMS, RATE};
-use super::super::motion::write_trajectory;
+use super::super::motion::{Motion, write_trajectory};
 use super::super::search::{Found, Hit, Question, TreeIndex, scan};
 use super::super::{Place, TagFilter};
 use super::record::{Candidate, Held, Reason, SearchRecord};
@@ -19,7 +19,7 @@ const STILL_TICKS: u64 = RATE as u64 / 2;
 impl Controller {
     pub(super) fn reason(&mut self, filter: TagFilter) -> Option<Reason> {
         let simulation = &self.simulation;
-        let frames = self.database.motion(self.place.motion).map_or(0, |motion| motion.frames());
+        let frames = self.database.motion(self.place.motion).map_or(0, Motion::frames);
         let changed = self.asked.velocity.distance(simulation.goal_velocity) > CHANGE_MPS
             || wrap_angle(self.asked.yaw - simulation.goal_yaw).abs() > CHANGE_RADIANS
             || self.asked.filter != filter;
