@@ -418,6 +418,14 @@ impl Segue {
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.fetching = self.downloads.under_way().collect();
+        if self.session.is_driven() {
+            self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {
+                walk: pad.left,
+                look: pad.right,
+                run: pad.run,
+                strafe: pad.strafe,
+            });
+        }
         self.panels.filming = Filming {
             pictures: platform::can_take_pictures(),
             films: platform::can_film(),
@@ -436,6 +444,7 @@ impl Segue {
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
         self.picture.mark_path(self.panels.path.marks(&self.session));
+        self.picture.show_candidate(self.panels.drive.ghost(&self.session));
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();

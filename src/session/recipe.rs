@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod driving;
 mod feet;
 mod kept;
 mod layers;
@@ -21,7 +22,10 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
-pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
+pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, recording_of};
+pub use driving::{DriveMoment, Driven};
+pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
+pub use kept::write_ids;
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
@@ -154,6 +158,8 @@ pub struct Outcome {
     pub registered: Option<Arc<Registered>>,
     /// The path that it goes on; `None` where it was not edited.
     pub path: Option<Arc<OnPath>>,
+    /// How it was driven; `None` where it was not.
+    pub driven: Option<Arc<Driven>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -170,6 +176,7 @@ impl Outcome {
             layer: None,
             registered: None,
             path: None,
+            driven: None,
             metrics: Vec::new(),
         }
     }

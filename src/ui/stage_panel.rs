@@ -1,5 +1,6 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
+use super::drive::stick_on_stage_ui;
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::out::{Action, Out};
 use super::path_hand::path_of;
@@ -29,7 +30,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
     let draws = drawing_input(session, &shown, &response, state, out, ui);
-    camera_input(session, &response, draws || state.path.held.is_some(), out, ui);
+    camera_input(session, &response, draws || state.path.held.is_some() || state.drive.is_held(), out, ui);
     paint(stage, &shown, ui);
     (state.path.hovered, state.path.place) = (None, None);
     for &(index, rect) in &shown {
@@ -51,6 +52,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         pane_switch_ui(panes.len(), stage, state, ui);
     }
     camera_buttons_ui(session, stage, state, out, ui);
+    stick_on_stage_ui(session, stage, numbers_top, layout, state, ui);
     let roomy = stage.height() > 420.0 * theme_of(ui).scale();
     let hint = if is_welcome(session) {
         text::WELCOME_HINT
@@ -58,6 +60,8 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         text::REGISTER_HINT
     } else if session.params().text(Key::Lab) == "path" {
         text::PATH_HINT
+    } else if session.is_driven() {
+        text::MATCH_HINT
     } else {
         ""
     };
@@ -334,6 +338,15 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 name(Key::B)
             ),
             secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
+        },
+        "match" => Words {
+            strong: if session.is_driven() {
+                text::LIVE.to_owned()
+            } else {
+                Key::Scenario.param().spoken(session.params().get(Key::Scenario))
+            },
+            text: String::new(),
+            secondary: Key::Hysteresis.param().spoken(session.params().get(Key::Hysteresis)),
         },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),

@@ -1,5 +1,6 @@
 //! What the interface remembers that is nobody else's business.
 
+use super::drive::DriveHand;
 use super::path_hand::PathHand;
 use eframe::egui::Rect;
 use segue::scene::Camera;
@@ -74,6 +75,8 @@ pub(crate) struct UiState {
     pub(crate) hovered_pair: Option<[f64; 2]>,
     /// The hand on the path of the Path lab.
     pub(crate) path: PathHand,
+    /// The hand that drives in the Match lab.
+    pub(crate) drive: DriveHand,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
     /// How motions are saved.
@@ -103,6 +106,7 @@ impl Default for UiState {
             joints_open: false,
             hovered_pair: None,
             path: PathHand::default(),
+            drive: DriveHand::default(),
             cameras: Vec::new(),
             export: ExportOptions::default(),
             saved_pane: 0,

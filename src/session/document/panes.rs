@@ -9,7 +9,7 @@ use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::{
-    BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, Slot, SpeedInputs, ViewInputs,
+    BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs, ViewInputs,
 };
 use crate::session::recipe::{belongs_to, made_id, make, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
@@ -85,6 +85,7 @@ pub(super) enum Inputs {
     Layers(LayerInputs),
     Register(RegisterInputs),
     Path(PathInputs),
+    Match(ReplayInputs),
 }
 
 impl PartialEq for Inputs {
@@ -98,6 +99,7 @@ impl PartialEq for Inputs {
             (Self::Layers(a), Self::Layers(b)) => a == b,
             (Self::Register(a), Self::Register(b)) => a == b,
             (Self::Path(a), Self::Path(b)) => a == b,
+            (Self::Match(a), Self::Match(b)) => a == b,
             _ => false,
         }
     }
@@ -112,10 +114,10 @@ impl Session {
             }
             return true;
         }
-        if self.registrar.work() || self.feet.work() || self.paths.work() {
+        if self.registrar.work() || self.feet.work() || self.paths.work() || self.driver.work() {
             return true;
         }
-        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() {
+        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.driver.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -158,14 +160,20 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
-        self.reading_jobs().chain(matching).chain(registering).chain(holding).collect()
+        let driving = self.driver.progress().map(|(name, progress)| Job {
+            task: None,
+            name: name.into(),
+            progress,
+            size: None,
+        });
+        self.reading_jobs().chain(matching).chain(registering).chain(holding).chain(driving).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
         match (self.params.text(Key::Lab), slot) {
-            ("make", _) => false,
+            ("make" | "match", _) => false,
             (_, Slot::A) => true,
             (lab, Slot::B) => !matches!(lab, "view" | "loop" | "path"),
         }
@@ -259,15 +267,19 @@ impl Session {
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrar.ask_anew();
         self.paths.ask_anew();
+        self.driver.ask_anew();
         self.feet.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
             let params = self.params_of(&pane);
-            self.refresh_pane(&mut pane, &params, match_window);
+            if !self.is_own_drive() {
+                self.refresh_pane(&mut pane, &params, match_window);
+            }
             self.panes.push(pane);
         }
+        self.refresh_driving();
         self.refresh_company();
     }
 
@@ -285,6 +297,7 @@ impl Session {
                 let pair = self.pair_of(params)?;
                 return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
             }
+            "match" => return self.match_inputs(params),
             "view" => {
                 let motion = self.motion_of(params.text(Key::A))?;
                 if params.is_on(Key::FootLock) {
@@ -324,6 +337,7 @@ impl Session {
                     Inputs::Layers(layers) => layers.run(),
                     Inputs::Register(register) => register.run(),
                     Inputs::Path(path) => path.run(),
+                    Inputs::Match(replay) => Ok(replay.run()),
                 };
                 match outcome {
                     Ok(outcome) => {

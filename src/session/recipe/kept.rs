@@ -24,6 +24,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "layers" => group == Group::Layers || key == Key::FootLock,
         "register" => group == Group::Register || key == Key::FootLock,
         "path" => group == Group::Path || key == Key::FootLock,
+        "match" => group == Group::Match || matches!(key, Key::HalfLife | Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
 }
@@ -31,10 +32,11 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
-        Key::A => true,
-        Key::B => !matches!(lab, "view" | "loop" | "path"),
+        Key::A => lab != "match",
+        Key::B => !matches!(lab, "view" | "loop" | "path" | "match"),
         // Looked at or worked with, and not made from.
         Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
+        Key::WalkSpeed | Key::RunSpeed | Key::Strafe | Key::ShownCandidates | Key::SearchBy | Key::Crowd => false,
         _ => belongs_to(key, lab),
     }
 }
@@ -109,12 +111,17 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
         "path" => format!("{a} on a path"),
+        "match" => match params.text(Key::Scenario) {
+            "own" => "a drive".to_owned(),
+            _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
+        },
         _ => format!("{a} to {b}"),
     }
 }
 
 /// Several ids in one text: separated by commas.
-pub(in crate::session) fn write_ids(ids: &[String]) -> String {
+#[must_use]
+pub fn write_ids(ids: &[String]) -> String {
     let written = |id: &String| match recipe_params(id) {
         Some(_) => id.clone(),
         None => utf8_percent_encode(id, RESERVED).to_string(),

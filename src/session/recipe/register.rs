@@ -360,6 +360,7 @@ impl RegisterInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             path: None,
+            driven: None,
             metrics,
         })
     }
