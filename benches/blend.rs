@@ -3,38 +3,22 @@
 //! `window/cached terms` is what a new window costs: the distances between all windows on the search's grid. `registration.rs` holds that against the
 //! definition.
 
+mod common;
+
+use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue::blend::{DissolveOptions, RootBlend, Source, dissolve};
 use segue::clip::{Clip, ContactOptions, Contacts};
 use segue::metrics::{Profile, Subject, TransitionMetrics};
 use segue::registration::{SearchOptions, TransitionSearch, limb_weights};
-use segue::skeleton::{Joint, Roles, Skeleton};
+use segue::skeleton::{Roles, Skeleton};
 use segue::synth::{Action, Params, synthesize};
 use std::hint::black_box;
 use std::sync::Arc;
 
 const FRAMES: usize = 3_000;
 const FPS: f64 = 120.0;
-
-/// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
-fn skeleton() -> Arc<Skeleton> {
-    let joint = |index: usize| {
-        let (chain, link) = (index.div_ceil(5), (index + 4) % 5);
-        let parent = (index > 0).then(|| if link == 0 { 0 } else { index - 1 });
-        let name = format!("Joint{index}");
-        let turn = Quat::from_rotation_y(chain as f32);
-        let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
-        Joint {
-            name,
-            parent,
-            offset,
-            end_site: None,
-            channels: vec![],
-        }
-    };
-    Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
-}
 
 fn clip(skeleton: &Arc<Skeleton>, cadence: f32, speed: f32) -> Arc<Clip> {
     let mut rotations = Vec::with_capacity(FRAMES * skeleton.len());

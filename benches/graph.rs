@@ -1,35 +1,22 @@
 //! What a motion graph costs: 6,000 frames of 31 joints, windows of 30 frames. "Directly" is a thousandth of the same pairs straight from the
 //! definition of the distance, each counted once: the whole takes a thousand times as long.
 
+mod common;
+
+use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue::blend::Source;
 use segue::clip::Clip;
 use segue::graph::{AllPairs, CandidateStream, Candidates, FrameSet, GraphOptions, MotionGraph};
 use segue::registration::distances_directly;
-use segue::skeleton::{Joint, Roles, Skeleton};
+use segue::skeleton::Roles;
 use std::hint::black_box;
 use std::sync::Arc;
 
 const FRAMES: usize = 6_000;
 const WINDOW: usize = 30;
 const FPS: f64 = 60.0;
-
-/// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
-fn skeleton() -> Arc<Skeleton> {
-    let joint = |index: usize| {
-        let (chain, link) = (index.div_ceil(5), (index + 4) % 5);
-        let turn = Quat::from_rotation_y(chain as f32);
-        Joint {
-            name: format!("Joint{index}"),
-            parent: (index > 0).then(|| if link == 0 { 0 } else { index - 1 }),
-            offset: if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) },
-            end_site: None,
-            channels: vec![],
-        }
-    };
-    Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
-}
 
 /// Strides whose cadence sways.
 fn set(frames: usize) -> Arc<FrameSet> {

@@ -1,33 +1,20 @@
 //! What registration curves cost: two clips of 1,500 frames and 31 joints, distances of windows of 30 frames. `distances/directly` is a
 //! fiftieth of the same matrix straight from its definition, O(N²JK): the whole takes fifty times as long.
 
+mod common;
+
+use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue::clip::Clip;
 use segue::registration::{PairTerms, PathOptions, Registration, RegistrationOptions, distances_directly, limb_weights, optimal_path};
-use segue::skeleton::{Joint, Skeleton};
+use segue::skeleton::Skeleton;
 use std::hint::black_box;
 use std::sync::Arc;
 
 const FRAMES: usize = 1_500;
 const WINDOW: usize = 30;
 const FPS: f64 = 60.0;
-
-/// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
-fn skeleton() -> Arc<Skeleton> {
-    let joint = |index: usize| {
-        let (chain, link) = (index.div_ceil(5), (index + 4) % 5);
-        let turn = Quat::from_rotation_y(chain as f32);
-        Joint {
-            name: format!("Joint{index}"),
-            parent: (index > 0).then(|| if link == 0 { 0 } else { index - 1 }),
-            offset: if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) },
-            end_site: None,
-            channels: vec![],
-        }
-    };
-    Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
-}
 
 /// Strides that come at `cadence` and quicken and slow down by `sway`.
 fn clip(skeleton: &Arc<Skeleton>, frames: usize, cadence: f32, sway: f32) -> Arc<Clip> {

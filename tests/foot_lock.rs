@@ -3,11 +3,9 @@
 #[path = "formats_common/mod.rs"]
 mod formats_common;
 
-use formats_common::shared_data;
+use formats_common::captured;
 use segue::blend::{Concatenation, Source};
 use segue::clip::{Clip, ContactOptions, Contacts};
-use segue::formats::ImportOptions;
-use segue::formats::acclaim::{read_motion, read_skeleton};
 use segue::math::{Decay, quat};
 use segue::metrics::{Profile, Subject, TransitionMetrics};
 use segue::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
@@ -39,21 +37,9 @@ impl Take {
     }
 }
 
-/// The takes of subject 16 of the CMU database whose names end like this; none where the data is not there.
-fn captured(wanted: &[&str]) -> Vec<Take> {
-    let Some(folder) = shared_data().map(|data| data.join("cmu/16")) else {
-        return vec![];
-    };
-    let Ok(bytes) = std::fs::read(folder.join("16.asf")) else {
-        return vec![];
-    };
-    let skeleton = read_skeleton("16.asf", &bytes, &ImportOptions::default()).expect("the skeleton is read");
-    let take = |name: &&str| {
-        let bytes = std::fs::read(folder.join(format!("16_{name}.amc"))).expect("the take is there");
-        let mut read = read_motion(name, &bytes, &skeleton, &ImportOptions::default()).expect("the take is read");
-        Take::new(name, read.clips.remove(0).clip)
-    };
-    wanted.iter().map(take).collect()
+/// Takes of subject 16 of the CMU database; none where the data is not there.
+fn takes(wanted: &[&'static str]) -> Vec<Take> {
+    captured(wanted).into_iter().map(|(name, clip)| Take::new(name, clip)).collect()
 }
 
 fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
@@ -115,7 +101,7 @@ fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
 
 #[test]
 fn walk_to_run_of_cmu_16_loses_nine_tenths_of_its_skate_and_no_knee_pops() {
-    for pair in captured(&["15", "35"]).chunks_exact(2) {
+    for pair in takes(&["15", "35"]).chunks_exact(2) {
         let (skate, knees) = locked(&pair[0], &pair[1]);
         assert!(skate[0] > 0.5 && skate[1] <= 0.1 * skate[0], "{skate:?}");
         assert!(knees[1] <= 1.5 * knees[0], "{knees:?}");
@@ -138,7 +124,7 @@ fn made_walks_and_runs_lose_their_skate_too() {
 /// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is hurried.
 #[test]
 fn pairs_of_cmu_16_stand_still() {
-    let takes = captured(&["05", "11", "15", "17", "22", "35", "43", "55"]);
+    let takes = takes(&["05", "11", "15", "17", "22", "35", "43", "55"]);
     let (mut skates, mut hurried) = (vec![], 0);
     for a in &takes {
         for b in &takes {

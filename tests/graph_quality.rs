@@ -10,12 +10,7 @@ use segue::graph::{GraphOptions, StitchOptions};
 
 #[test]
 fn captured_motion() {
-    let Some(folder) = formats_common::shared_data()
-        .map(|data| data.join("cmu/16"))
-        .filter(|folder| folder.is_dir())
-    else {
-        return;
-    };
+    let Some(folder) = formats_common::subject_16() else { return };
     let set = measure::clips_of_folder(&folder, |_| true).expect("the takes are read");
     let options = GraphOptions::default();
     let stitch = StitchOptions::dissolve(options.blend_window);

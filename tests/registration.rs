@@ -3,12 +3,10 @@
 #[path = "formats_common/mod.rs"]
 mod formats_common;
 
-use formats_common::shared_data;
+use formats_common::captured;
 use glam::Vec3;
 use segue::blend::{DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join};
 use segue::clip::{Clip, ContactOptions, Contacts, Interpolation};
-use segue::formats::ImportOptions;
-use segue::formats::acclaim::{read_motion, read_skeleton};
 use segue::registration::{PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights};
 use segue::skeleton::{Roles, Side, world_pose};
 use std::sync::Arc;
@@ -37,21 +35,9 @@ impl Take {
     }
 }
 
-/// The takes of subject 16 of the CMU database whose names end like this; none where the data is not there.
-fn captured(wanted: &[&str]) -> Vec<Take> {
-    let Some(folder) = shared_data().map(|data| data.join("cmu/16")) else {
-        return vec![];
-    };
-    let Ok(bytes) = std::fs::read(folder.join("16.asf")) else {
-        return vec![];
-    };
-    let skeleton = read_skeleton("16.asf", &bytes, &ImportOptions::default()).expect("the skeleton is read");
-    let take = |name: &&str| {
-        let bytes = std::fs::read(folder.join(format!("16_{name}.amc"))).expect("the take is there");
-        let mut read = read_motion(name, &bytes, &skeleton, &ImportOptions::default()).expect("the take is read");
-        Take::new(name, read.clips.remove(0).clip)
-    };
-    wanted.iter().map(take).collect()
+/// Takes of subject 16 of the CMU database; none where the data is not there.
+fn takes(wanted: &[&'static str]) -> Vec<Take> {
+    captured(wanted).into_iter().map(|(name, clip)| Take::new(name, clip)).collect()
 }
 
 fn register(a: &Take, b: &Take) -> Registration {
@@ -120,7 +106,7 @@ fn in_lockstep(leave: usize, enter: usize, frames: usize, weight: impl Fn(usize)
 
 #[test]
 fn registered_walks_of_cmu_16_skate_half_as_much_as_dissolved_ones() {
-    let takes = captured(&["11", "13", "15", "16", "22", "33"]);
+    let takes = takes(&["11", "13", "15", "16", "22", "33"]);
     let mut sums = [0.0; 3];
     for a in &takes {
         for b in &takes {

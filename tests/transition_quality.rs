@@ -66,12 +66,7 @@ fn made_motion() {
 
 #[test]
 fn captured_motion() {
-    let Some(folder) = formats_common::shared_data()
-        .map(|data| data.join("cmu/16"))
-        .filter(|folder| folder.is_dir())
-    else {
-        return;
-    };
+    let Some(folder) = formats_common::subject_16() else { return };
     let wanted = ["16_15.amc", "16_17.amc", "16_35.amc", "16_41.amc"];
     let pairs = all_pairs(Lab::of_folder(&folder, |name| wanted.contains(&name)).expect("the takes are read"));
     what_holds_everywhere(&pairs);

@@ -6,19 +6,22 @@
     reason = "a module of an example and of a test, each of which uses a part of it"
 )]
 
+#[path = "../takes/mod.rs"]
+mod takes;
+
 use segue::blend::Source;
 use segue::clip::{ContactOptions, Contacts};
 use segue::graph::{
     AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph, StitchOptions, Stitcher, WalkMetrics, WalkPiece, WalkProfile,
     Walker, WeightOptions,
 };
-use segue::session::{Command, Session};
+use segue::session::Command;
 use segue::skeleton::Roles;
 use std::error::Error;
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
+use takes::session_of_folder;
 
 /// A walk.
 pub struct Walked {
@@ -39,29 +42,14 @@ pub struct Walked {
 /// # Errors
 /// When the folder or a file cannot be read, or the clips do not fit each other.
 pub fn clips_of_folder(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Arc<FrameSet>, Box<dyn Error>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
-        let path = entry?.path();
-        let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().to_lowercase();
-        let (kind, name) = (part(path.extension()), part(path.file_name()));
-        if kind == "asf" || ["amc", "bvh"].contains(&kind.as_str()) && wanted(&name) {
-            // Skeletons come before their motions.
-            files.push((kind != "asf", name, path));
-        }
-    }
-    files.sort();
-    let (mut session, mut sources, mut height) = (Session::new(), Vec::new(), 0.0);
-    session.apply(Command::OpenLink("lab=view".to_owned()))?;
-    for (is_motion, name, path) in files {
-        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let loaded = session.load(&name, bytes.into())?;
-        for id in loaded.ids.into_iter().filter(|_| is_motion) {
-            session.apply(Command::OpenLink(format!("lab=view&a={id}")))?;
-            let outcome = session.main_outcome().ok_or_else(|| format!("there is no clip `{id}`"))?;
-            let motion = &outcome.motion;
-            height = f64::from(motion.roles.body_height(motion.clip.skeleton()));
-            sources.push(Arc::new(Source::new(Arc::clone(&motion.clip), &motion.roles)));
-        }
+    let (mut session, ids) = session_of_folder(folder, wanted)?;
+    let (mut sources, mut height) = (Vec::new(), 0.0);
+    for id in ids {
+        session.apply(Command::OpenLink(format!("lab=view&a={id}")))?;
+        let outcome = session.main_outcome().ok_or_else(|| format!("there is no clip `{id}`"))?;
+        let motion = &outcome.motion;
+        height = f64::from(motion.roles.body_height(motion.clip.skeleton()));
+        sources.push(Arc::new(Source::new(Arc::clone(&motion.clip), &motion.roles)));
     }
     Ok(Arc::new(FrameSet::new(sources, height)?))
 }

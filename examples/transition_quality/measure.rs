@@ -7,16 +7,18 @@
     reason = "a module of an example and of a test, each of which uses a part of it"
 )]
 
+#[path = "../takes/mod.rs"]
+mod takes;
+
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::{quat, stats};
 use segue::session::{Command, Motion, Outcome, Session};
 use segue::skeleton::{Role, Roles, Side, WorldPose};
 use std::error::Error;
-use std::fmt::Display;
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+use takes::session_of_folder;
 
 /// A change of a joint's turning that is smaller is none, radians per step: what single precision makes of a joint at rest.
 const STILL_RADIANS: f32 = 1e-4;
@@ -65,24 +67,7 @@ impl Lab {
     /// # Errors
     /// When the folder or a file cannot be read.
     pub fn of_folder(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Self, Box<dyn Error>> {
-        let mut files = Vec::new();
-        for entry in fs::read_dir(folder).map_err(|error| at(folder, &error))? {
-            let path = entry?.path();
-            let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().to_lowercase();
-            let (kind, name) = (part(path.extension()), part(path.file_name()));
-            if kind == "asf" || ["amc", "bvh"].contains(&kind.as_str()) && wanted(&name) {
-                // Skeletons come before their motions.
-                files.push((kind != "asf", name, path));
-            }
-        }
-        files.sort();
-        let (mut session, mut ids) = (Session::new(), Vec::new());
-        session.apply(Command::OpenLink("lab=view".to_owned()))?;
-        for (is_motion, name, path) in files {
-            let bytes = fs::read(&path).map_err(|error| at(&path, &error))?;
-            let loaded = session.load(&name, bytes.into())?;
-            ids.extend(loaded.ids.into_iter().filter(|_| is_motion));
-        }
+        let (session, ids) = session_of_folder(folder, wanted)?;
         Self::of_clips(session, &ids)
     }
 
@@ -172,10 +157,6 @@ impl Lab {
             .clone()
             .ok_or_else(|| format!("{a} → {b}: {}", pane.problem.as_deref().unwrap_or("nothing is made")).into())
     }
-}
-
-fn at(path: &Path, error: &dyn Display) -> Box<dyn Error> {
-    format!("{}: {error}", path.display()).into()
 }
 
 fn metric(outcome: &Outcome, id: &str) -> f64 {

@@ -1,7 +1,7 @@
 //! Motions for the skeletons of `skeleton::fixtures`, for tests.
 
-use super::Clip;
-use crate::skeleton::{Skeleton, fixtures::noise};
+use super::{Clip, JointTranslations};
+use crate::skeleton::{Joint, Skeleton, fixtures::noise};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -30,4 +30,29 @@ pub(crate) fn largest_distance(a: &Clip, b: &Clip) -> f32 {
     let (a, b) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
     assert_eq!(a.len(), b.len());
     a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+/// A root and joints that hang from it, as many points as are wanted.
+pub(crate) fn points_skeleton(count: usize) -> Arc<Skeleton> {
+    let joint = |index: usize| Joint {
+        name: format!("p{index}"),
+        parent: (index > 0).then_some(0),
+        offset: Vec3::ZERO,
+        end_site: None,
+        channels: vec![],
+    };
+    Arc::new(Skeleton::new((0..count).map(joint).collect()).unwrap())
+}
+
+/// Points that fly: per frame, where each point of a [`points_skeleton`] is.
+pub(crate) fn points_clip(skeleton: &Arc<Skeleton>, fps: f64, frames: &[Vec<[f32; 3]>]) -> Clip {
+    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from_array(frame[joint]);
+    let roots = frames.iter().map(|frame| at(frame, 0)).collect();
+    let rotations = vec![Quat::IDENTITY; frames.len() * skeleton.len()];
+    let tracks = (1..skeleton.len()).map(|joint| JointTranslations {
+        joint,
+        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
+    });
+    let clip = Clip::new("points", Arc::clone(skeleton), fps, rotations, roots).unwrap();
+    clip.with_translations(tracks.collect()).unwrap()
 }

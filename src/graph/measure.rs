@@ -159,83 +159,69 @@ impl WalkMetrics {
     pub fn list(&self) -> [Metric; 8] {
         let worst = |value: fn(&Seam) -> f64| self.seams.iter().map(value).max_by(f64::total_cmp);
         let median = |values: Vec<f32>| stats::percentile(&values, 0.5).map(f64::from);
-        let metric = |id, label, value, unit, better, help| Metric {
-            id,
-            label,
-            value,
-            unit,
-            better,
-            help,
-        };
-        let (lower, neutral) = (Better::Lower, Better::Neutral);
         let per_minute = (self.secs > 0.0).then(|| self.seams.len() as f64 * 60.0 / self.secs);
         let skates = self.seams.iter().filter_map(|seam| seam.skate_cm).collect();
         let lags = self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
         [
-            metric(
+            Metric::fact(
                 "seams_per_min",
                 "Seams",
                 per_minute,
                 "/min",
-                neutral,
                 "How many transitions a minute of the walk has.",
             ),
-            metric(
+            Metric::lower(
                 "walk_seam_deg",
                 "Seam angle",
                 worst(|seam| f64::from(seam.turn_deg)),
                 "°",
-                lower,
                 "How far a joint turns in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
             ),
-            metric(
+            Metric::lower(
                 "walk_seam_dps",
                 "Seam angular velocity",
                 worst(|seam| f64::from(seam.change_dps)),
                 "°/s",
-                lower,
                 "How much a joint's angular velocity changes in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
             ),
-            metric(
+            Metric::lower(
                 "spins",
                 "Spins",
                 Some(self.spins() as f64),
                 "",
-                lower,
                 "Transitions in which the character turns by more than 30° in 0.2 s and neither clip does.",
             ),
-            metric(
+            Metric::lower(
                 "flashes",
                 "Flashes",
                 Some(self.flashes() as f64),
                 "",
-                lower,
                 "Transitions in which the root or a joint jumps more than twice as far as in all but one in a thousand frames of the clips.",
             ),
-            metric(
+            Metric::lower(
                 "walk_skate_cm",
                 "Foot slide",
                 median(skates),
                 "cm",
-                lower,
                 "How far a planted foot slides in the worst stance of a transition: the median.",
             ),
-            metric(
+            Metric::lower(
                 "walk_lag_s",
                 "Drag",
                 median(lags),
                 "s",
-                lower,
                 "How long a transition takes to come 90 % of the way to the entered clip's velocity: the median.",
             ),
-            metric(
-                "variety",
-                "Variety",
-                Some(self.variety * 100.0),
-                "%",
-                Better::Higher,
-                "How much of the clips the walk has shown.",
-            ),
+            Metric {
+                better: Better::Higher,
+                ..Metric::fact(
+                    "variety",
+                    "Variety",
+                    Some(self.variety * 100.0),
+                    "%",
+                    "How much of the clips the walk has shown.",
+                )
+            },
         ]
     }
 }

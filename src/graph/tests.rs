@@ -1,11 +1,12 @@
 use super::*;
 use crate::blend::{Source, align_onto};
-use crate::clip::{Clip, ContactOptions, Contacts, JointTranslations};
+use crate::clip::fixtures::{points_clip, points_skeleton};
+use crate::clip::{ContactOptions, Contacts};
 use crate::math::Planar;
 use crate::registration::fixtures::Walk;
 use crate::registration::rms_cm;
-use crate::skeleton::{Joint, Roles, Skeleton};
-use glam::{DVec2, Quat, Vec3};
+use crate::skeleton::Roles;
+use glam::DVec2;
 use petgraph::graph::NodeIndex;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -649,32 +650,14 @@ struct Golden {
     stays: Vec<(usize, usize, usize)>,
 }
 
-/// A clip whose joints hang from the root and go where they are told.
-fn points_as_clip(skeleton: &Arc<Skeleton>, frames: &[Vec<[f32; 3]>]) -> Arc<Source> {
-    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from(frame[joint]);
-    let roots: Vec<Vec3> = frames.iter().map(|frame| at(frame, 0)).collect();
-    let rotations = vec![Quat::IDENTITY; frames.len() * skeleton.len()];
-    let tracks = (1..skeleton.len()).map(|joint| JointTranslations {
-        joint,
-        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
-    });
-    let clip = Clip::new("points", Arc::clone(skeleton), 60.0, rotations, roots).unwrap();
-    let clip = clip.with_translations(tracks.collect()).unwrap();
-    Arc::new(Source::new(Arc::new(clip), &Roles::detect(skeleton)))
-}
-
 #[test]
 fn graph_and_walk_are_those_of_numpy() {
     let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/graph.json")).unwrap();
-    let joint = |index: usize| Joint {
-        name: format!("p{index}"),
-        parent: (index > 0).then_some(0),
-        offset: Vec3::ZERO,
-        end_site: None,
-        channels: vec![],
-    };
-    let skeleton = Arc::new(Skeleton::new((0..4).map(joint).collect()).unwrap());
-    let sources = golden.clips.iter().map(|frames| points_as_clip(&skeleton, frames));
+    let skeleton = points_skeleton(4);
+    let sources = golden.clips.iter().map(|frames| {
+        let clip = points_clip(&skeleton, 60.0, frames);
+        Arc::new(Source::new(Arc::new(clip), &Roles::detect(&skeleton)))
+    });
     let set = Arc::new(FrameSet::new(sources.collect(), golden.height).unwrap());
     let options = GraphOptions {
         min_jump_secs: golden.min_jump as f64 / 60.0,

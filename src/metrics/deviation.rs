@@ -1,4 +1,4 @@
-use super::{Better, Metric};
+use super::Metric;
 use crate::blend::{BodyPart, mask};
 use crate::clip::Clip;
 use crate::math::quat;
@@ -55,14 +55,8 @@ pub fn deviations(result: &Clip, base: &Clip, roles: &Roles) -> [Metric; 4] {
             sum += turned * f64::from(weight);
             count += f64::from(weight);
         }
-        Metric {
-            id,
-            label,
-            value: (count > 0.0 && frames > 0).then(|| (sum / count / frames as f64).to_degrees()),
-            unit: "°",
-            better: Better::Neutral,
-            help,
-        }
+        let value = (count > 0.0 && frames > 0).then(|| (sum / count / frames as f64).to_degrees());
+        Metric::fact(id, label, value, "°", help)
     })
 }
 

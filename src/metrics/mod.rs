@@ -37,3 +37,27 @@ pub struct Metric {
     /// One or two sentences: what it means and how it is measured.
     pub help: &'static str,
 }
+
+impl Metric {
+    /// A number that should be small; 0 is perfect.
+    #[must_use]
+    pub fn lower(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
+        Self {
+            better: Better::Lower,
+            ..Self::fact(id, label, value, unit, help)
+        }
+    }
+
+    /// A number that only describes.
+    #[must_use]
+    pub fn fact(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
+        Self {
+            id,
+            label,
+            value: value.into(),
+            unit,
+            better: Better::Neutral,
+            help,
+        }
+    }
+}

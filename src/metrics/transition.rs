@@ -1,5 +1,5 @@
+use super::Metric;
 use super::profile::{Profile, turn};
-use super::{Better, Metric};
 use crate::clip::{Clip, facing, stillest_step, turn_change};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Roles, Side, WorldPose};
@@ -99,58 +99,50 @@ impl TransitionMetrics {
     /// All numbers with their names, units and explanations, in the order in which they are shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 7] {
-        let metric = |id, label, value, unit, help| Metric {
-            id,
-            label,
-            value,
-            unit,
-            better: Better::Lower,
-            help,
-        };
         [
-            metric(
+            Metric::lower(
                 "seam_deg",
                 "Pose jump",
                 self.seam_deg,
                 "°",
                 "How far a joint turns in one frame at the transition, beyond what it does in its own clips.",
             ),
-            metric(
+            Metric::lower(
                 "seam_dps",
                 "Velocity jump",
                 self.seam_dps,
                 "°/s",
                 "How much a joint's angular velocity changes in one frame at the transition, beyond what it does in its own clips.",
             ),
-            metric(
+            Metric::lower(
                 "jump_cm",
                 "Place jump",
                 self.jump_cm,
                 "cm",
                 "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
             ),
-            metric(
+            Metric::lower(
                 "spin_deg",
                 "Spin",
                 self.spin_deg,
                 "°",
                 "How far the character turns inside the blend beyond what either clip turns meanwhile.",
             ),
-            metric(
+            Metric::lower(
                 "skate_cm",
                 "Foot slide",
                 self.skate_cm,
                 "cm",
                 "How far a planted foot slides in the worst stance at the transition, beyond what it slides in its own clip.",
             ),
-            metric(
+            Metric::lower(
                 "penetration_cm",
                 "Penetration",
                 self.penetration_cm,
                 "cm",
                 "How deep the lowest point of the body is below the ground during the transition.",
             ),
-            metric(
+            Metric::lower(
                 "lag_s",
                 "Lag",
                 self.lag_s,

@@ -132,25 +132,35 @@ impl PairTerms {
         check_pairs(pairs(stride), || (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1)?;
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
-        let source = Arc::new(Cloud::new(source, source_frames, stride, &shares, level)?);
-        let target = Arc::new(Cloud::new(target, target_frames, stride, &shares, level)?);
-        Ok(Self::of(source, target, shares, frame_weight, stride, band, false))
+        let clouds = |clip, frames| {
+            Ok(PointClouds {
+                cloud: Arc::new(Cloud::new(clip, frames, stride, &shares, level)?),
+                shares: shares.clone(),
+                frame_weight,
+                stride,
+            })
+        };
+        Ok(Self::of(
+            &clouds(source, source_frames)?,
+            &clouds(target, target_frames)?,
+            band,
+            false,
+        ))
     }
 
     /// Nothing is compared yet. The pairs are few enough.
-    fn of(source: Arc<Cloud>, target: Arc<Cloud>, shares: Shares, frame_weight: f64, stride: usize, band: usize, triangle: bool) -> Self {
-        let width = target.groups() * LANES;
+    fn of(source: &PointClouds, target: &PointClouds, band: usize, triangle: bool) -> Self {
         let mut terms = Self {
-            stride,
-            shares,
-            frame_weight,
+            stride: source.stride,
+            shares: source.shares.clone(),
+            frame_weight: source.frame_weight,
             band,
             triangle,
             done: 0,
             terms: Vec::new(),
-            width,
-            source,
-            target,
+            width: target.cloud.groups() * LANES,
+            source: Arc::clone(&source.cloud),
+            target: Arc::clone(&target.cloud),
             spread: Vec::new(),
         };
         terms.terms = vec![0.0; terms.row_start(terms.source.samples)];
@@ -164,30 +174,14 @@ impl PairTerms {
     pub fn of_clouds(source: &PointClouds, target: &PointClouds) -> Result<Self, RegistrationError> {
         let pairs = source.cloud.samples.saturating_mul(target.cloud.samples);
         check_pairs(pairs, || source.stride * 2)?;
-        Ok(Self::of(
-            Arc::clone(&source.cloud),
-            Arc::clone(&target.cloud),
-            source.shares.clone(),
-            source.frame_weight,
-            source.stride,
-            usize::MAX,
-            false,
-        ))
+        Ok(Self::of(source, target, usize::MAX, false))
     }
 
     /// A clip with itself: the pairs with column ≥ row alone.
     pub(super) fn of_itself(of: &PointClouds) -> Result<Self, RegistrationError> {
         let samples = of.cloud.samples;
         check_pairs(samples.saturating_mul(samples + 1) / 2, || of.stride * 2)?;
-        Ok(Self::of(
-            Arc::clone(&of.cloud),
-            Arc::clone(&of.cloud),
-            of.shares.clone(),
-            of.frame_weight,
-            of.stride,
-            usize::MAX,
-            true,
-        ))
+        Ok(Self::of(of, of, usize::MAX, true))
     }
 
     /// Compares at least `rows` more frames of the source with all frames of the target (rows come in fours), and says how far it has come.

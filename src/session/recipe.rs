@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod feet;
 mod kept;
 mod layers;
 mod looping;
@@ -59,6 +60,17 @@ pub struct Source {
     pub starts_at_secs: f64,
     /// Where it lies on the result's ground.
     pub world_from_clip: Planar,
+}
+
+impl Source {
+    fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
+        Self {
+            slot,
+            motion: Arc::clone(motion),
+            starts_at_secs,
+            world_from_clip,
+        }
+    }
 }
 
 /// Where one clip goes over into the other.

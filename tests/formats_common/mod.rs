@@ -6,6 +6,7 @@
 
 use glam::Vec3;
 use segue::clip::Clip;
+use segue::formats::acclaim::{read_motion, read_skeleton};
 use segue::formats::{ImportError, ImportOptions, Imported, ImportedClip, import};
 use segue::skeleton::WorldPose;
 use std::path::PathBuf;
@@ -23,6 +24,24 @@ pub fn shared_data() -> Option<PathBuf> {
         eprintln!("no motion data on this machine: set SEGUE_SHARED to its folder; skipped");
     }
     found
+}
+
+/// The takes of subject 16 of the CMU database, where this machine has them.
+pub fn subject_16() -> Option<PathBuf> {
+    shared_data().map(|data| data.join("cmu/16")).filter(|folder| folder.is_dir())
+}
+
+/// Those of subject 16's takes whose names end like this, with their names; none where they are not there.
+pub fn captured(wanted: &[&'static str]) -> Vec<(&'static str, Clip)> {
+    let Some(folder) = subject_16() else { return vec![] };
+    let bytes = std::fs::read(folder.join("16.asf")).unwrap();
+    let skeleton = read_skeleton("16.asf", &bytes, &ImportOptions::default()).unwrap();
+    let take = |&name: &&'static str| {
+        let bytes = std::fs::read(folder.join(format!("16_{name}.amc"))).unwrap();
+        let mut read = read_motion(name, &bytes, &skeleton, &ImportOptions::default()).unwrap();
+        (name, read.clips.remove(0).clip)
+    };
+    wanted.iter().map(take).collect()
 }
 
 /// The BVH files of a folder, sorted by name.

@@ -1,12 +1,11 @@
 use super::*;
-use crate::clip::{Clip, JointTranslations};
+use crate::clip::Clip;
+use crate::clip::fixtures::{points_clip, points_skeleton};
 use crate::registration::fixtures::Walk;
 use crate::registration::limb_weights;
-use crate::skeleton::{Joint, Skeleton};
-use glam::{Quat, Vec3};
+
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 fn registered(a: &Clip, b: &Clip, window: usize, options: &RegistrationOptions) -> Registration {
     let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
@@ -188,31 +187,14 @@ struct GoldenWarp {
     at_frames: Vec<f64>,
 }
 
-/// Points that fly: a root, and joints that move against it.
-fn flying(frames: &[Vec<[f32; 3]>]) -> Clip {
-    let joints = frames[0].len();
-    let joint = |index: usize| Joint {
-        name: format!("p{index}"),
-        parent: (index > 0).then_some(0),
-        offset: Vec3::ZERO,
-        end_site: None,
-        channels: vec![],
-    };
-    let skeleton = Arc::new(Skeleton::new((0..joints).map(joint).collect()).unwrap());
-    let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from_array(frame[joint]);
-    let roots = frames.iter().map(|frame| at(frame, 0)).collect();
-    let tracks = (1..joints).map(|joint| JointTranslations {
-        joint,
-        values: frames.iter().map(|frame| at(frame, joint) - at(frame, 0)).collect(),
-    });
-    let clip = Clip::new("points", skeleton, 30.0, vec![Quat::IDENTITY; joints * frames.len()], roots).unwrap();
-    clip.with_translations(tracks.collect()).unwrap()
-}
-
 #[test]
 fn matrix_path_and_warp_agree_with_scipy() {
     let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/registration.json")).unwrap();
-    let (source, target) = (flying(&golden.source), flying(&golden.target));
+    let skeleton = points_skeleton(golden.source[0].len());
+    let (source, target) = (
+        points_clip(&skeleton, 30.0, &golden.source),
+        points_clip(&skeleton, 30.0, &golden.target),
+    );
     let mut terms = PairTerms::new(&source, 0..24, &target, 0..30, &golden.weights, 1).unwrap();
     terms.finish();
     for case in &golden.windows {

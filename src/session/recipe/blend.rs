@@ -1,9 +1,10 @@
-use super::pair::{Pair, with_feet};
+use super::feet::{slide_before, with_feet};
+use super::pair::Pair;
 use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{RootBlend, WeightLaw};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
-use crate::metrics::{Better, Metric, Subject, TransitionMetrics};
+use crate::metrics::{Subject, TransitionMetrics};
 use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -338,24 +339,11 @@ impl BlendInputs {
         };
         let mut metrics = measured(&motion.clip).list().to_vec();
         if *is_locked {
-            metrics.push(Metric {
-                id: "skate_before_cm",
-                label: "Foot slide before the lock",
-                value: measured(&free).skate_cm,
-                unit: "cm",
-                better: Better::Neutral,
-                help: "How far a planted foot slides in the worst stance without the foot lock.",
-            });
+            metrics.push(slide_before(measured(&free).skate_cm));
         }
-        let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
-            slot,
-            motion: Arc::clone(motion),
-            starts_at_secs,
-            world_from_clip,
-        };
         let sources = vec![
-            source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
-            source(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
+            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            Source::new(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
         ];
         Ok(Outcome {
             motion: Arc::new(motion),

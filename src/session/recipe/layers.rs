@@ -1,10 +1,11 @@
-use super::pair::{Pair, with_feet};
+use super::feet::{slide_before, with_feet};
+use super::pair::Pair;
 use super::{Outcome, Slot, Source};
 use crate::blend::{self, BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
 use crate::clip::{Clip, ContactOptions, Contacts, character_frames};
 use crate::gait::{GaitCycle, strike_phases};
 use crate::math::Planar;
-use crate::metrics::{Better, Metric, Profile, Subject, TransitionMetrics, deviations};
+use crate::metrics::{Metric, Profile, Subject, TransitionMetrics, deviations};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -272,14 +273,7 @@ impl LayerInputs {
         let found = measured(&clip).list().into_iter();
         let mut metrics: Vec<Metric> = found.filter(|metric| of_layers.contains(&metric.id)).collect();
         if self.foot_lock {
-            metrics.push(Metric {
-                id: "skate_before_cm",
-                label: "Foot slide before the lock",
-                value: measured(&free).skate_cm,
-                unit: "cm",
-                better: Better::Neutral,
-                help: "How far a planted foot slides in the worst stance without the foot lock.",
-            });
+            metrics.push(slide_before(measured(&free).skate_cm));
         }
         metrics.extend(deviations(&clip, &a.clip, &roles));
         let motion = Motion {
@@ -288,12 +282,7 @@ impl LayerInputs {
             roles,
             contacts,
         };
-        let source = |slot, motion: &Arc<Motion>| Source {
-            slot,
-            motion: Arc::clone(motion),
-            starts_at_secs: 0.0,
-            world_from_clip: Planar::IDENTITY,
-        };
+        let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {
             motion: Arc::new(motion),
             sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],

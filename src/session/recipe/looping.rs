@@ -1,10 +1,10 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
-use super::rounds::{Rounds, fact, repeated, rounds};
+use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::blend;
 use crate::math::Planar;
-use crate::metrics::{Better, Metric};
+use crate::metrics::Metric;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
 use crate::transition::{CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle};
@@ -120,19 +120,15 @@ impl LoopInputs {
             .frames
             .first()
             .map_or(Planar::IDENTITY, |first| first.inverse().after(&looped.cycle.after(first)));
-        let seam = |id, label, value, unit, help| Metric {
-            better: Better::Lower,
-            ..fact(id, label, value, unit, help)
-        };
         let mut metrics = vec![
-            seam(
+            Metric::lower(
                 "loop_seam_deg",
                 "Seam",
                 looped.seam.turn_deg,
                 "°",
                 "The largest angle of a joint between the end of the cycle and its beginning.",
             ),
-            seam(
+            Metric::lower(
                 "loop_seam_dps",
                 "Velocity seam",
                 looped.seam.turn_dps,
@@ -142,17 +138,17 @@ impl LoopInputs {
         ];
         metrics.append(&mut slides);
         metrics.extend([
-            fact(
+            Metric::fact(
                 "loop_before_deg",
                 "Seam of the bare cut",
                 looped.before.turn_deg,
                 "°",
                 "The angle that was to be bridged: the same number if nothing were done.",
             ),
-            fact("cycle_s", "Cycle", secs(frames), "s", "How long one cycle takes."),
-            fact("cycle_frames", "Cycle", frames as f64, "frames", "The same in frames of A."),
-            fact("cycle_m", "Way of a cycle", step.shift.length(), "m", "How far one cycle goes."),
-            fact(
+            Metric::fact("cycle_s", "Cycle", secs(frames), "s", "How long one cycle takes."),
+            Metric::fact("cycle_frames", "Cycle", frames as f64, "frames", "The same in frames of A."),
+            Metric::fact("cycle_m", "Way of a cycle", step.shift.length(), "m", "How far one cycle goes."),
+            Metric::fact(
                 "cycle_turn_deg",
                 "Turn of a cycle",
                 step.yaw.to_degrees(),
@@ -162,12 +158,7 @@ impl LoopInputs {
         ]);
         Ok(Outcome {
             motion: Arc::new(played),
-            sources: vec![Source {
-                slot: Slot::A,
-                motion: Arc::clone(motion),
-                starts_at_secs: -secs(cut.cycle.start),
-                world_from_clip: Planar::IDENTITY,
-            }],
+            sources: vec![Source::new(Slot::A, motion, -secs(cut.cycle.start), Planar::IDENTITY)],
             transition: None,
             cycle: Some(Cycle {
                 secs: secs(frames),

@@ -1,10 +1,9 @@
 use super::Retargeted;
 use crate::blend;
-use crate::clip::{Clip, Contacts, Interpolation, resample, retarget};
+use crate::clip::{Interpolation, resample, retarget};
 use crate::metrics::Profile;
 use crate::session::motion::Motion;
-use crate::skeleton::{Retargeting, Roles};
-use crate::transition::{FootLockOptions, foot_lock};
+use crate::skeleton::Retargeting;
 use std::sync::Arc;
 
 /// Two clips made ready for each other.
@@ -81,13 +80,4 @@ impl Pairs {
         self.0 = Some(Arc::clone(&pair));
         Ok(pair)
     }
-}
-
-/// A result as it is, or with its planted feet held.
-pub(super) fn with_feet(free: &Arc<Clip>, roles: &Roles, contacts: &Contacts, locked: bool) -> Result<Arc<Clip>, String> {
-    if !locked {
-        return Ok(Arc::clone(free));
-    }
-    let locked = foot_lock(free, roles, contacts, &FootLockOptions::default());
-    Ok(Arc::new(locked.map_err(|error| error.to_string())?))
 }

@@ -9,15 +9,15 @@ pub(in crate::session) use pins::read_pins;
 pub use pins::write_pins;
 pub(in crate::session) use registrar::Registrar;
 
-use super::pair::{Pair, with_feet};
-use super::rounds::fact;
+use super::feet::{slide_before, with_feet};
+use super::pair::Pair;
 use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{
     self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
 };
 use crate::clip::{Clip, ContactOptions, Contacts};
 use crate::math::Planar;
-use crate::metrics::{Better, Metric, Subject, TransitionMetrics, foot_slides_cm};
+use crate::metrics::{Metric, Subject, TransitionMetrics, foot_slides_cm};
 use crate::registration::Registration;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -327,15 +327,9 @@ impl RegisterInputs {
             distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
         });
         let metrics = self.measured(&clip, &free, &beats, &mixed, distance_cm);
-        let source = |slot, motion: &Arc<Motion>, starts_at_secs, world_from_clip| Source {
-            slot,
-            motion: Arc::clone(motion),
-            starts_at_secs,
-            world_from_clip,
-        };
         let sources = vec![
-            source(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
-            source(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
+            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
         ];
         Ok(Outcome {
             registered: Some(Arc::new(Registered {
@@ -386,23 +380,15 @@ impl RegisterInputs {
         let [a, b] = &self.pair.profiles;
         let roles = &self.pair.a.roles;
         let slide = |clip: &Clip| self.slide_cm(clip, beats, mixed);
-        let lower = |id, label, value, unit, help| Metric {
-            id,
-            label,
-            value,
-            unit,
-            better: Better::Lower,
-            help,
-        };
         let mut metrics = vec![
-            lower(
+            Metric::lower(
                 "apart_cm",
                 "Distance",
                 distance_cm,
                 "cm",
                 "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
             ),
-            lower(
+            Metric::lower(
                 "skate_mean_cm",
                 "Foot slide",
                 slide(clip),
@@ -411,16 +397,7 @@ impl RegisterInputs {
             ),
         ];
         if self.foot_lock {
-            metrics.push(Metric {
-                value: slide(free),
-                ..fact(
-                    "skate_before_cm",
-                    "Foot slide before the lock",
-                    0.0,
-                    "cm",
-                    "The same without the foot lock.",
-                )
-            });
+            metrics.push(slide_before(slide(free)));
         }
         let handover = beats.iter().position(|beat| beat.weight_b > 0.5).unwrap_or(usize::MAX);
         let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);

@@ -1,10 +1,10 @@
 //! A cycle that is played several times: what the Speed and the Loop lab show.
 
+use super::feet::{slide, slide_before, with_feet};
 use crate::clip::{Clip, Contacts, character_frames};
-use crate::metrics::{Better, Metric, foot_slide_cm};
+use crate::metrics::Metric;
 use crate::session::motion::Motion;
 use crate::skeleton::{Roles, Side};
-use crate::transition::{FootLockOptions, foot_lock};
 use std::sync::Arc;
 
 /// Cycles follow each other until they fill this, seconds.
@@ -38,7 +38,7 @@ pub(super) fn rounds(
     if lock {
         let frames = clip.frames();
         let (longer, longer_contacts) = played(count + 2)?;
-        let locked = foot_lock(&longer, roles, &longer_contacts, &FootLockOptions::default()).map_err(|error| error.to_string())?;
+        let locked = with_feet(&Arc::new(longer), roles, &longer_contacts, true)?;
         let middle = locked
             .crop(cycle_frames..cycle_frames + frames)
             .map_err(|error| error.to_string())?;
@@ -48,17 +48,7 @@ pub(super) fn rounds(
         };
         clip = Arc::new(middle.transformed(&back));
         let before = slides[0].value;
-        slides = vec![
-            slide(&clip, roles, &contacts),
-            Metric {
-                id: "skate_before_cm",
-                label: "Foot slide before the lock",
-                value: before,
-                better: Better::Neutral,
-                help: "How far a planted foot slides in the worst stance without the foot lock.",
-                ..slides[0]
-            },
-        ];
+        slides = vec![slide(&clip, roles, &contacts), slide_before(before)];
     }
     Ok(Rounds {
         motion: Motion {
@@ -69,29 +59,6 @@ pub(super) fn rounds(
         },
         slides,
     })
-}
-
-fn slide(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Metric {
-    Metric {
-        id: "skate_cm",
-        label: "Foot slide",
-        value: foot_slide_cm(clip, roles, contacts),
-        unit: "cm",
-        better: Better::Lower,
-        help: "How far a planted foot slides in the worst stance.",
-    }
-}
-
-/// A number that only describes.
-pub(super) fn fact(id: &'static str, label: &'static str, value: f64, unit: &'static str, help: &'static str) -> Metric {
-    Metric {
-        id,
-        label,
-        value: Some(value),
-        unit,
-        better: Better::Neutral,
-        help,
-    }
 }
 
 /// The contacts of `frames` frames that go round in those of a part of a clip.

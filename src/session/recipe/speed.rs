@@ -1,10 +1,11 @@
 //! The Speed lab: two gaits at a speed.
 
 use super::pair::Pair;
-use super::rounds::{Rounds, fact, rounds};
+use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
 use crate::clip::ground_speed;
 use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
+use crate::metrics::Metric;
 use crate::session::params::{Key, Kind, Params};
 use std::sync::Arc;
 
@@ -117,16 +118,16 @@ impl SpeedInputs {
         let facts = one.facts;
         let measured = f64::from(ground_speed(&motion.ground_frames, fps));
         let mut metrics = vec![
-            fact(
+            Metric::fact(
                 "speed_mps",
                 "Speed",
                 measured,
                 "m/s",
                 "The way over the ground by its time, measured on the result.",
             ),
-            fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
-            fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
-            fact(
+            Metric::fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
+            Metric::fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
+            Metric::fact(
                 "weight_percent",
                 "Weight of B",
                 100.0 * facts.weight,
