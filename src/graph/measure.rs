@@ -296,7 +296,7 @@ impl WalkMeter {
                     .iter()
                     .map(|&(joint, point)| world.point(joint, point))
                     .collect();
-                let stands = profile.planted(shown(piece, frame), side);
+                let stands = profile.planted(piece.shown_at(frame), side);
                 let (feet, stance) = (&mut self.feet[side.index()], &mut self.stances[side.index()]);
                 if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
                     *slid += step;
@@ -447,20 +447,6 @@ impl<'a> Sources<'a> {
     /// How much that turn changes from the step before, radians.
     fn change(&self, joint: usize) -> f32 {
         self.most(|clip, frame| turn_change(clip, frame.checked_sub(1)?, joint))
-    }
-}
-
-/// The frame of a clip that has the greater part in a frame of a piece.
-fn shown(piece: &WalkPiece, frame: usize) -> Place {
-    match piece.seam.filter(|seam| frame < seam.handover) {
-        Some(seam) => Place {
-            frame: seam.leave.frame + frame,
-            ..seam.leave
-        },
-        None => Place {
-            clip: piece.stay.clip,
-            frame: piece.stay.from + frame,
-        },
     }
 }
 

@@ -61,7 +61,7 @@ pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
 pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{AllPairs, AllSweep, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
-pub use follow::{Followed, GroundPath, follow};
+pub use follow::{Followed, GroundPath, PathSearch, follow};
 pub use frames::{FrameSet, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use stitch::{PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 mod blend;
 mod feet;
+mod graph;
 mod kept;
 mod layers;
 mod looping;
@@ -19,6 +20,8 @@ mod speed;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, write_jump, write_path, write_visits};
+pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
@@ -147,6 +150,8 @@ pub struct Outcome {
     pub layer: Option<LayerFacts>,
     /// Which frames of A and B it is made of; `None` where they were not registered.
     pub registered: Option<Arc<Registered>>,
+    /// The walk that it is; `None` where it is none.
+    pub walk: Option<Arc<Walk>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -162,6 +167,7 @@ impl Outcome {
             retargeted: None,
             layer: None,
             registered: None,
+            walk: None,
             metrics: Vec::new(),
         }
     }

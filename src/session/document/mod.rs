@@ -1,6 +1,7 @@
 //! The document itself: what it holds, and what commands do to it.
 
 mod going_round;
+mod graphing;
 mod loading;
 mod panes;
 
@@ -16,7 +17,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
+use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -90,6 +91,7 @@ pub struct Session {
     cycles: CycleFinder,
     layerer: Layerer,
     registrar: Registrar,
+    grapher: Grapher,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -119,6 +121,7 @@ impl Session {
             cycles: CycleFinder::default(),
             layerer: Layerer::default(),
             registrar: Registrar::default(),
+            grapher: Grapher::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -325,6 +328,7 @@ impl Session {
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
+            Command::StopGraph(stop) => self.grapher.stop(stop),
             Command::Undo => {
                 if self.history.undo(&mut self.params, &mut self.library) {
                     self.library_revision += 1;
@@ -417,6 +421,9 @@ impl Session {
         self.params = params;
         if changed.contains(&Key::Src) {
             self.fetch_sources();
+        }
+        if changed.iter().any(|key| key.param().group.is_of_lab()) {
+            self.grapher.stop(false);
         }
         if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
             self.library_revision += 1;
@@ -514,6 +521,7 @@ impl Session {
         let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
         self.remember(None);
         self.library.remove(&entry.id);
+        self.leave_out_of_graph(&entry.id);
         self.library_revision += 1;
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
@@ -650,6 +658,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
 
 #[cfg(test)]
 mod going_round_tests;
+#[cfg(test)]
+mod graphing_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]

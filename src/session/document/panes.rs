@@ -8,8 +8,8 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs};
-use crate::session::recipe::{belongs_to, made_id, made_motion, preset_motion, recipe_name, recipe_params};
+use crate::session::recipe::{BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs};
+use crate::session::recipe::{belongs_to, clips_of, made_id, made_motion, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -64,7 +64,7 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, `registering`, or the file that is read.
+    /// What it is: `matching`, `registering`, `graphing`, or the file that is read.
     pub name: String,
     /// How much is done, 0 to 1.
     pub progress: f64,
@@ -82,6 +82,7 @@ pub(super) enum Inputs {
     Loop(LoopInputs),
     Layers(LayerInputs),
     Register(RegisterInputs),
+    Graph(GraphInputs),
 }
 
 impl PartialEq for Inputs {
@@ -94,6 +95,7 @@ impl PartialEq for Inputs {
             (Self::Loop(a), Self::Loop(b)) => a == b,
             (Self::Layers(a), Self::Layers(b)) => a == b,
             (Self::Register(a), Self::Register(b)) => a == b,
+            (Self::Graph(a), Self::Graph(b)) => a == b,
             _ => false,
         }
     }
@@ -111,7 +113,11 @@ impl Session {
         if self.registrar.work() {
             return true;
         }
-        if self.registrar.is_ready() {
+        let now_secs = self.params.number(Key::Time);
+        if self.grapher.work(now_secs) {
+            return true;
+        }
+        if self.registrar.is_ready() || self.grapher.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -148,14 +154,20 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
-        self.reading_jobs().chain(matching).chain(registering).collect()
+        let graphing = self.grapher.progress().map(|progress| Job {
+            task: None,
+            name: "graphing".into(),
+            progress,
+            size: None,
+        });
+        self.reading_jobs().chain(matching).chain(registering).chain(graphing).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
         match (self.params.text(Key::Lab), slot) {
-            ("make", _) => false,
+            ("make" | "graph", _) => false,
             (_, Slot::A) => true,
             (lab, Slot::B) => !matches!(lab, "view" | "loop"),
         }
@@ -246,6 +258,7 @@ impl Session {
         };
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrar.ask_anew();
+        self.grapher.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
@@ -254,6 +267,18 @@ impl Session {
             self.refresh_pane(&mut pane, &params, match_window);
             self.panes.push(pane);
         }
+    }
+
+    /// The clips of the graph, with what a person calls them.
+    fn graph_clips(&mut self, params: &Params) -> Result<Vec<(String, Arc<Motion>)>, String> {
+        let mut clips = Vec::new();
+        for id in clips_of(params.text(Key::Clips))? {
+            self.bring(&id);
+            let motion = self.motion_of(&id)?;
+            let name = self.library.find(&id).map_or(id, |entry| entry.name.clone());
+            clips.push((name, motion));
+        }
+        Ok(clips)
     }
 
     /// A and B, made ready for each other.
@@ -269,6 +294,10 @@ impl Session {
             "register" => {
                 let pair = self.pair_of(params)?;
                 return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
+            }
+            "graph" => {
+                let clips = self.graph_clips(params)?;
+                return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
             }
             "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
             "make" => Ok(Inputs::Make(made_id(params))),
@@ -298,6 +327,7 @@ impl Session {
                     Inputs::Loop(cycle) => cycle.run(),
                     Inputs::Layers(layers) => layers.run(),
                     Inputs::Register(register) => register.run(),
+                    Inputs::Graph(graph) => Ok(graph.run()),
                 };
                 match outcome {
                     Ok(outcome) => {

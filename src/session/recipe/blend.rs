@@ -353,6 +353,7 @@ impl BlendInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             registered: None,
+            walk: None,
             metrics,
         })
     }

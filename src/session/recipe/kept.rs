@@ -23,6 +23,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "loop" => group == Group::Loop || matches!(key, Key::HalfLife | Key::FootLock),
         "layers" => group == Group::Layers || key == Key::FootLock,
         "register" => group == Group::Register || key == Key::FootLock,
+        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed),
         _ => false,
     }
 }
@@ -30,8 +31,8 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
-        Key::A => true,
-        Key::B => lab != "loop",
+        Key::A => lab != "graph",
+        Key::B => !matches!(lab, "loop" | "graph"),
         // Looked at, and not made from.
         Key::MaskColors => false,
         _ => belongs_to(key, lab),
@@ -49,6 +50,11 @@ pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f6
         _ => {}
     }
     let mut params = params.clone();
+    if lab == "graph" {
+        // As long as it is by now, as far as a link can say it.
+        let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
+        params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
+    }
     for (key, value) in found(lab, outcome, fps) {
         if *params.get(key) == Value::Auto {
             params.set(key, Value::Number(value)).ok()?;
@@ -79,7 +85,12 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
         let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
-        let value = if key.param().kind == Kind::Clip && !value.ends_with(')') {
+        let is_written = match key.param().kind {
+            Kind::Clip => !value.ends_with(')'),
+            Kind::Text => true,
+            _ => false,
+        };
+        let value = if is_written {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
@@ -97,6 +108,7 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
         "loop" => format!("{a}, looped"),
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
+        "graph" => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
         _ => format!("{a} to {b}"),
     }
 }
@@ -124,7 +136,7 @@ fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
 /// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
-    if param.kind == Kind::Clip && recipe_params(&text).is_none() {
+    if param.kind == Kind::Text || (param.kind == Kind::Clip && recipe_params(&text).is_none()) {
         utf8_percent_encode(&text, RESERVED).to_string()
     } else {
         text
@@ -132,7 +144,7 @@ fn written(param: &Param, value: &Value) -> String {
 }
 
 /// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
-fn parts(list: &str) -> Option<Vec<&str>> {
+pub(super) fn parts(list: &str) -> Option<Vec<&str>> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
     for (at, letter) in list.char_indices() {
         match letter {

@@ -295,6 +295,7 @@ impl LayerInputs {
                 has_no_steps: timed.has_no_steps,
             }),
             registered: None,
+            walk: None,
             metrics,
         })
     }

@@ -171,6 +171,7 @@ impl LoopInputs {
             retargeted: None,
             layer: None,
             registered: None,
+            walk: None,
             metrics,
         })
     }

@@ -151,6 +151,7 @@ impl SpeedInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             registered: None,
+            walk: None,
             metrics,
         })
     }

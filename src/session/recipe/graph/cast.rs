@@ -1,0 +1,65 @@
+use crate::graph::{FrameSet, WalkProfile};
+use crate::session::motion::Motion;
+use crate::session::recipe::Retargeted;
+use crate::session::recipe::pair::source_of;
+use std::sync::Arc;
+
+/// The clips of a graph, on the skeleton and at the rate of the first.
+#[derive(Debug)]
+pub struct Cast {
+    names: Vec<String>,
+    motions: Vec<Arc<Motion>>,
+    retargeted: Vec<Option<Arc<Retargeted>>>,
+    set: Arc<FrameSet>,
+    profile: WalkProfile,
+}
+
+/// A clip that was made ready for the others, and how it came onto their skeleton.
+pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
+
+impl Cast {
+    pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, String> {
+        let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
+        let first = motions.first().ok_or("A motion graph needs a clip: add at least one.")?;
+        let height = f64::from(first.roles.body_height(first.clip.skeleton()));
+        let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
+        let set = Arc::new(FrameSet::new(sources, height).map_err(|error| super::wanted::sentence(&error))?);
+        let contacts = motions.iter().map(|motion| motion.contacts.clone()).collect();
+        let profile = WalkProfile::new(Arc::clone(&set), &first.roles, contacts);
+        Ok(Self {
+            names,
+            motions,
+            retargeted,
+            set,
+            profile,
+        })
+    }
+
+    /// What the clips are called.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The clips, made ready.
+    #[must_use]
+    pub fn motions(&self) -> &[Arc<Motion>] {
+        &self.motions
+    }
+
+    /// How a clip came onto the skeleton of the first; `None` where it is its own.
+    #[must_use]
+    pub fn retargeted(&self, clip: usize) -> Option<&Arc<Retargeted>> {
+        self.retargeted.get(clip)?.as_ref()
+    }
+
+    /// Their frames.
+    #[must_use]
+    pub fn set(&self) -> &Arc<FrameSet> {
+        &self.set
+    }
+
+    pub(super) fn profile(&self) -> &WalkProfile {
+        &self.profile
+    }
+}
