@@ -389,6 +389,7 @@ impl Segue {
             "make" => params.text(Key::Gait).to_owned(),
             "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
             "loop" => format!("{} loop", params.text(Key::A)),
+            "graph" => "walk".to_owned(),
             _ => params.text(Key::A).to_owned(),
         }
     }

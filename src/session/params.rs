@@ -351,14 +351,14 @@ parameters! {
     WarpSmoothing "warp_smoothing" "Smoothing" Register auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
     Pins "pins" "Pins" Register Kind::Text, Start::Word(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
 
-    Clips "clips" "Clips" Graph Kind::Text, Start::Word("walk,walk_left,walk_right,slow_walk,fast_walk,run,run_left,start,stop"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
+    Clips "clips" "Clips" Graph Kind::Text, Start::Word("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
     Construction "construction" "Construction" Graph Kind::Choice(CONSTRUCTIONS), Start::Word("minima"), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
     SegmentSize "segment_size" "Segment size" Graph number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
     EdgeThreshold "edge_threshold" "Edge threshold" Graph number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
     MinJump "min_jump" "Shortest jump" Graph number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
     EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EDGE_WEIGHTS), Start::Word("inverse"), "", "How the distance of a transition makes it more or less probable.";
     EdgeSigma "edge_sigma" "Width σ" Graph logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
-    Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.9), "", "The chance to stay in the clip wherever one could leave it.";
+    Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
     VisitedDiscount "visited_discount" "Worth after a visit" Graph number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
     Prune "prune" "Largest component only" Graph Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
     WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WALK_METHODS), Start::Word("dissolve"), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";

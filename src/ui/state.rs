@@ -1,6 +1,7 @@
 //! What the interface remembers that is nobody else's business.
 
-use eframe::egui::Rect;
+use eframe::egui::{Pos2, Rect};
+use segue::graph::Place;
 use segue::session::export::ExportOptions;
 
 /// How much room there is.
@@ -70,6 +71,16 @@ pub(crate) struct UiState {
     pub(crate) joints_open: bool,
     /// The pair of frames of A and B, at A's rate, that the pointer is at on the map of distances.
     pub(crate) hovered_pair: Option<[f64; 2]>,
+    /// The transition that the pointer is at, on the map of distances or on an arc.
+    pub(crate) hovered_jump: Option<[Place; 2]>,
+    /// Likewise in the frame before.
+    pub(crate) last_jump: Option<[Place; 2]>,
+    /// The line that is drawn on the ground, on the screen: points; none while nobody draws.
+    pub(crate) drawing: Option<Vec<Pos2>>,
+    /// Where the walk was when a single transition was opened, seconds.
+    pub(crate) walk_secs: f64,
+    /// How much room there is.
+    pub(crate) layout: Layout,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -96,6 +107,11 @@ impl Default for UiState {
             details: None,
             joints_open: false,
             hovered_pair: None,
+            hovered_jump: None,
+            last_jump: None,
+            drawing: None,
+            walk_secs: 0.0,
+            layout: Layout::Desk,
             export: ExportOptions::default(),
             saved_pane: 0,
             filming: Filming::default(),

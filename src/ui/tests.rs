@@ -612,3 +612,23 @@ fn every_mistake_has_its_sentence() {
         assert_eq!(text::mistake(mistake.key).is_empty(), mistake.key == "none", "{}", mistake.key);
     }
 }
+
+#[test]
+fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
+    for (name, size, theme, link) in [
+        ("graph-desk-dark", DESK, DARK, "lab=graph&play=off&t=12"),
+        ("graph-desk-light", DESK, LIGHT, "lab=graph&play=off&t=12"),
+        ("graph-compare", DESK, DARK, "lab=graph&play=off&t=12&compare=blend_window:30,15,10"),
+        ("graph-phone-dark", PHONE, DARK, "lab=graph&play=off&t=12"),
+        ("graph-tablet", vec2(900.0, 700.0), LIGHT, "lab=graph&play=off&t=12"),
+        ("graph-projector", vec2(1280.0, 720.0), HALL, "lab=graph&play=off&t=12"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label(text::ALL_DISTANCES);
+        harness.get_by_label(text::GRAPH_STRIP);
+        picture(name, &mut harness);
+        harness.get_by_label(text::EXPERIMENTS).scroll_to_me();
+        harness.run();
+        picture(&format!("{name}-down"), &mut harness);
+    }
+}

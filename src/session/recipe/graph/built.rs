@@ -55,6 +55,8 @@ pub struct Built {
     component: Vec<usize>,
     /// The shares of all frames of the components that one can walk in, largest first.
     rings: Vec<f64>,
+    /// Their components, in the same order.
+    ring_components: Vec<usize>,
     dead_ends: usize,
 }
 
@@ -63,7 +65,7 @@ impl Built {
         let whole = Arc::new(MotionGraph::new(cast.set(), candidates, &key.options)?);
         let graph = if key.pruned { Arc::new(whole.pruned()?) } else { Arc::clone(&whole) };
         let mut component = vec![0; whole.graph().node_count()];
-        let mut rings = Vec::new();
+        let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
         let all = cast.set().frames().max(1) as f64;
         for (index, nodes) in whole.components().iter().enumerate() {
             for node in nodes {
@@ -76,6 +78,7 @@ impl Built {
                 next.any(|next| nodes.binary_search(&next).is_ok())
             };
             if nodes.iter().any(inside) {
+                ring_components.push(index);
                 let stretches = nodes.iter().filter_map(|&node| whole.graph().node_weight(node));
                 rings.push(stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64 / all);
             }
@@ -88,6 +91,7 @@ impl Built {
             graph,
             component,
             rings,
+            ring_components,
         })
     }
 
@@ -121,10 +125,11 @@ impl Built {
         &self.graph
     }
 
-    /// The component of a node of the whole graph, the largest is 0.
+    /// In which of [`Self::rings`] a node of the whole graph lies; `None` outside of them.
     #[must_use]
-    pub fn component(&self, node: usize) -> Option<usize> {
-        self.component.get(node).copied()
+    pub fn ring_of(&self, node: usize) -> Option<usize> {
+        let component = self.component.get(node)?;
+        self.ring_components.iter().position(|ring| ring == component)
     }
 
     /// The shares of all frames of the components that one can walk in for ever, largest first.
