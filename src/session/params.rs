@@ -268,9 +268,9 @@ const ENDS: &[Choice] = &[choice("free", "free"), choice("corner", "corner")];
 const CONSTRUCTIONS: &[Choice] = &[choice("segments", "segments"), choice("minima", "local minima")];
 const EDGE_WEIGHTS: &[Choice] = &[
     choice("inverse", "1 / d"),
-    choice("exponential", "e^(−d/σ)"),
+    choice("exponential", "exp(−d)"),
     choice("uniform", "uniform"),
-    choice("proportional", "∝ d, wrong"),
+    choice("proportional", "d, wrong"),
 ];
 const WALK_METHODS: &[Choice] = &[choice("dissolve", "dissolve"), choice("inertialize", "inertialize")];
 const TRANSFORMS: &[Choice] = &[choice("whole", "whole clip"), choice("first", "first frame only")];

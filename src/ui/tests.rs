@@ -627,7 +627,7 @@ fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
         harness.get_by_label(text::ALL_DISTANCES);
         harness.get_by_label(text::GRAPH_STRIP);
         picture(name, &mut harness);
-        harness.get_by_label(text::EXPERIMENTS).scroll_to_me();
+        harness.get_by_label("First frame only").scroll_to_me();
         harness.run();
         picture(&format!("{name}-down"), &mut harness);
     }

@@ -419,18 +419,18 @@ pub(crate) struct Experiment {
 /// The experiments of the course, each on the same seed.
 pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     Experiment {
-        name: "Blend window",
-        help: "Full, half, third: a long one drags, a short one bursts.",
+        name: "Windows: full, half, third",
+        help: "A long one drags, a short one bursts.",
         query: "construction=minima&blend_window=30&compare=blend_window:30,15,10",
     },
     Experiment {
-        name: "Segment size",
-        help: "Full, half, third: long segments repeat little, short ones never come to rest.",
+        name: "Segments: full, half, third",
+        help: "Long segments repeat little, short ones never come to rest.",
         query: "construction=segments&blend_window=15&segment_size=60&compare=segment_size:60,30,20",
     },
     Experiment {
-        name: "Keep going",
-        help: "Low, middle, high: how long a clip is left unbroken.",
+        name: "Continuity: low, middle, high",
+        help: "How long a clip is left unbroken.",
         query: "compare=continuity:0.3,0.8,0.98",
     },
     Experiment {
