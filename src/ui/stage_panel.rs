@@ -248,6 +248,8 @@ fn written(metric: &segue::metrics::Metric) -> String {
         "s" | "m" | "m/s" => 2,
         "cm" => 1,
         "%" | "frames" => 0,
+        // What is counted.
+        "" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };

@@ -380,8 +380,6 @@ pub(crate) const GRAPH_STRIP: &str = "The graph: clips and transitions";
 pub(crate) const EXPERIMENTS: &str = "Experiments";
 /// Chooses a clip to go to.
 pub(crate) const GO_TO_CLIP: &str = "Go to a clip from here";
-/// Nothing chosen.
-pub(crate) const NOWHERE: &str = "by chance";
 /// Takes that back.
 pub(crate) const FORGET_VISITS: &str = "By chance again";
 /// Draws a line to follow.
@@ -406,8 +404,6 @@ pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
 pub(crate) const BUILD_TIME: &str = "Build time";
 /// A mark of the walk.
 pub(crate) const SEAM: &str = "Into another clip";
-/// The track of the walk.
-pub(crate) const WALK_TRACK: &str = "walk";
 
 /// What is opened by a click: its name, what it does, and the values that it sets.
 pub(crate) struct Experiment {

@@ -575,6 +575,9 @@ impl Session {
         let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
         let params = self.params_of(pane);
         let outcome = pane.outcome.clone().ok_or(nothing)?;
+        if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
+            return Err(CommandError::NotPossible("this walk goes like the one in the first pane: open it alone to keep it"));
+        }
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
             motion.map_or(1.0, |motion| motion.clip.fps())

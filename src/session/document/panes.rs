@@ -226,6 +226,7 @@ impl Session {
             self.bring(&reference);
         }
         let mut pane = Pane::default();
+        self.grapher.guide_by(None);
         self.refresh_pane(&mut pane, params, widest_window(params, None));
         match (pane.outcome, pane.problem) {
             (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
@@ -260,11 +261,15 @@ impl Session {
         self.registrar.ask_anew();
         self.grapher.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
+        self.grapher.guide_by(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
             let params = self.params_of(&pane);
             self.refresh_pane(&mut pane, &params, match_window);
+            if self.panes.is_empty() {
+                self.grapher.guide_by(Some(&params));
+            }
             self.panes.push(pane);
         }
     }

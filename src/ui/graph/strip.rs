@@ -2,7 +2,7 @@
 
 use super::map::Drawn;
 use super::{jump_words, named, open_jump, rows};
-use crate::ui::kit::{self, Moment, Part, Strip, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent, Transport, TransportEvent};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -57,20 +57,10 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     if seams.len() > MOST_SEAMS {
         seams.clear();
     }
-    let track = Track {
-        part: Part::Result,
-        label: text::WALK_TRACK,
-        name: "",
-        start: 0.0,
-        end: walk.motion.clip.duration_secs(),
-        fade_in: 0.0,
-        fade_out: 0.0,
-    };
     let timeline = Timeline {
         duration: session.duration_secs(),
         now: session.now_secs(),
         fps,
-        tracks: &[track],
         in_point: session.params().optional(Key::In),
         out_point: session.params().optional(Key::Out),
         moments: &seams,

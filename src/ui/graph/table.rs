@@ -114,6 +114,7 @@ pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = Table::of(session);
     let small = |words: &str, color| RichText::new(words).font(theme.font(Type::Small)).color(color);
+    ui.spacing_mut().interact_size.y = 0.0;
     let grid = Grid::new("numbers").num_columns(table.panes.len() + 1).spacing([space::M, 2.0]);
     grid.show(ui, |ui| {
         ui.label("");
@@ -135,6 +136,7 @@ pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             ui.end_row();
         }
     });
+    ui.add_space(space::XS);
     ui.horizontal(|ui| {
         for (label, copied) in [(text::COPY_MARKDOWN, Table::markdown as fn(&Table) -> String), (text::COPY_CSV, Table::csv)] {
             if kit::button_ui(Button::new(label), ui).clicked() {

@@ -157,7 +157,8 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         let nearest = marks.map(|(index, mark)| (index, off(mark))).min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
     });
-    let radius_of_mark = (3.2 * theme.scale() * (size / side / window.cells).powf(0.25)).min(6.0);
+    // Small where there are many, larger the nearer one comes.
+    let radius_of_mark = ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4)).min(6.5);
     for (index, mark) in matrix.marks.iter().take(MOST_MARKS).enumerate().rev() {
         let at = place(mark.at[0] + 0.5, mark.at[1] + 0.5);
         if !field.expand(4.0).contains(at) {
@@ -169,7 +170,7 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         } else if Some(index) == hovered {
             (radius_of_mark + 2.0, Stroke::new(2.0, palette.text))
         } else {
-            (radius_of_mark, Stroke::new(1.1, color))
+            (radius_of_mark, Stroke::new(1.0, color))
         };
         painter.circle_stroke(at, radius, stroke);
     }

@@ -133,8 +133,8 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     };
     for &index in &shown {
         let arc = &strip.arcs[index];
-        let clear = if arc.faint { 0.16 } else { 0.30 + 0.45 * arc.weight };
-        draw(index, Stroke::new((0.6 + 2.4 * arc.weight) * scale, palette.muted.gamma_multiply(clear)));
+        let clear = if arc.faint { 0.10 } else { 0.16 + 0.7 * arc.weight.sqrt() };
+        draw(index, Stroke::new((0.7 + 2.6 * arc.weight) * scale, palette.muted.gamma_multiply(clear)));
     }
     for (index, color) in [(hovered_arc, palette.text), (strip.lit_arc, palette.accent)] {
         if let Some(index) = index.filter(|&index| index < strip.arcs.len()) {

@@ -40,6 +40,8 @@ pub(in crate::session) struct Grapher {
     /// There is something new to show.
     is_ready: bool,
     stopped: bool,
+    /// The parameters of the walk that the others go like.
+    guide: Option<Params>,
     /// Seconds of work, by what it was for.
     took: Vec<(GraphKey, f64)>,
     worked_for: Option<GraphKey>,
@@ -59,10 +61,15 @@ impl Grapher {
         self.is_ready = false;
     }
 
+    /// Walks that are asked for from now on go like the one of these parameters, where their graphs allow it.
+    pub(in crate::session) fn guide_by(&mut self, params: Option<&Params>) {
+        self.guide = params.cloned();
+    }
+
     /// A walk as far as it is made; `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
     pub(in crate::session) fn inputs(&mut self, clips: Vec<(String, Arc<Motion>)>, params: &Params) -> Result<Option<GraphInputs>, String> {
         self.meet(clips);
-        let wanted = Wanted::of(params, self.clips.len())?;
+        let wanted = Wanted::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.makers.iter().find(|(known, _)| *known == wanted);
         let found = match (known, &self.cast) {
             (_, Some(Err(problem))) | (Some((_, Err(problem))), _) => Err(problem.clone()),
@@ -144,8 +151,12 @@ impl Grapher {
         self.is_ready
     }
 
+    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, String>> {
+        self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
+    }
+
     fn next(&self) -> Option<&Wanted> {
-        let maker = |wanted: &Wanted| self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker);
+        let maker = |wanted: &Wanted| self.maker(wanted);
         let short = |wanted: &&Wanted| match maker(wanted) {
             Some(Ok(maker)) => maker.is_short(self.now_secs),
             Some(Err(_)) => false,
@@ -168,6 +179,7 @@ impl Grapher {
             // That a walk gets longer is nothing to wait for.
             Some((_, Ok(maker))) if maker.walk().is_some() => return None,
             Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
+            _ if self.known(wanted.graph).is_some() => return Some(0.85),
             _ => {}
         }
         let fitted = self.fitted.len() as f64 / self.clips.len().max(1) as f64;
@@ -198,6 +210,7 @@ impl Grapher {
         if !same {
             *self = Self {
                 clips,
+                guide: self.guide.take(),
                 ..Self::default()
             };
         }
@@ -205,11 +218,19 @@ impl Grapher {
 
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
+        if let Some(guide) = &wanted.guide
+            && let Some(Ok(maker)) = self.maker(guide)
+            && maker.is_short(self.now_secs)
+        {
+            return self.step(guide);
+        }
         if let Some(at) = self.makers.iter().position(|(known, _)| known == wanted) {
+            let guide = wanted.guide.as_ref().and_then(|guide| self.maker(guide)?.as_ref().ok()?.walk());
+            let guide = guide.map(|walk| (Arc::clone(&walk.passed), guide_window(wanted)));
             let entry = self.makers.remove(at);
             self.makers.push(entry);
             if let Some((_, Ok(maker))) = self.makers.last_mut() {
-                self.is_ready |= maker.step(self.now_secs)?;
+                self.is_ready |= maker.step(self.now_secs, guide)?;
             }
             return Ok(());
         }
@@ -314,4 +335,9 @@ impl Grapher {
         }
         self.makers.push((wanted.clone(), maker));
     }
+}
+
+/// The blend window of the walk that another goes like.
+fn guide_window(wanted: &Wanted) -> usize {
+    wanted.guide.as_ref().map_or(0, |guide| guide.graph.options.blend_window)
 }

@@ -8,7 +8,8 @@ use crate::graph::{
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
 use crate::skeleton::Side;
-use petgraph::graph::NodeIndex;
+use petgraph::graph::{EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
 use std::sync::Arc;
 
 /// A walk is made so far ahead of the playhead, seconds.
@@ -19,8 +20,15 @@ const LONGEST_SECS: f64 = 1_800.0;
 const AROUND_JUMP_SECS: f64 = 1.2;
 /// Nodes that a search for a ground path looks at in all.
 const PATH_BUDGET: usize = 60_000;
+/// How far from another walk's transition one counts as the same, seconds at each end.
+const GUIDE_SECS: f64 = 0.3;
+/// Stays of that walk among which it is looked for.
+const GUIDE_STAYS: usize = 12;
 /// Edges that one slice goes over for the expected run.
 const RUN_EDGES: usize = 200_000;
+
+/// The stays of a walk that another goes like, and its blend window.
+pub(super) type Guide = (Arc<Vec<Passed>>, usize);
 
 /// Makes a walk, stay by stay.
 #[derive(Debug)]
@@ -41,6 +49,8 @@ pub(super) struct Maker {
     planted: [Vec<bool>; 2],
     frames: usize,
     visited: usize,
+    /// Which stay of the walk that this one goes like plays now.
+    guided: usize,
     ends: bool,
     /// How long it is to be next.
     goal: usize,
@@ -71,6 +81,7 @@ impl Maker {
             planted: Default::default(),
             frames: 0,
             visited: 0,
+            guided: 0,
             ends: false,
             goal: 0,
             walk: None,
@@ -102,8 +113,8 @@ impl Maker {
         0.4 * searched + 0.6 * (self.frames as f64 / self.goal.max(1) as f64).min(1.0)
     }
 
-    /// One slice. `true` when there is a new walk to give out.
-    pub(super) fn step(&mut self, now_secs: f64) -> Result<bool, String> {
+    /// One slice. `true` when there is a new walk to give out. `guide` is what the walk that this one goes like is made of, and its blend window.
+    pub(super) fn step(&mut self, now_secs: f64, guide: Option<Guide>) -> Result<bool, String> {
         let told = |error: GraphError| sentence(&error);
         if let Some([leave, enter]) = self.wanted.jump {
             self.walk = Some(Arc::new(self.jump(leave, enter)?));
@@ -124,6 +135,9 @@ impl Maker {
             self.goal = self.next_goal(now_secs);
         }
         if self.frames < self.goal && !self.ends {
+            if let Some((passed, window)) = guide {
+                self.go_like(&passed, window);
+            }
             self.stay().map_err(told)?;
         }
         if self.frames < self.goal && !self.ends {
@@ -159,6 +173,55 @@ impl Maker {
         });
         self.walker.take(found.edges);
         self.stitcher.start_at(found.world_from_first);
+    }
+
+    /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
+    /// same clip.
+    fn go_like(&mut self, passed: &[Passed], window: usize) {
+        let graph = Arc::clone(self.built.graph());
+        let Some(here) = graph.graph().node_weight(self.walker.node()).copied() else {
+            return;
+        };
+        let middle = |place: Place, window: usize| place.frame + window / 2;
+        let is_ahead = |pair: &[Passed]| {
+            let seam = pair[1].seam.filter(|seam| seam.leave.clip == here.clip);
+            seam.is_some_and(|seam| middle(seam.leave, window) > here.start)
+        };
+        let next = passed.get(self.guided..).unwrap_or_default().windows(2).take(GUIDE_STAYS).position(is_ahead);
+        let Some(skipped) = next else { return };
+        let Some(wanted) = passed.get(self.guided + skipped + 1).and_then(|passed| passed.seam) else {
+            return;
+        };
+        let near = (GUIDE_SECS * self.fps()).round() as usize;
+        let mut on = Vec::new();
+        let mut best: Option<(usize, Vec<EdgeIndex>)> = None;
+        let mut node = self.walker.node();
+        loop {
+            let mut onward = None;
+            for edge in graph.graph().edges(node) {
+                let Some(jump) = graph.jump(edge.id()) else {
+                    onward = Some((edge.id(), edge.target()));
+                    continue;
+                };
+                let apart = |a: Place, b: Place| (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)));
+                let off = apart(jump.leave, wanted.leave).zip(apart(jump.enter, wanted.enter));
+                let Some((leave, enter)) = off.filter(|off| off.0 <= near && off.1 <= near) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|(least, _)| leave + enter < *least) {
+                    let mut way: Vec<EdgeIndex> = on.clone();
+                    way.push(edge.id());
+                    best = Some((leave + enter, way));
+                }
+            }
+            let Some((edge, target)) = onward else { break };
+            on.push(edge);
+            node = target;
+        }
+        if let Some((_, way)) = best {
+            self.walker.take(way);
+            self.guided += skipped + 1;
+        }
     }
 
     /// One stay more.
@@ -259,6 +322,7 @@ impl Maker {
             ends: self.ends && frames == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),
+            is_guided: self.wanted.guide.is_some(),
         })
     }
 

@@ -65,6 +65,8 @@ pub struct Walk {
     pub ends: bool,
     /// It is one transition, between a part of one clip and a part of another.
     pub is_jump: bool,
+    /// It goes like the walk of another pane, where it can.
+    pub is_guided: bool,
     /// The line that it follows, and how well: root of the mean square, and how far it came, metres.
     pub followed: Option<Trace>,
 }

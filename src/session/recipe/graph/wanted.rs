@@ -25,6 +25,8 @@ pub(super) struct Wanted {
     pub(super) path: Vec<DVec2>,
     /// One transition in place of a walk.
     pub(super) jump: Option<[Place; 2]>,
+    /// The walk through another graph that this one goes like, where it can.
+    pub(super) guide: Option<Box<Self>>,
 }
 
 /// What a graph depends on, besides the clips.
@@ -88,7 +90,16 @@ impl Wanted {
             visits,
             path: read_path(params.text(Key::WalkPath))?,
             jump: read_jump(params.text(Key::Jump))?,
+            guide: None,
         })
+    }
+
+    /// Likewise, like the walk of other parameters if it goes through another graph.
+    pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
+        let wanted = Self::of(params, clips)?;
+        let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
+        let guide = guide.filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none()).map(Box::new);
+        Ok(Self { guide, ..wanted })
     }
 }
 
