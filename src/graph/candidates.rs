@@ -6,6 +6,9 @@ use std::sync::Arc;
 /// More are not held: of these many the closest are kept.
 const MOST_CANDIDATES: usize = 400_000;
 
+/// To align what was found takes as long as to look at so many cells.
+const CELLS_PER_FOUND: usize = 100;
+
 /// A frame in which a joint's turning changes so many times as much as in all but one in a hundred frames is not left or entered.
 const MOST_JOLT: f32 = 4.0;
 
@@ -92,7 +95,9 @@ impl CandidateSearch {
         }
         let clips = set.clips().len();
         let pairs = (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b)));
-        let cells = pairs.filter_map(|(a, b)| distances.block(a, b)).map(|block| block.size().0 * block.size().1);
+        let cells = pairs
+            .filter_map(|(a, b)| distances.block(a, b))
+            .map(|block| block.size().0 * block.size().1);
         Ok(Self {
             picker: Picker::new(Arc::clone(set), *options),
             next: (0, 0, 0),
@@ -101,7 +106,7 @@ impl CandidateSearch {
         })
     }
 
-    /// Looks at about `cells` more cells of the matrix, at least one row of a pair of clips, and says how many are done. All that is between two
+    /// Looks at about `cells` more cells of the matrix (less where much is found), at least one row of a pair of clips, and says how many are done. All that is between two
     /// clips is looked at in one slice if the construction is by segments: that is little.
     ///
     /// # Errors
@@ -112,7 +117,9 @@ impl CandidateSearch {
         let align = |leave, enter| all.alignment(leave, enter, window).map(|found| found.transform);
         let place = |clip, frame| Place { clip, frame };
         let until = self.done.saturating_add(cells.max(1));
-        while self.next.0 < clips && self.done < until {
+        let found = self.picker.found.len();
+        let work = |search: &Self| search.done + CELLS_PER_FOUND * search.picker.found.len().saturating_sub(found);
+        while self.next.0 < clips && work(self) < until {
             let (a, b, row) = self.next;
             let Some(block) = distances.block(a, b) else {
                 self.next = following(a, b, clips);
@@ -144,7 +151,11 @@ impl CandidateSearch {
             self.done += columns;
             self.next.2 += 1;
         }
-        let done = if self.next.0 < clips { self.done.min(self.total.saturating_sub(1)) } else { self.total };
+        let done = if self.next.0 < clips {
+            self.done.min(self.total.saturating_sub(1))
+        } else {
+            self.total
+        };
         Ok(Progress { done, total: self.total })
     }
 

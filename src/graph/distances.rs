@@ -403,21 +403,34 @@ impl FrameDistances {
     #[must_use]
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
-        let last = counts.len() - 1;
+        for block in 0..self.blocks.len() {
+            self.count(block, bin_cm, &mut counts);
+        }
+        counts
+    }
+
+    /// How many pairs of clips there are, a clip with itself included.
+    #[must_use]
+    pub fn pairs_of_clips(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// [`Self::histogram`] of one pair of clips, added to what is counted already.
+    pub fn count(&self, pair: usize, bin_cm: f64, counts: &mut [u32]) {
+        let (Some(block), Some(last)) = (self.blocks.get(pair), counts.len().checked_sub(1)) else {
+            return;
+        };
         let scale = if bin_cm > 0.0 {
             (self.set.cm_per_m() / bin_cm) as f32
         } else {
             f32::MAX
         };
-        for block in &self.blocks {
-            for row in 0..block.size().0 {
-                let (_, distances) = block.row(row);
-                let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
-                for &distance in distances.get(itself..).unwrap_or_default() {
-                    counts[((distance * scale) as usize).min(last)] += 1;
-                }
+        for row in 0..block.size().0 {
+            let (_, distances) = block.row(row);
+            let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
+            for &distance in distances.get(itself..).unwrap_or_default() {
+                counts[((distance * scale) as usize).min(last)] += 1;
             }
         }
-        counts
     }
 }

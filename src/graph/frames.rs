@@ -1,7 +1,7 @@
 use super::GraphError;
 use crate::blend::{Source, check};
-use crate::registration::{DistanceMatrix, limb_weights};
 use crate::clip::jolts;
+use crate::registration::{DistanceMatrix, limb_weights};
 use std::sync::{Arc, OnceLock};
 
 /// A frame of one of the clips.

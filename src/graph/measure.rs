@@ -39,10 +39,33 @@ impl WalkProfile {
     /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames × joints).
     #[must_use]
     pub fn new(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
-        let joints = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
+        let mut profile = Self::begun(set, roles, contacts);
+        while !profile.advance(usize::MAX) {}
+        profile
+    }
+
+    /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is complete.
+    #[must_use]
+    pub fn begun(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
+        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
+        Self {
+            step: stats::percentile(&steps, 0.999).unwrap_or(0.0),
+            set,
+            roles: roles.clone(),
+            contacts,
+            turns: Vec::new(),
+            changes: Vec::new(),
+        }
+    }
+
+    /// Measures up to so many more joints; `true` when all are measured.
+    pub fn advance(&mut self, joints: usize) -> bool {
+        let set = &self.set;
+        let all = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
         let percentile = |values: &[f32], p: f32| stats::percentile(values, p).unwrap_or(0.0);
-        let (mut turns, mut changes) = (Vec::new(), Vec::new());
-        for joint in 0..joints {
+        let (turns, changes) = (&mut self.turns, &mut self.changes);
+        for joint in turns.len()..turns.len().saturating_add(joints).min(all) {
             let (mut turned, mut changed) = (Vec::new(), Vec::new());
             for source in set.clips() {
                 let clip = source.clip();
@@ -57,16 +80,7 @@ impl WalkProfile {
             turns.push([percentile(&turned, 0.99), percentile(&turned, 0.999)]);
             changes.push(percentile(&changed, 0.99));
         }
-        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
-        let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
-        Self {
-            step: percentile(&steps, 0.999),
-            set,
-            roles: roles.clone(),
-            contacts,
-            turns,
-            changes,
-        }
+        turns.len() == all
     }
 
     fn planted(&self, place: Place, side: Side) -> bool {
@@ -286,8 +300,13 @@ impl WalkMeter {
             let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
             let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
             let sources = Sources::of(piece, frame, &profile.set);
-            self.walked
-                .step(self.before.as_ref(), (&standing, rotations, root), &mut self.turned, profile, &sources);
+            self.walked.step(
+                self.before.as_ref(),
+                (&standing, rotations, root),
+                &mut self.turned,
+                profile,
+                &sources,
+            );
             self.before = Some((standing, rotations.to_vec(), root));
             piece.clip.world_pose_into(frame, &mut world);
             let number = self.walked.steps.len() - 1;
@@ -302,7 +321,9 @@ impl WalkMeter {
                     *slid += step;
                     *most = most.max(slid.length());
                 } else {
-                    self.walked.stances.extend(stance.take().map(|(first, most, _)| (first, number, most)));
+                    self.walked
+                        .stances
+                        .extend(stance.take().map(|(first, most, _)| (first, number, most)));
                     *stance = stands.then_some((number, 0.0, Vec3::ZERO));
                 }
                 *feet = now;

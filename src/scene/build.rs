@@ -474,7 +474,10 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
 /// The line that a walk follows.
 fn add_drawn_path(session: &Session, colors: &Colors, pane: &mut Pane) {
     if session.params().text(Key::Lab) == "graph" {
-        let points = session.graph_path().into_iter().map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
+        let points = session
+            .graph_path()
+            .into_iter()
+            .map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
         pane.add_dashed_path(points, colors.b, 0.12, 2.5, Layer::Ground);
     }
 }

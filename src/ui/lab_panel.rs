@@ -3,8 +3,8 @@
 use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::cycle_panels::{loop_ui, speed_ui};
-use super::kit::{self, Button, Icon};
 use super::graph::graph_ui;
+use super::kit::{self, Button, Icon};
 use super::layers_rows::layers_ui;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};

@@ -368,7 +368,8 @@ pub(crate) const WALK: &str = "Walk";
 /// The picture of the distances.
 pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.
-pub(crate) const MATRIX_HELP: &str = "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
+pub(crate) const MATRIX_HELP: &str =
+    "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
 /// Where the clips are too long for a picture.
 pub(crate) const NO_MATRIX: &str =
     "So many frames are compared without holding all distances: there is no picture of them, only the transitions that were found.";
@@ -443,7 +444,13 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
 
 /// What there is of a graph.
 pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {
-    let jumps = |count: usize| if count == 1 { "1 transition".to_owned() } else { format!("{count} transitions") };
+    let jumps = |count: usize| {
+        if count == 1 {
+            "1 transition".to_owned()
+        } else {
+            format!("{count} transitions")
+        }
+    };
     let dead = match built.dead_ends() {
         0 => "no dead end".to_owned(),
         1 => "1 dead end".to_owned(),

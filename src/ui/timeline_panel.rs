@@ -101,7 +101,8 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     let names = match &outcome.walk {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
-            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned()).unwrap_or_default()
+            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned())
+                .unwrap_or_default()
         }),
         None => names,
     };

@@ -61,7 +61,11 @@ fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
         assert_eq!(at.place.frame, passed.stay.from + frame - passed.start);
     }
     // Behind a transition and before the next, the walk is the clip, laid somewhere else.
-    let calm = walk.passed.iter().find(|passed| passed.end > passed.start + 60 && passed.seam.is_some()).unwrap();
+    let calm = walk
+        .passed
+        .iter()
+        .find(|passed| passed.end > passed.start + 60 && passed.seam.is_some())
+        .unwrap();
     let clip = &walk.built.cast().motions()[calm.stay.clip].clip;
     let (frame, place) = (calm.start + 45, calm.stay.from + 45);
     for joint in 1..clip.skeleton().len() {
@@ -84,12 +88,19 @@ fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
         assert!(session.jobs().is_empty(), "that it gets longer is nothing to wait for");
     }
     let now = walk(&session);
-    assert!((session.now_secs() - 30.0).abs() < 0.1, "it never came round: {}", session.now_secs());
+    assert!(
+        (session.now_secs() - 30.0).abs() < 0.1,
+        "it never came round: {}",
+        session.now_secs()
+    );
     assert!(now.motion.clip.duration_secs() > 49.0 && now.motion.clip.frames() > first.motion.clip.frames());
     assert_eq!(way(now)[..way(&first).len() - 1], way(&first)[..way(&first).len() - 1]);
     let frames = first.motion.clip.frames();
     assert_eq!(now.motion.ground_frames[..frames], first.motion.ground_frames[..frames]);
-    assert_eq!(["spins", "walk_lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec(), numbers);
+    assert_eq!(
+        ["spins", "walk_lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec(),
+        numbers
+    );
     // A link to a time beyond what is measured shows that time.
     let later = opened(&format!("{SMALL}&play=off&t=61"));
     assert!(later.now_secs() == 61.0 && walk(&later).motion.clip.duration_secs() > 80.0);
@@ -116,7 +127,10 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
     let for_seed = slices(&mut session, Key::Seed, 8.0);
     let for_threshold = slices(&mut session, Key::EdgeThreshold, 9.0);
     let for_window = slices(&mut session, Key::BlendWindow, 25.0);
-    assert!(for_seed > 5 && for_threshold > for_seed / 2 && for_window > 5, "{for_seed} {for_threshold} {for_window}");
+    assert!(
+        for_seed > 5 && for_threshold > for_seed / 2 && for_window > 5,
+        "{for_seed} {for_threshold} {for_window}"
+    );
     // A window that was there before is there at once, but for the walk.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
     assert_eq!(session.graph_field().unwrap().distances().window(), 30);
@@ -184,7 +198,12 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
         let now = walk(&session);
         let reached = (60..140).any(|k| now.at(f64::from(k) * 0.1).unwrap().place.clip == clip);
         assert!(reached, "clip {clip}: {:?}", way(now));
-        let same = before.motion.ground_frames.iter().zip(&now.motion.ground_frames).take_while(|(a, b)| a == b);
+        let same = before
+            .motion
+            .ground_frames
+            .iter()
+            .zip(&now.motion.ground_frames)
+            .take_while(|(a, b)| a == b);
         assert!(same.count() >= 5 * 60, "what has played stays");
     }
     set(&mut session, Key::GoTo, Value::Text("6:9".into()));
@@ -214,7 +233,9 @@ fn one_transition_plays_alone() {
     assert_eq!((transition.leave_a_secs * 60.0).round() as usize, jump.leave.frame);
     // Each source lies on the result where that is the source alone.
     for (source, secs) in outcome.sources.iter().zip([0.0, transition.end_secs + 0.2]) {
-        let stands = source.world_from_clip.after(&source.motion.standing_at(secs - source.starts_at_secs));
+        let stands = source
+            .world_from_clip
+            .after(&source.motion.standing_at(secs - source.starts_at_secs));
         let off = stands.shift.distance(outcome.motion.standing_at(secs).shift);
         assert!(off < 0.25, "{off} m");
     }
@@ -222,7 +243,11 @@ fn one_transition_plays_alone() {
     let none = write_jump(Place { clip: 0, frame: 1 }, Place { clip: 1, frame: 1 });
     set(&mut session, Key::Jump, Value::Text(none));
     let pane = &session.panes()[0];
-    assert!(pane.problem.as_ref().unwrap().contains("There is no transition from frame 1"), "{:?}", pane.problem);
+    assert!(
+        pane.problem.as_ref().unwrap().contains("There is no transition from frame 1"),
+        "{:?}",
+        pane.problem
+    );
     assert!(pane.outcome.is_some());
 }
 
@@ -232,7 +257,19 @@ fn every_setting_answers_and_the_last_good_walk_stays() {
     let mut good = session.main_outcome().cloned();
     let (mut made, mut refused) = (0, 0);
     for construction in ["segments", "minima"] {
-        for (window, segment) in [(1, 1), (1, 2), (10, 10), (10, 11), (30, 60), (59, 61), (118, 119), (119, 600), (240, 600), (5, 120), (20, 121)] {
+        for (window, segment) in [
+            (1, 1),
+            (1, 2),
+            (10, 10),
+            (10, 11),
+            (30, 60),
+            (59, 61),
+            (118, 119),
+            (119, 600),
+            (240, 600),
+            (5, 120),
+            (20, 121),
+        ] {
             for threshold in [0.1, 6.0, 60.0] {
                 session
                     .apply(Command::Set(vec![
@@ -283,7 +320,10 @@ fn a_walk_is_kept_and_made_again_from_its_link() {
     assert!(id.starts_with("graph(") && id.contains("clips:walk%2Cwalk_left"), "{id}");
     let again = opened(&format!("lab=view&a={}", id.replace('%', "%25")));
     let made = again.main_outcome().unwrap();
-    assert_eq!((made.motion.clip.rotations(900), made.motion.clip.frames()), (kept.rotations(900), kept.frames()));
+    assert_eq!(
+        (made.motion.clip.rotations(900), made.motion.clip.frames()),
+        (kept.rotations(900), kept.frames())
+    );
     // A clip that is taken out of the library leaves the graph.
     session.apply(Command::Remove("walk_left".into())).unwrap();
     while session.work() {}

@@ -17,7 +17,9 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
-use super::recipe::{Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins};
+use super::recipe::{
+    Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins,
+};
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
@@ -576,7 +578,9 @@ impl Session {
         let params = self.params_of(pane);
         let outcome = pane.outcome.clone().ok_or(nothing)?;
         if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
-            return Err(CommandError::NotPossible("this walk goes like the one in the first pane: open it alone to keep it"));
+            return Err(CommandError::NotPossible(
+                "this walk goes like the one in the first pane: open it alone to keep it",
+            ));
         }
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());

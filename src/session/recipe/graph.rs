@@ -4,15 +4,15 @@ mod built;
 mod cast;
 mod grapher;
 mod maker;
-mod wanted;
 mod walk;
+mod wanted;
 
 pub use built::{Built, Field};
 pub use cast::Cast;
-pub use wanted::{write_jump, write_path, write_visits};
-pub use walk::{At, Passed, Trace, Walk};
 pub(in crate::session) use grapher::Grapher;
+pub use walk::{At, Passed, Trace, Walk};
 pub(in crate::session) use wanted::{clips_of, read_path, read_visits};
+pub use wanted::{write_jump, write_path, write_visits};
 
 use super::{Outcome, Slot, Source, Transition};
 use std::sync::Arc;

@@ -116,8 +116,14 @@ impl Drawn {
         }
     }
 
+    /// The transition that is pointed at, else the one that plays.
+    pub(super) fn pointed_or_lit(&self, pointed: Option<[Place; 2]>, walk: Option<&Walk>, secs: f64) -> Option<usize> {
+        let pointed = pointed.and_then(|ends| self.ends.iter().position(|known| *known == ends));
+        pointed.or_else(|| self.lit(walk, secs))
+    }
+
     /// The transition that plays now, or the one that is shown alone.
-    pub(super) fn lit(&self, walk: Option<&Walk>, secs: f64) -> Option<usize> {
+    fn lit(&self, walk: Option<&Walk>, secs: f64) -> Option<usize> {
         let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, &self.built))?;
         let at = walk.at(secs)?;
         let stay = if walk.is_jump { 1 } else { at.stay };
@@ -148,8 +154,12 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
     let parts: Vec<(usize, &str)> = (cast.names().iter().enumerate())
         .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
         .collect();
-    let lit = drawn.as_ref().and_then(|drawn| drawn.lit(walk.map(|walk| &**walk), session.now_secs()));
-    let now = walk.and_then(|walk| walk.at(session.now_secs())).and_then(|at| set.number(at.place));
+    let lit = drawn
+        .as_ref()
+        .and_then(|drawn| drawn.pointed_or_lit(state.last_jump, walk.map(|walk| &**walk), session.now_secs()));
+    let now = walk
+        .and_then(|walk| walk.at(session.now_secs()))
+        .and_then(|at| set.number(at.place));
     let matrix = Matrix {
         label: text::ALL_DISTANCES,
         size: set.frames(),
@@ -259,7 +269,11 @@ impl Tiles {
             }
         });
         let image = ColorImage::new(size, colors.collect());
-        let options = if tile.factor == 1 { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+        let options = if tile.factor == 1 {
+            TextureOptions::NEAREST
+        } else {
+            TextureOptions::LINEAR
+        };
         let texture = ctx.load_texture("distances", image, options);
         let id = texture.id();
         if self.made.len() >= MOST_TILES {

@@ -57,7 +57,11 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
         let mut ways = walk.choices.probabilities(from);
         ways.find(|(way, _)| *way == edge).map(|(_, p)| p)
     });
-    Some(text::jump_in_words([named(built, ends[0]), named(built, ends[1])], jump.distance_cm, probability))
+    Some(text::jump_in_words(
+        [named(built, ends[0]), named(built, ends[1])],
+        jump.distance_cm,
+        probability,
+    ))
 }
 
 /// A sentence in small type.

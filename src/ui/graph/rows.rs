@@ -69,7 +69,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         for id in &ids {
             let entry = session.library().find(id);
             let name = entry.map_or(id.as_str(), |entry| entry.name.as_str());
-            let secs = entry.and_then(|entry| entry.motion.as_ref()).map(|motion| motion.clip.duration_secs());
+            let secs = entry
+                .and_then(|entry| entry.motion.as_ref())
+                .map(|motion| motion.clip.duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(name).font(theme.font(Type::Label)).color(palette.text));
@@ -80,7 +82,11 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                             set_clips(&rest.join(","), out);
                         }
                         if let Some(secs) = secs {
-                            ui.label(RichText::new(format!("{secs:.1} s")).font(theme.font(Type::Small)).color(palette.muted));
+                            ui.label(
+                                RichText::new(format!("{secs:.1} s"))
+                                    .font(theme.font(Type::Small))
+                                    .color(palette.muted),
+                            );
                         }
                     });
                 });

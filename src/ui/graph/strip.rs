@@ -82,7 +82,12 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let Some(built) = session.graph_built() else { return };
     let drawn = Drawn::of(built, Some(walk), ui);
     let (cast, set) = (built.cast(), built.cast().set());
-    let bars: Vec<(&str, usize)> = cast.names().iter().enumerate().map(|(clip, name)| (name.as_str(), set.frames_of(clip))).collect();
+    let bars: Vec<(&str, usize)> = cast
+        .names()
+        .iter()
+        .enumerate()
+        .map(|(clip, name)| (name.as_str(), set.frames_of(clip)))
+        .collect();
     let at = walk.at(session.now_secs()).filter(|_| Arc::ptr_eq(&walk.built, built));
     let lit_stretch = at.and_then(|at| {
         let graph = built.graph();
@@ -100,7 +105,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
         arcs: &drawn.arcs,
         now: at.and_then(|at| set.number(at.place)),
         lit_stretch,
-        lit_arc: drawn.lit(Some(walk), session.now_secs()),
+        lit_arc: drawn.pointed_or_lit(state.last_jump, Some(walk), session.now_secs()),
     };
     let height = (ui.available_height() - space::XS).max(40.0);
     let response = kit::strip_ui(&strip, height, ui);
@@ -122,8 +127,14 @@ fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
     if let Some(words) = pointed {
         return words;
     }
-    let Some(at) = walk.at(session.now_secs()) else { return String::new() };
-    let seam = walk.passed.get(at.stay).and_then(|passed| passed.seam).filter(|_| at.left.is_some());
+    let Some(at) = walk.at(session.now_secs()) else {
+        return String::new();
+    };
+    let seam = walk
+        .passed
+        .get(at.stay)
+        .and_then(|passed| passed.seam)
+        .filter(|_| at.left.is_some());
     match seam {
         Some(seam) => jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default(),
         None => {

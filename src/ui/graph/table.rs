@@ -27,7 +27,12 @@ struct Table {
 impl Table {
     fn of(session: &Session) -> Self {
         let panes = session.panes();
-        let name = |index: usize| panes[index].variant.as_ref().map_or_else(|| text::RESULT.to_owned(), value_in_words);
+        let name = |index: usize| {
+            panes[index]
+                .variant
+                .as_ref()
+                .map_or_else(|| text::RESULT.to_owned(), value_in_words)
+        };
         let first = panes.iter().find_map(|pane| pane.outcome.as_ref());
         let of_pane = |pane: &segue::session::Pane, id: &str| {
             let outcome = pane.outcome.as_ref().filter(|_| pane.problem.is_none())?;
@@ -82,10 +87,18 @@ impl Table {
 
     fn csv(&self) -> String {
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-        let head: Vec<String> = ["", "unit"].into_iter().map(str::to_owned).chain(self.panes.iter().map(|pane| quoted(pane))).collect();
+        let head: Vec<String> = ["", "unit"]
+            .into_iter()
+            .map(str::to_owned)
+            .chain(self.panes.iter().map(|pane| quoted(pane)))
+            .collect();
         let mut out = head.join(",") + "\n";
         for row in &self.rows {
-            let values: Vec<String> = row.values.iter().map(|value| value.map_or_else(String::new, |value| value.to_string())).collect();
+            let values: Vec<String> = row
+                .values
+                .iter()
+                .map(|value| value.map_or_else(String::new, |value| value.to_string()))
+                .collect();
             let written = writeln!(out, "{},{},{}", quoted(row.label), quoted(row.unit), values.join(","));
             debug_assert!(written.is_ok(), "a string takes all");
         }
@@ -138,7 +151,10 @@ pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     });
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        for (label, copied) in [(text::COPY_MARKDOWN, Table::markdown as fn(&Table) -> String), (text::COPY_CSV, Table::csv)] {
+        for (label, copied) in [
+            (text::COPY_MARKDOWN, Table::markdown as fn(&Table) -> String),
+            (text::COPY_CSV, Table::csv),
+        ] {
             if kit::button_ui(Button::new(label), ui).clicked() {
                 out.actions.push(Action::CopyText(copied(&table)));
             }
@@ -173,7 +189,10 @@ mod tests {
                 values: vec![Some(0.416), None],
             }],
         };
-        assert_eq!(table.markdown(), "| | 30 frames | 10 frames |\n|---|---|---|\n| Drag, s | 0.42 | – |\n");
+        assert_eq!(
+            table.markdown(),
+            "| | 30 frames | 10 frames |\n|---|---|---|\n| Drag, s | 0.42 | – |\n"
+        );
         assert_eq!(table.csv(), ",unit,\"30 frames\",\"10 frames\"\n\"Drag\",\"s\",0.416,\n");
         assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
     }

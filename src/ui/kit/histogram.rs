@@ -64,7 +64,9 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
             ..EventFilter::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
-        let steps = ui.input(|input| f64::from(i8::from(input.key_pressed(Key::ArrowRight))) - f64::from(i8::from(input.key_pressed(Key::ArrowLeft))));
+        let steps = ui.input(|input| {
+            f64::from(i8::from(input.key_pressed(Key::ArrowRight))) - f64::from(i8::from(input.key_pressed(Key::ArrowLeft)))
+        });
         if steps != 0.0 {
             out.changed = Some((histogram.value + steps * histogram.step).max(histogram.step));
             out.settled = true;
@@ -80,20 +82,32 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
         let left = plot.left() + bin as f32 * wide;
         let inside = (bin as f64 + 0.5) * histogram.bin <= value;
         let color = if inside { palette.accent } else { palette.track };
-        let bar = Rect::from_min_max(pos2(left, plot.bottom() - high.max(1.0)), pos2(left + (wide - 1.0).max(1.0), plot.bottom()));
+        let bar = Rect::from_min_max(
+            pos2(left, plot.bottom() - high.max(1.0)),
+            pos2(left + (wide - 1.0).max(1.0), plot.bottom()),
+        );
         ui.painter().rect_filled(bar, 0.0, color);
     }
     let line = x_of(value);
     ui.painter().vline(line, plot.y_range(), Stroke::new(2.0 * scale, palette.handle));
-    ui.painter()
-        .circle(pos2(line, plot.top() + 4.0 * scale), 4.0 * scale, palette.handle, Stroke::new(1.0, palette.on_handle));
+    ui.painter().circle(
+        pos2(line, plot.top() + 4.0 * scale),
+        4.0 * scale,
+        palette.handle,
+        Stroke::new(1.0, palette.on_handle),
+    );
     ui.painter()
         .hline(plot.x_range(), plot.bottom(), Stroke::new(theme.hairline(), palette.line_strong));
     for (share, anchor) in [(0.0, Align2::LEFT_TOP), (0.5, Align2::CENTER_TOP), (1.0, Align2::RIGHT_TOP)] {
         let unit = if share == 1.0 { histogram.unit } else { "" };
         let words = format!("{:.0} {unit}", share * end);
         let galley = line_of(&[Run::new(words.trim_end(), Type::Small, palette.muted)], plot.width(), ui);
-        put(ui.painter(), pos2(plot.left() + share as f32 * plot.width(), plot.bottom() + 1.0), anchor, galley);
+        put(
+            ui.painter(),
+            pos2(plot.left() + share as f32 * plot.width(), plot.bottom() + 1.0),
+            anchor,
+            galley,
+        );
     }
     focus_ring(plot, radius::S, &response, ui);
     out

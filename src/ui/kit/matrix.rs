@@ -134,7 +134,9 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         };
         for row in range(window.corner.y) {
             for column in range(window.corner.x) {
-                let Some(texture) = tile(Tile { factor, row, column }) else { continue };
+                let Some(texture) = tile(Tile { factor, row, column }) else {
+                    continue;
+                };
                 let from = [row as f32 * cells, column as f32 * cells];
                 let to = [(from[0] + cells).min(size), (from[1] + cells).min(size)];
                 let texels = |from: f32, to: f32| ((to - from) / factor as f32).ceil().max(1.0) * factor as f32;
@@ -164,7 +166,11 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         if !field.expand(4.0).contains(at) {
             continue;
         }
-        let color = if mark.faint { palette.muted.gamma_multiply(0.6) } else { palette.text };
+        let color = if mark.faint {
+            palette.muted.gamma_multiply(0.6)
+        } else {
+            palette.text
+        };
         let (radius, stroke) = if Some(index) == matrix.lit {
             (radius_of_mark + 3.0, Stroke::new(2.5, palette.accent))
         } else if Some(index) == hovered {
@@ -184,7 +190,11 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
     names_ui(matrix, (field, margin), &place, ui);
     focus_ring(field, radius::S, &response, ui);
     if response.hovered() {
-        let icon = if hovered.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair };
+        let icon = if hovered.is_some() {
+            CursorIcon::PointingHand
+        } else {
+            CursorIcon::Crosshair
+        };
         ui.ctx().set_cursor_icon(icon);
     }
     let at = response.hover_pos().map(|pos| {

@@ -96,7 +96,9 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     }
     let x_of = |frame: f32| {
         let bar = starts.partition_point(|start| start.0 as f32 <= frame).saturating_sub(1);
-        starts.get(bar).map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
+        starts
+            .get(bar)
+            .map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
     };
 
     let id = ui.make_persistent_id(strip.label);
@@ -134,7 +136,10 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     for &index in &shown {
         let arc = &strip.arcs[index];
         let clear = if arc.faint { 0.10 } else { 0.16 + 0.7 * arc.weight.sqrt() };
-        draw(index, Stroke::new((0.7 + 2.6 * arc.weight) * scale, palette.muted.gamma_multiply(clear)));
+        draw(
+            index,
+            Stroke::new((0.7 + 2.6 * arc.weight) * scale, palette.muted.gamma_multiply(clear)),
+        );
     }
     for (index, color) in [(hovered_arc, palette.text), (strip.lit_arc, palette.accent)] {
         if let Some(index) = index.filter(|&index| index < strip.arcs.len()) {
@@ -191,7 +196,10 @@ fn distance(points: &[Pos2; 4], pos: Pos2) -> f32 {
     let at = |t: f32| {
         let u = 1.0 - t;
         let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
-        let sum = points.iter().zip(weights).fold(vec2(0.0, 0.0), |sum, (point, w)| sum + point.to_vec2() * w);
+        let sum = points
+            .iter()
+            .zip(weights)
+            .fold(vec2(0.0, 0.0), |sum, (point, w)| sum + point.to_vec2() * w);
         sum.to_pos2()
     };
     let mut least = f32::INFINITY;

@@ -17,8 +17,16 @@ pub struct Field {
 
 impl Field {
     pub(super) fn new(distances: FrameDistances) -> Self {
-        let histogram = distances.histogram(BIN_CM, BINS);
-        Self { distances, histogram }
+        Self {
+            distances,
+            histogram: vec![0; BINS],
+        }
+    }
+
+    /// Counts one pair of clips; `true` behind the last one.
+    pub(super) fn count(&mut self, pair: usize) -> bool {
+        self.distances.count(pair, BIN_CM, &mut self.histogram);
+        pair + 1 >= self.distances.pairs_of_clips()
     }
 
     /// The distances.
@@ -63,7 +71,11 @@ pub struct Built {
 impl Built {
     pub(super) fn new(cast: &Arc<Cast>, candidates: &Candidates, key: GraphKey) -> Result<Self, GraphError> {
         let whole = Arc::new(MotionGraph::new(cast.set(), candidates, &key.options)?);
-        let graph = if key.pruned { Arc::new(whole.pruned()?) } else { Arc::clone(&whole) };
+        let graph = if key.pruned {
+            Arc::new(whole.pruned()?)
+        } else {
+            Arc::clone(&whole)
+        };
         let mut component = vec![0; whole.graph().node_count()];
         let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
         let all = cast.set().frames().max(1) as f64;
@@ -147,6 +159,9 @@ impl Built {
     /// The index of a transition in the whole graph.
     #[must_use]
     pub fn jump_of(&self, leave: Place, enter: Place) -> Option<usize> {
-        self.whole.jumps().iter().position(|jump| jump.leave == leave && jump.enter == enter)
+        self.whole
+            .jumps()
+            .iter()
+            .position(|jump| jump.leave == leave && jump.enter == enter)
     }
 }

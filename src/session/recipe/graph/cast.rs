@@ -14,10 +14,14 @@ pub struct Cast {
     profile: WalkProfile,
 }
 
+/// So many frames of single joints are measured in one slice.
+const JOINT_FRAMES: usize = 12_000;
+
 /// A clip that was made ready for the others, and how it came onto their skeleton.
 pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
 
 impl Cast {
+    /// The clips in order; the rest of what has to be known of them is found by [`Self::advance`].
     pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, String> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or("A motion graph needs a clip: add at least one.")?;
@@ -25,7 +29,7 @@ impl Cast {
         let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
         let set = Arc::new(FrameSet::new(sources, height).map_err(|error| super::wanted::sentence(&error))?);
         let contacts = motions.iter().map(|motion| motion.contacts.clone()).collect();
-        let profile = WalkProfile::new(Arc::clone(&set), &first.roles, contacts);
+        let profile = WalkProfile::begun(Arc::clone(&set), &first.roles, contacts);
         Ok(Self {
             names,
             motions,
@@ -33,6 +37,12 @@ impl Cast {
             set,
             profile,
         })
+    }
+
+    /// A slice of that; `true` when nothing is left.
+    pub(super) fn advance(&mut self) -> bool {
+        let joints = (JOINT_FRAMES / self.set.frames().max(1)).max(1);
+        self.profile.advance(joints)
     }
 
     /// What the clips are called.

@@ -26,9 +26,13 @@ pub(in crate::session) struct Grapher {
     /// What is asked for: the clips' names and motions.
     clips: Vec<(String, Arc<Motion>)>,
     fitted: Vec<Fitted>,
+    /// The clips, while they are measured.
+    casting: Option<Box<Cast>>,
     cast: Option<Result<Arc<Cast>, String>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
+    /// Distances that are counted, and how many pairs of clips are.
+    counting: Option<(Field, usize)>,
     /// One for each window that was asked for last.
     fields: Vec<Arc<Field>>,
     search: Option<(GraphKey, Search)>,
@@ -189,6 +193,7 @@ impl Grapher {
             1.0
         } else {
             match (&self.sweep, &self.all) {
+                _ if self.counting.is_some() => 1.0,
                 (Some(sweep), Some(all)) if sweep.window() == window => share(sweep.progress(all)),
                 _ => 0.0,
             }
@@ -205,8 +210,7 @@ impl Grapher {
 
     /// Other clips: nothing of what was made holds any more.
     fn meet(&mut self, clips: Vec<(String, Arc<Motion>)>) {
-        let same = clips.len() == self.clips.len()
-            && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
+        let same = clips.len() == self.clips.len() && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
         if !same {
             *self = Self {
                 clips,
@@ -244,7 +248,9 @@ impl Grapher {
         }
         self.worked_for = Some(wanted.graph);
         let found = match self.search_slice(&cast, wanted.graph).map_err(|error| sentence(&error))? {
-            Some(found) => Built::new(&cast, &found, wanted.graph).map(Arc::new).map_err(|error| sentence(&error)),
+            Some(found) => Built::new(&cast, &found, wanted.graph)
+                .map(Arc::new)
+                .map_err(|error| sentence(&error)),
             None => return Ok(()),
         };
         if self.built.len() >= 2 * MAX_PANES {
@@ -266,10 +272,21 @@ impl Grapher {
             }
             return Ok(None);
         }
+        if let Some(mut casting) = self.casting.take() {
+            if casting.advance() {
+                self.cast = Some(Ok(Arc::from(casting)));
+            } else {
+                self.casting = Some(casting);
+            }
+            return Ok(None);
+        }
         let names = self.clips.iter().map(|(name, _)| name.clone()).collect();
-        let cast = Cast::new(names, std::mem::take(&mut self.fitted)).map(Arc::new);
-        self.cast = Some(cast.clone());
-        cast.map(|_| None)
+        // Still as many as the clips: so far it has come.
+        match Cast::new(names, self.fitted.clone()) {
+            Ok(cast) => self.casting = Some(Box::new(cast)),
+            Err(problem) => self.cast = Some(Err(problem)),
+        }
+        Ok(None)
     }
 
     /// A slice of the way to the places where one may go over; these where they are found.
@@ -295,13 +312,20 @@ impl Grapher {
         }
         let window = key.options.blend_window;
         let Some(field) = self.fields.iter().find(|field| field.distances().window() == window) else {
+            if let Some((mut field, pair)) = self.counting.take().filter(|(field, _)| field.distances().window() == window) {
+                if field.count(pair) {
+                    self.keep_field(Arc::new(field));
+                } else {
+                    self.counting = Some((field, pair + 1));
+                }
+                return Ok(None);
+            }
             let mut sweep = match self.sweep.take().filter(|sweep| sweep.window() == window) {
                 Some(sweep) => sweep.resume(all),
                 None => all.sweep(window)?,
             };
             if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
-                let field = Arc::new(Field::new(sweep.finish()?));
-                self.keep_field(field);
+                self.counting = Some((Field::new(sweep.finish()?), 0));
             } else {
                 self.sweep = Some(sweep.pause());
             }

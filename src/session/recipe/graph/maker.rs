@@ -1,5 +1,5 @@
-use super::wanted::{Wanted, sentence};
 use super::walk::Trace;
+use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
 use crate::clip::Contacts;
 use crate::graph::{
@@ -157,7 +157,9 @@ impl Maker {
             secs = now_secs + 2.0 * AHEAD_SECS;
         }
         // Tens of seconds: a walk that is kept says how long it is.
-        ((secs / 10.0).ceil() * 10.0).min(LONGEST_SECS.max(self.wanted.measured_secs)).mul_add(self.fps(), 0.5) as usize
+        ((secs / 10.0).ceil() * 10.0)
+            .min(LONGEST_SECS.max(self.wanted.measured_secs))
+            .mul_add(self.fps(), 0.5) as usize
     }
 
     /// The line was searched for: the walk takes what was found.
@@ -187,7 +189,12 @@ impl Maker {
             let seam = pair[1].seam.filter(|seam| seam.leave.clip == here.clip);
             seam.is_some_and(|seam| middle(seam.leave, window) > here.start)
         };
-        let next = passed.get(self.guided..).unwrap_or_default().windows(2).take(GUIDE_STAYS).position(is_ahead);
+        let next = passed
+            .get(self.guided..)
+            .unwrap_or_default()
+            .windows(2)
+            .take(GUIDE_STAYS)
+            .position(is_ahead);
         let Some(skipped) = next else { return };
         let Some(wanted) = passed.get(self.guided + skipped + 1).and_then(|passed| passed.seam) else {
             return;

@@ -1,5 +1,5 @@
 use super::Built;
-use crate::graph::{Choices, Place, PieceSeam, Stay, WalkPiece};
+use crate::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
 use crate::math::Planar;
 use crate::metrics::Metric;
 use crate::session::motion::Motion;

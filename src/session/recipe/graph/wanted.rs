@@ -54,7 +54,10 @@ impl Wanted {
         };
         let visits = read_visits(params.text(Key::GoTo))?;
         if let Some((_, clip)) = visits.iter().find(|(_, clip)| *clip >= clips) {
-            return Err(format!("Go to: there is no clip {clip}, they are counted from 0 to {}.", clips.saturating_sub(1)));
+            return Err(format!(
+                "Go to: there is no clip {clip}, they are counted from 0 to {}.",
+                clips.saturating_sub(1)
+            ));
         }
         Ok(Self {
             graph: GraphKey {
@@ -98,7 +101,9 @@ impl Wanted {
     pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
-        let guide = guide.filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none()).map(Box::new);
+        let guide = guide
+            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none())
+            .map(Box::new);
         Ok(Self { guide, ..wanted })
     }
 }
@@ -148,7 +153,10 @@ fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, Str
 /// When to set off for which clip.
 pub(in crate::session) fn read_visits(text: &str) -> Result<Vec<(f64, usize)>, String> {
     let pairs = read_pairs(text, "Go to", "12.5:3,40:0")?;
-    let mut visits: Vec<(f64, usize)> = pairs.into_iter().map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize)).collect();
+    let mut visits: Vec<(f64, usize)> = pairs
+        .into_iter()
+        .map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize))
+        .collect();
     visits.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(visits)
 }
@@ -168,7 +176,11 @@ pub(in crate::session) fn read_path(text: &str) -> Result<Vec<DVec2>, String> {
 /// A ground path as the parameter has it.
 #[must_use]
 pub fn write_path(points: &[DVec2]) -> String {
-    joined(points.iter().map(|point| format!("{}:{}", rounded(point.x, 100.0), rounded(point.y, 100.0))))
+    joined(
+        points
+            .iter()
+            .map(|point| format!("{}:{}", rounded(point.x, 100.0), rounded(point.y, 100.0))),
+    )
 }
 
 fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
@@ -219,7 +231,10 @@ mod tests {
         assert_eq!(read_path(&write_path(&path)).unwrap(), path);
         let [leave, enter] = [Place { clip: 0, frame: 52 }, Place { clip: 3, frame: 14 }];
         assert_eq!(read_jump(&write_jump(leave, enter)).unwrap(), Some([leave, enter]));
-        assert_eq!(clips_of("walk,run(turn_rate:20,lean:2),walk").unwrap(), ["walk", "run(turn_rate:20,lean:2)"]);
+        assert_eq!(
+            clips_of("walk,run(turn_rate:20,lean:2),walk").unwrap(),
+            ["walk", "run(turn_rate:20,lean:2)"]
+        );
     }
 
     proptest! {
