@@ -7,7 +7,7 @@ mod transition;
 
 pub use deviation::deviations;
 pub use profile::Profile;
-pub use slide::{foot_slide_cm, foot_slides_cm};
+pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
 pub use transition::{Subject, TransitionMetrics};
 
 /// Which way a number should go.

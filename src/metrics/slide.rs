@@ -10,46 +10,95 @@ use std::ops::Range;
 /// feet or stances. O(frames × joints).
 #[must_use]
 pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<f64> {
-    foot_slides_cm(clip, roles, contacts)
-        .into_iter()
-        .map(|(_, slide)| slide)
-        .reduce(f64::max)
+    let mut meter = SlideMeter::new(clip, roles);
+    while meter.advance(clip, contacts, clip.frames()) {}
+    meter.worst_cm()
 }
 
 /// How far a planted foot slides in each stance, centimetres, as [`foot_slide_cm`] has it: the stance's frames, and the slide; in the order in which
 /// stances end. A stance of a single frame is none.
 #[must_use]
 pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(Range<usize>, f64)> {
-    let points = Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side));
-    let mut before: [Vec<Vec3>; 2] = Default::default();
-    let mut slid = [Vec3::ZERO; 2];
-    let mut stances: [Option<(usize, f32)>; 2] = [None; 2];
-    let mut slides = Vec::new();
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
-        for side in Side::BOTH {
-            let (points, before, slid) = (&points[side.index()], &mut before[side.index()], &mut slid[side.index()]);
-            let stance = &mut stances[side.index()];
-            let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
-            let stands = contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
-            if let Some(step) = stillest_step(before, &now).filter(|_| stands) {
-                *slid += step;
-                let (start, farthest) = stance.unwrap_or((frame - 1, 0.0));
-                *stance = Some((start, farthest.max(slid.length())));
-            } else {
-                *slid = Vec3::ZERO;
-                slides.extend(stance.take().map(|(start, farthest)| (start..frame, farthest)));
-            }
-            *before = now;
+    let mut meter = SlideMeter::new(clip, roles);
+    while meter.advance(clip, contacts, clip.frames()) {}
+    meter.finish()
+}
+
+/// [`foot_slides_cm`] in slices, for clips that take longer than there is time for at once. Every call is given the same clip and contacts.
+#[derive(Debug)]
+pub struct SlideMeter {
+    /// Per side: the foot's points, and where they were in the frame before.
+    points: [Vec<(usize, Vec3)>; 2],
+    before: [Vec<Vec3>; 2],
+    slid: [Vec3; 2],
+    /// The stances that go on: first frame, and how far they have slid.
+    stances: [Option<(usize, f32)>; 2],
+    slides: Vec<(Range<usize>, f64)>,
+    frame: usize,
+}
+
+impl SlideMeter {
+    /// Nothing is measured yet.
+    #[must_use]
+    pub fn new(clip: &Clip, roles: &Roles) -> Self {
+        Self {
+            points: Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side)),
+            before: Default::default(),
+            slid: [Vec3::ZERO; 2],
+            stances: [None; 2],
+            slides: Vec::new(),
+            frame: 0,
         }
     }
-    let last = stances.into_iter().flatten();
-    slides.extend(last.map(|(start, farthest)| (start..clip.frames(), farthest)));
-    slides
-        .into_iter()
-        .map(|(frames, metres)| (frames, f64::from(metres) * 100.0))
-        .collect()
+
+    /// Looks at so many more frames (at least one). `false` when it has seen all. A frame of 31 joints takes 1 µs.
+    pub fn advance(&mut self, clip: &Clip, contacts: &Contacts, frames: usize) -> bool {
+        if self.frame >= clip.frames() {
+            return false;
+        }
+        let end = self.frame.saturating_add(frames.max(1)).min(clip.frames());
+        let mut world = WorldPose::default();
+        for frame in self.frame..end {
+            clip.world_pose_into(frame, &mut world);
+            for side in Side::BOTH {
+                let index = side.index();
+                let now: Vec<Vec3> = self.points[index].iter().map(|&(joint, point)| world.point(joint, point)).collect();
+                let stands = contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
+                if let Some(step) = stillest_step(&self.before[index], &now).filter(|_| stands) {
+                    self.slid[index] += step;
+                    let (start, farthest) = self.stances[index].unwrap_or((frame - 1, 0.0));
+                    self.stances[index] = Some((start, farthest.max(self.slid[index].length())));
+                } else {
+                    self.slid[index] = Vec3::ZERO;
+                    self.end_stance(index, frame);
+                }
+                self.before[index] = now;
+            }
+        }
+        self.frame = end;
+        true
+    }
+
+    fn end_stance(&mut self, index: usize, frame: usize) {
+        let ended = self.stances[index].take();
+        self.slides
+            .extend(ended.map(|(start, farthest)| (start..frame, f64::from(farthest) * 100.0)));
+    }
+
+    /// The stances that were seen, and how far the foot slides in each, centimetres.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<(Range<usize>, f64)> {
+        for side in Side::BOTH {
+            self.end_stance(side.index(), self.frame);
+        }
+        self.slides
+    }
+
+    /// The slide of the worst stance, centimetres.
+    #[must_use]
+    pub fn worst_cm(self) -> Option<f64> {
+        self.finish().into_iter().map(|(_, slide)| slide).reduce(f64::max)
+    }
 }
 
 #[cfg(test)]

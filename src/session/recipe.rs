@@ -17,6 +17,7 @@ mod pair;
 mod register;
 mod rounds;
 mod speed;
+mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
@@ -26,11 +27,12 @@ pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
-pub(super) use make::{made_id, made_motion, preset_motion, synth_action};
+pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use register::{Beat, DistanceMap, Registered, write_pins};
 pub(super) use register::{RegisterInputs, Registrar, read_pins};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
+pub(super) use view::{FeetHolder, ViewInputs};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,6 +4,8 @@ use crate::math::{curve, quat};
 use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Role, Roles, Side, WorldPose, two_bones};
 use glam::{Mat3, Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
 
 mod anchor;
 mod envelope;
@@ -87,68 +89,187 @@ const PLANE_SINE: f32 = 0.2;
 /// # Errors
 /// [`FootLockError`] when there are no legs, the contacts do not fit the clip, or an option is out of range.
 pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Clip, FootLockError> {
-    let check = |what, value: f64, most: f64| {
-        let fits = (0.0..=most).contains(&value);
-        if fits {
-            Ok(())
-        } else {
-            Err(FootLockError::Option { what, value, most })
-        }
-    };
-    check("blend time (s)", options.blend_secs, MOST_SECS)?;
-    check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
-    let legs: Vec<(Side, Leg)> = (Side::BOTH.into_iter())
-        .filter_map(|side| Some((side, Leg::find(clip, roles, side)?)))
-        .collect();
-    if legs.is_empty() {
-        return Err(FootLockError::NoLegs);
-    }
-    if contacts.frames() != clip.frames() {
-        let (contacts, frames) = (contacts.frames(), clip.frames());
-        return Err(FootLockError::Contacts { contacts, frames });
-    }
-    let mut feet: Vec<anchor::Foot> = legs.iter().map(|(side, _)| anchor::Foot::new(clip, roles, *side)).collect();
-    let mut posed: Vec<Vec<Posed>> = legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect();
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
-        for (((_, leg), posed), foot) in legs.iter().zip(&mut posed).zip(&mut feet) {
-            posed.push(leg.pose(&world));
-            foot.push(&world);
-        }
-    }
-    let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32;
-    let shifts: Vec<Vec<Vec3>> = (legs.iter().zip(&feet))
-        .map(|((side, _), foot)| foot.shifts(&contacts.intervals(*side), clip.fps(), scale, options))
-        .collect();
-    if shifts.iter().flatten().all(|shift| *shift == Vec3::ZERO) {
-        return Ok(clip.clone());
-    }
-    let axes: Vec<Vec3> = posed.iter().map(|posed| usual_axis(posed)).collect();
-    let heights = hips::heights(&posed, &shifts, clip.fps());
+    let mut state = State::new(clip, roles, contacts, options)?;
+    while state.advance(clip, clip.frames()) {}
+    state.finish(clip)
+}
 
-    let mut rotations = Vec::with_capacity(clip.frames() * clip.skeleton().len());
-    let mut roots = clip.root_translations().to_vec();
-    for (frame, (root, &height)) in roots.iter_mut().zip(&heights).enumerate() {
-        let first = rotations.len();
-        rotations.extend_from_slice(clip.rotations(frame));
-        let local = &mut rotations[first..];
-        root.y += height;
-        for (index, (_, leg)) in legs.iter().enumerate() {
-            let shift = shifts[index][frame];
-            if shift != Vec3::ZERO || height != 0.0 {
-                let [upper, lower] = posed[index][frame].turned(shift - Vec3::Y * height, axes[index]);
-                leg.write(&posed[index][frame], upper, lower, local);
+/// [`foot_lock`] in slices, for clips that take longer than there is time for at once.
+#[derive(Debug)]
+pub struct FootLocking {
+    clip: Arc<Clip>,
+    state: State,
+}
+
+impl FootLocking {
+    /// Nothing is done yet: call [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// As [`foot_lock`].
+    pub fn new(clip: Arc<Clip>, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Self, FootLockError> {
+        let state = State::new(&clip, roles, contacts, options)?;
+        Ok(Self { clip, state })
+    }
+
+    /// Goes on by so many frames (at least one). `false` when nothing is left to do. A frame of 31 joints takes 2 µs, in each of two passes.
+    pub fn advance(&mut self, frames: usize) -> bool {
+        self.state.advance(&self.clip, frames)
+    }
+
+    /// How much is done, 0 to 1.
+    #[must_use]
+    pub fn progress(&self) -> f32 {
+        let frames = self.clip.frames().max(1) as f32;
+        let turned = self.state.plan.as_ref().map_or(0, |plan| plan.turned);
+        (self.state.posed_frames() + turned) as f32 / (2.0 * frames)
+    }
+
+    /// The clip with planted feet; what is not done yet is done now.
+    ///
+    /// # Errors
+    /// As [`foot_lock`].
+    pub fn finish(mut self) -> Result<Clip, FootLockError> {
+        while self.advance(self.clip.frames()) {}
+        self.state.finish(&self.clip)
+    }
+}
+
+/// What is known of a clip whose feet are being planted.
+#[derive(Debug)]
+struct State {
+    options: FootLockOptions,
+    scale: f32,
+    stances: Vec<Vec<Range<usize>>>,
+    legs: Vec<Leg>,
+    feet: Vec<anchor::Foot>,
+    posed: Vec<Vec<Posed>>,
+    /// Made when all frames are posed.
+    plan: Option<Plan>,
+}
+
+/// How far everything is moved, and what came of it so far.
+#[derive(Debug)]
+struct Plan {
+    shifts: Vec<Vec<Vec3>>,
+    heights: Vec<f32>,
+    axes: Vec<Vec3>,
+    rotations: Vec<Quat>,
+    /// Frames that are done.
+    turned: usize,
+    /// All feet stand as they are.
+    is_idle: bool,
+}
+
+impl State {
+    fn new(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Self, FootLockError> {
+        let check = |what, value: f64, most: f64| {
+            let fits = (0.0..=most).contains(&value);
+            if fits {
+                Ok(())
+            } else {
+                Err(FootLockError::Option { what, value, most })
+            }
+        };
+        check("blend time (s)", options.blend_secs, MOST_SECS)?;
+        check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
+        let sides = Side::BOTH.into_iter();
+        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides.filter_map(|side| Some((side, Leg::find(clip, roles, side)?))).unzip();
+        if legs.is_empty() {
+            return Err(FootLockError::NoLegs);
+        }
+        if contacts.frames() != clip.frames() {
+            let (contacts, frames) = (contacts.frames(), clip.frames());
+            return Err(FootLockError::Contacts { contacts, frames });
+        }
+        Ok(Self {
+            options: *options,
+            scale: roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32,
+            stances: sides.iter().map(|side| contacts.intervals(*side)).collect(),
+            feet: sides.iter().map(|side| anchor::Foot::new(clip, roles, *side)).collect(),
+            posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
+            legs,
+            plan: None,
+        })
+    }
+
+    fn posed_frames(&self) -> usize {
+        self.posed.first().map_or(0, Vec::len)
+    }
+
+    /// Goes on by so many frames. `false` when nothing is left to do.
+    fn advance(&mut self, clip: &Clip, frames: usize) -> bool {
+        let (posed, last) = (self.posed_frames(), clip.frames());
+        let end = |done: usize| done.saturating_add(frames.max(1)).min(last);
+        if posed < last {
+            self.pose(clip, posed..end(posed));
+            return true;
+        }
+        let Some(plan) = &mut self.plan else {
+            self.plan = Some(self.plan(clip));
+            return true;
+        };
+        if plan.is_idle || plan.turned >= last {
+            return false;
+        }
+        for frame in plan.turned..end(plan.turned) {
+            let first = plan.rotations.len();
+            plan.rotations.extend_from_slice(clip.rotations(frame));
+            let (local, height) = (&mut plan.rotations[first..], plan.heights[frame]);
+            for (index, leg) in self.legs.iter().enumerate() {
+                let shift = plan.shifts[index][frame];
+                if shift != Vec3::ZERO || height != 0.0 {
+                    let [upper, lower] = self.posed[index][frame].turned(shift - Vec3::Y * height, plan.axes[index]);
+                    leg.write(&self.posed[index][frame], upper, lower, local);
+                }
+            }
+        }
+        plan.turned = end(plan.turned);
+        true
+    }
+
+    fn pose(&mut self, clip: &Clip, frames: Range<usize>) {
+        let mut world = WorldPose::default();
+        for frame in frames {
+            clip.world_pose_into(frame, &mut world);
+            for ((leg, posed), foot) in self.legs.iter().zip(&mut self.posed).zip(&mut self.feet) {
+                posed.push(leg.pose(&world));
+                foot.push(&world);
             }
         }
     }
-    let locked = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
-    Ok(locked
-        .with_translations(clip.translations().to_vec())?
-        .with_provenance(clip.provenance()))
+
+    fn plan(&self, clip: &Clip) -> Plan {
+        let shifts: Vec<Vec<Vec3>> = (self.stances.iter().zip(&self.feet))
+            .map(|(stances, foot)| foot.shifts(stances, clip.fps(), self.scale, &self.options))
+            .collect();
+        let is_idle = shifts.iter().flatten().all(|shift| *shift == Vec3::ZERO);
+        Plan {
+            heights: hips::heights(&self.posed, &shifts, clip.fps()),
+            axes: self.posed.iter().map(|posed| usual_axis(posed)).collect(),
+            rotations: Vec::with_capacity(if is_idle { 0 } else { clip.frames() * clip.skeleton().len() }),
+            turned: 0,
+            shifts,
+            is_idle,
+        }
+    }
+
+    fn finish(self, clip: &Clip) -> Result<Clip, FootLockError> {
+        let Some(plan) = self.plan.filter(|plan| !plan.is_idle) else {
+            return Ok(clip.clone());
+        };
+        let mut roots = clip.root_translations().to_vec();
+        for (root, height) in roots.iter_mut().zip(&plan.heights) {
+            root.y += height;
+        }
+        let locked = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), plan.rotations, roots)?;
+        Ok(locked
+            .with_translations(clip.translations().to_vec())?
+            .with_provenance(clip.provenance()))
+    }
 }
 
 /// The joints of a leg, and their parents.
+#[derive(Debug)]
 struct Leg {
     joints: [usize; 3],
     parents: [usize; 3],

@@ -88,19 +88,29 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Plays the cycle `times` times. Where each repetition lies is accumulated in `f64`: poses do not drift.
+    /// Plays the cycle `times` times; see [`play_around`].
     ///
     /// # Errors
     /// [`ClipError`] when the result is no clip.
     pub fn repeat(&self, times: usize) -> Result<Clip, ClipError> {
-        let mut made = Assembly::new(&self.clip, &self.clip, self.clip.frames().saturating_mul(times.min(1 << 10)));
-        let mut world_from_clip = Planar::IDENTITY;
-        for _ in 0..times {
-            made.play_moved(&self.clip, 0..self.clip.frames(), &world_from_clip);
-            world_from_clip = self.cycle.after(&world_from_clip);
-        }
-        made.finish(self.clip.name().to_owned())
+        play_around(&self.clip, &self.cycle, times)
     }
+}
+
+/// Plays a clip `times` times, at most 1,024, each time moved over the ground by `cycle` from where it lay. Where each repetition lies is accumulated in `f64`:
+/// poses do not drift.
+///
+/// # Errors
+/// [`ClipError`] when the result is no clip.
+pub fn play_around(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, ClipError> {
+    let times = times.min(1 << 10);
+    let mut made = Assembly::new(clip, clip, clip.frames().saturating_mul(times));
+    let mut world_from_clip = Planar::IDENTITY;
+    for _ in 0..times {
+        made.play_moved(clip, 0..clip.frames(), &world_from_clip);
+        world_from_clip = cycle.after(&world_from_clip);
+    }
+    made.finish(clip.name().to_owned())
 }
 
 /// Closes a part of a clip into a cycle: frames `cycle.start..cycle.end` play, and frame `cycle.end`, which the clip must have, is bent to be the

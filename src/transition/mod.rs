@@ -44,9 +44,9 @@ mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
-pub use foot_lock::{FootLockError, FootLockOptions, foot_lock};
+pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
-pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop};
+pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop, play_around};
 pub use mistake::{Mistake, concatenate_mistaken};
 pub use moving::MovingPose;

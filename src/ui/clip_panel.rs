@@ -15,8 +15,8 @@ use segue::skeleton::{Channel, Role, Skeleton};
 /// The tree of joints scrolls above this height, points.
 const TREE_HEIGHT: f32 = 264.0;
 
-/// The whole panel of one clip.
-pub(crate) fn clip_panel_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+/// The whole panel of one clip. `saved` is the id of what is saved from here: the clip, or a result that is made of it alone.
+pub(crate) fn clip_panel_ui(entry: &Entry, saved: &str, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     for warning in &entry.warnings {
         sentence_ui(warning, palette_of(ui).warning, ui);
     }
@@ -33,7 +33,7 @@ pub(crate) fn clip_panel_ui(entry: &Entry, session: &Session, state: &mut UiStat
         overrides_ui(entry, file, motion, state, out, ui);
     }
     ui.add_space(space::S);
-    save_rows_ui(&entry.id, state, out, ui);
+    save_rows_ui(saved, state, out, ui);
     ui.add_space(space::XS);
     state.joints_open |= kit::folded_ui(text::JOINTS, ui, |ui| joints_ui(motion, session, out, ui));
     kit::folded_ui(text::BODY_PARTS, ui, |ui| roles_ui(entry, motion, out, ui));

@@ -39,8 +39,14 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     slot_row_ui(Slot::A, session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    let is_held = session.params().is_on(Key::FootLock);
+    if is_held {
+        keep_ui(0, out, ui);
+    }
     if let Some(entry) = session.slot(Slot::A) {
-        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, session, state, out, ui));
+        let saved = if is_held { "result:0" } else { entry.id.as_str() };
+        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, saved, session, state, out, ui));
     }
 }
 
@@ -64,6 +70,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         param_row_ui(param.key, &detail, session, out, ui);
     }
     compare_ui(Key::GaitSpeed, session, out, ui);
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
@@ -138,11 +145,15 @@ pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
             state.saved_pane = pane;
         }
     }
-    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).outlined(), ui).clicked() {
-        out.commands.push(Command::Keep(state.saved_pane));
-    }
+    keep_ui(state.saved_pane, out, ui);
     ui.add_space(space::S);
     save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
+}
+
+fn keep_ui(pane: usize, out: &mut Out, ui: &mut Ui) {
+    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).outlined(), ui).clicked() {
+        out.commands.push(Command::Keep(pane));
+    }
 }
 
 /// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.

@@ -217,7 +217,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
         });
         card.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::XS;
-            clip_panel_ui(entry, session, state, out, ui);
+            clip_panel_ui(entry, &entry.id, session, state, out, ui);
         });
     }
 }

@@ -18,7 +18,7 @@ use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins,
+    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
@@ -94,6 +94,7 @@ pub struct Session {
     layerer: Layerer,
     registrar: Registrar,
     grapher: Grapher,
+    feet: FeetHolder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -124,6 +125,7 @@ impl Session {
             layerer: Layerer::default(),
             registrar: Registrar::default(),
             grapher: Grapher::default(),
+            feet: FeetHolder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,

@@ -8,8 +8,10 @@ use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs};
-use crate::session::recipe::{belongs_to, clips_of, made_id, made_motion, preset_motion, recipe_name, recipe_params};
+use crate::session::recipe::{
+    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, RegisterInputs, Slot, SpeedInputs, ViewInputs,
+};
+use crate::session::recipe::{belongs_to, clips_of, made_id, make, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -64,7 +66,7 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, `registering`, `graphing`, or the file that is read.
+    /// What it is: `matching`, `registering`, `graphing`, `holding feet`, or the file that is read.
     pub name: String,
     /// How much is done, 0 to 1.
     pub progress: f64,
@@ -75,7 +77,7 @@ pub struct Job {
 /// What a result depends on. Equal inputs, equal result: nothing is computed again.
 #[derive(Clone, Debug)]
 pub(super) enum Inputs {
-    View(Arc<Motion>),
+    View(ViewInputs),
     Make(String),
     Blend(BlendInputs),
     Speed(SpeedInputs),
@@ -88,7 +90,7 @@ pub(super) enum Inputs {
 impl PartialEq for Inputs {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::View(a), Self::View(b)) => Arc::ptr_eq(a, b),
+            (Self::View(a), Self::View(b)) => a == b,
             (Self::Make(a), Self::Make(b)) => a == b,
             (Self::Blend(a), Self::Blend(b)) => a == b,
             (Self::Speed(a), Self::Speed(b)) => a == b,
@@ -110,14 +112,14 @@ impl Session {
             }
             return true;
         }
-        if self.registrar.work() {
+        if self.registrar.work() || self.feet.work() {
             return true;
         }
         let now_secs = self.params.number(Key::Time);
         if self.grapher.work(now_secs) {
             return true;
         }
-        if self.registrar.is_ready() || self.grapher.is_ready() {
+        if self.registrar.is_ready() || self.feet.is_ready() || self.grapher.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -154,13 +156,20 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
+        let holding = self.feet.progress().map(|progress| Job {
+            task: None,
+            name: "holding feet".into(),
+            progress: f64::from(progress),
+            size: None,
+        });
         let graphing = self.grapher.progress().map(|progress| Job {
             task: None,
             name: "graphing".into(),
             progress,
             size: None,
         });
-        self.reading_jobs().chain(matching).chain(registering).chain(graphing).collect()
+        let computed = matching.into_iter().chain(registering).chain(graphing).chain(holding);
+        self.reading_jobs().chain(computed).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
@@ -260,6 +269,7 @@ impl Session {
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrar.ask_anew();
         self.grapher.ask_anew();
+        self.feet.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         self.grapher.guide_by(None);
         for variant in variants {
@@ -304,7 +314,14 @@ impl Session {
                 let clips = self.graph_clips(params)?;
                 return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
             }
-            "view" => self.motion_of(params.text(Key::A)).map(Inputs::View),
+            "view" => {
+                let motion = self.motion_of(params.text(Key::A))?;
+                if params.is_on(Key::FootLock) {
+                    return Ok(self.feet.inputs(&motion).map(Inputs::View));
+                }
+                self.feet.stop();
+                Ok(Inputs::View(ViewInputs::plain(motion)))
+            }
             "make" => Ok(Inputs::Make(made_id(params))),
             "loop" => (self.motion_of(params.text(Key::A)))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
@@ -325,8 +342,8 @@ impl Session {
             Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
             Ok(Some(inputs)) => {
                 let outcome = match &inputs {
-                    Inputs::View(motion) => Ok(Outcome::plain(Arc::clone(motion))),
-                    Inputs::Make(_) => made_motion(params).map(|motion| Outcome::plain(Arc::new(motion))),
+                    Inputs::View(view) => view.run(),
+                    Inputs::Make(_) => make(params),
                     Inputs::Blend(blend) => blend.run(),
                     Inputs::Speed(speed) => speed.run(),
                     Inputs::Loop(cycle) => cycle.run(),

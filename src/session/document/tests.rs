@@ -1,6 +1,8 @@
 use super::*;
+use crate::metrics::{Metric, foot_slide_cm};
 use crate::session::reading::{Content, LARGE_BYTES, read};
 use crate::session::transport::Span;
+use crate::transition::{FootLockOptions, foot_lock};
 
 fn blend_window(session: &mut Session, frames: f64) {
     session
@@ -487,6 +489,76 @@ fn foot_lock_stills_the_feet_and_tells_what_it_did() {
         .iter()
         .find(|metric| metric.id == "skate_cm");
     assert_eq!(skate.unwrap().value, Some(before));
+}
+
+#[test]
+fn one_switch_holds_the_feet_in_every_lab() {
+    for lab in [
+        "lab=make&gait=stop",
+        "lab=view&a=stop",
+        "lab=blend",
+        "lab=transition",
+        "lab=speed",
+        "lab=loop",
+        "lab=layers&mask=whole",
+        "lab=register&b=walk_left",
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
+        settle(&mut session);
+        let metrics = &session.main_outcome().unwrap().metrics;
+        let value = |wanted: &str| metrics.iter().find(|metric| metric.id.starts_with(wanted)).unwrap().value.unwrap();
+        let before = value("skate_before_cm");
+        let slide = |metric: &&Metric| ["skate_cm", "skate_mean_cm"].contains(&metric.id);
+        let after = metrics.iter().find(slide).unwrap().value.unwrap();
+        assert!(after <= before && after < 1.0, "{lab}: {before} cm, {after} cm");
+    }
+}
+
+#[test]
+fn a_held_view_is_kept_under_its_recipe() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=view&a=stop&foot_lock=on".into())).unwrap();
+    let held = session.main_outcome().unwrap().motion.clip.clone();
+    session.apply(Command::Keep(0)).unwrap();
+    session
+        .apply(Command::OpenLink(
+            "lab=blend&a=view(a:stop,foot_lock:on)&b=walk(foot_lock:on)".into(),
+        ))
+        .unwrap();
+    settle(&mut session);
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(session.query())).unwrap();
+    settle(&mut other);
+    for session in [&session, &other] {
+        let of_slot = |slot| session.slot(slot).unwrap().motion.as_ref().unwrap();
+        assert_eq!(of_slot(Slot::A).clip, held);
+        assert_eq!(of_slot(Slot::B).clip.name(), "walk(foot_lock:on)");
+    }
+}
+
+#[test]
+fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
+    let mut session = Session::new();
+    let long = "walk(make_seconds:25)";
+    session.apply(Command::OpenLink(format!("lab=view&a={long}"))).unwrap();
+    let free = session.main_outcome().unwrap().clone();
+    assert!(free.motion.clip.frames() > 1_000 && free.metrics.is_empty());
+    session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(true))])).unwrap();
+    assert!(Arc::ptr_eq(session.main_outcome().unwrap(), &free));
+    let mut last = 0.0;
+    while let Some(job) = session.jobs().into_iter().find(|job| job.name == "holding feet") {
+        assert!(job.progress >= last);
+        last = job.progress;
+        session.work();
+    }
+    assert!(last > 0.9, "{last}");
+    settle(&mut session);
+    let held = session.main_outcome().unwrap();
+    let motion = &free.motion;
+    let whole = foot_lock(&motion.clip, &motion.roles, &motion.contacts, &FootLockOptions::default()).unwrap();
+    assert_eq!(*held.motion.clip, whole);
+    assert_eq!(held.metrics[1].value, foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts));
 }
 
 /// A session whose slot A holds a large file from storage, that is being read.

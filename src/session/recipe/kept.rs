@@ -15,8 +15,8 @@ const DEEPEST: usize = 6;
 pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
     let group = key.param().group;
     match lab {
-        "view" => group == Group::View,
-        "make" => group == Group::Make,
+        "view" => group == Group::View || key == Key::FootLock,
+        "make" => group == Group::Make || key == Key::FootLock,
         "blend" => group == Group::Blend,
         "transition" => matches!(group, Group::Blend | Group::Transition),
         "speed" => group == Group::Speed || key == Key::FootLock,
@@ -32,7 +32,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
         Key::A => lab != "graph",
-        Key::B => !matches!(lab, "loop" | "graph"),
+        Key::B => !matches!(lab, "view" | "loop" | "graph"),
         // Looked at, and not made from.
         Key::MaskColors => false,
         _ => belongs_to(key, lab),
@@ -45,7 +45,7 @@ fn is_ingredient(key: Key, lab: &str) -> bool {
 pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.text(Key::Lab);
     match lab {
-        "view" => return None,
+        "view" if !params.is_on(Key::FootLock) => return None,
         "make" => return Some(made_id(params)),
         _ => {}
     }
@@ -75,7 +75,7 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
     let (word, list) = id.strip_suffix(')')?.split_once('(')?;
     let mut params = Params::default();
     let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
-    let is_lab = Key::Lab.param().parse(word).is_ok() && !matches!(word, "view" | "make");
+    let is_lab = Key::Lab.param().parse(word).is_ok() && word != "make";
     let lab = if is_lab { word } else { "make" };
     set(Key::Lab, lab)?;
     if !is_lab {
@@ -85,19 +85,15 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
         let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
-        let is_written = match key.param().kind {
-            Kind::Clip => !value.ends_with(')'),
-            Kind::Text => true,
-            _ => false,
-        };
-        let value = if is_written {
+        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')') {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
         };
         set(Some(key).filter(|_| allowed)?, &value)?;
     }
-    Some(params)
+    // A clip as it is has its own id.
+    (lab != "view" || params.is_on(Key::FootLock)).then_some(params)
 }
 
 /// What a person calls what the parameters make.
@@ -105,6 +101,7 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
     let [a, b] = [Key::A, Key::B].map(|key| params.text(key).split('~').next().unwrap_or_default());
     match params.text(Key::Lab) {
         "make" => made_id(params),
+        "view" => format!("{a}, feet held"),
         "loop" => format!("{a}, looped"),
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
@@ -136,7 +133,7 @@ fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
 /// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
-    if param.kind == Kind::Text || (param.kind == Kind::Clip && recipe_params(&text).is_none()) {
+    if matches!(param.kind, Kind::Clip | Kind::Text) && recipe_params(&text).is_none() {
         utf8_percent_encode(&text, RESERVED).to_string()
     } else {
         text
@@ -179,8 +176,8 @@ mod tests {
     }
 
     fn id_of(params: &Params) -> String {
-        let motion = super::super::made_motion(&Params::default()).expect("a walk");
-        recipe_id(params, &Outcome::plain(std::sync::Arc::new(motion)), [60.0; 2]).expect("a recipe")
+        let outcome = super::super::make(&Params::default()).expect("a walk");
+        recipe_id(params, &outcome, [60.0; 2]).expect("a recipe")
     }
 
     #[test]
@@ -191,12 +188,21 @@ mod tests {
             "blend(gait:run)",
             "loop(a:walk,b:run)",
             "view(a:walk)",
+            "view(a:walk,b:run,foot_lock:on)",
             "make(gait:run)",
             "blend(a:walk,blend_window:0)",
             "blend((((((((((())))))))))))",
         ] {
             assert_eq!(recipe_params(id), None, "{id}");
         }
+    }
+
+    #[test]
+    fn lists_stay_whole_inside_of_an_id() {
+        let mut params = Params::default();
+        params.set(Key::Lab, Value::Choice("register")).expect("a lab");
+        params.set(Key::Pins, Value::Text("12-30,50-71".into())).expect("a text");
+        assert_eq!(recipe_params(&id_of(&params)), Some(params));
     }
 
     proptest! {

@@ -105,16 +105,14 @@ impl LoopInputs {
         let Found { motion, source, cut, .. } = &*self.found;
         let looped = close_loop(source, cut.cycle.clone(), &self.options).map_err(|error| error.to_string())?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
-        let made = rounds(&motion.roles, frames, fps, self.foot_lock, |cycles| {
-            // One more, of which the first frame is the one behind the last.
-            let clip = looped.repeat(cycles + 1).and_then(|clip| clip.crop(0..cycles * frames + 1));
-            let clip = clip.map_err(|error| error.to_string())?;
-            Ok((clip, repeated(&motion.contacts, &cut.cycle, cycles * frames + 1)))
-        })?;
+        // One more, of which the first frame is the one behind the last.
+        let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
+        let three = three.map_err(|error| error.to_string())?;
+        let contacts = repeated(&motion.contacts, &cut.cycle, 3 * frames + 1);
         let Rounds {
             motion: played,
             mut slides,
-        } = made;
+        } = rounds(&motion.roles, frames, three, &contacts, self.foot_lock)?;
         let secs = |frame: usize| frame as f64 / fps;
         let step = looped
             .frames

@@ -1,6 +1,10 @@
+use super::Outcome;
+use super::feet::{slide, slide_before, with_feet};
+use super::kept::belongs_to;
 use crate::session::motion::Motion;
-use crate::session::params::{Group, Key, Params};
+use crate::session::params::{Key, Params};
 use crate::synth::{self, Action};
+use std::sync::Arc;
 
 /// The action that the Make lab is set to.
 pub(in crate::session) fn synth_action(params: &Params) -> Action {
@@ -35,9 +39,19 @@ fn synth_params(params: &Params) -> synth::Params {
 }
 
 /// The motion that the Make lab is set to.
-pub(in crate::session) fn made_motion(params: &Params) -> Result<Motion, String> {
+pub(in crate::session) fn make(params: &Params) -> Result<Outcome, String> {
     let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
-    Ok(Motion::analyze(made.clip.with_name(made_id(params)), None))
+    let mut motion = Motion::analyze(made.clip.with_name(made_id(params)), None);
+    let slides = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
+    let mut metrics = vec![slides(&motion)];
+    if params.is_on(Key::FootLock) {
+        motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, true)?;
+        metrics = vec![slides(&motion), slide_before(metrics[0].value)];
+    }
+    Ok(Outcome {
+        metrics,
+        ..Outcome::plain(Arc::new(motion))
+    })
 }
 
 /// A built-in motion by its id.
@@ -54,7 +68,7 @@ pub(in crate::session) fn preset_motion(id: &str) -> Result<Motion, String> {
 pub(in crate::session) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| param.group == Group::Make && param.key != Key::Gait);
+        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait);
     let list: Vec<String> = changed
         .map(|(param, value)| format!("{}:{}", param.name, param.format(value)))
         .collect();

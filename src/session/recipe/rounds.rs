@@ -1,10 +1,11 @@
 //! A cycle that is played several times: what the Speed and the Loop lab show.
 
 use super::feet::{slide, slide_before, with_feet};
-use crate::clip::{Clip, Contacts, character_frames};
+use crate::clip::{Clip, ClipError, Contacts, character_frames};
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
 use crate::skeleton::{Roles, Side};
+use crate::transition::play_around;
 use std::sync::Arc;
 
 /// Cycles follow each other until they fill this, seconds.
@@ -20,42 +21,35 @@ pub(super) struct Rounds {
 
 /// Plays a cycle of `cycle_frames` several times.
 ///
-/// `played` gives so many cycles and the frame behind them, with the contacts of the feet. Feet are locked in two cycles more, of which the first and
-/// the last are cut off again: a stance that the end of a clip cuts in two would be planted elsewhere than the same stance in the middle.
-pub(super) fn rounds(
-    roles: &Roles,
-    cycle_frames: usize,
-    fps: f64,
-    lock: bool,
-    played: impl Fn(usize) -> Result<(Clip, Contacts), String>,
-) -> Result<Rounds, String> {
-    let cycle_secs = cycle_frames as f64 / fps;
-    let count = (SHOWN_SECS / cycle_secs).ceil().clamp(2.0, 12.0) as usize;
-    let (clip, contacts) = played(count)?;
-    let ground_frames = character_frames(&clip, roles);
-    let mut slides = vec![slide(&clip, roles, &contacts)];
-    let mut clip = Arc::new(clip);
+/// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in the middle is played again and again: a stance that
+/// the end of a clip cuts in two would be planted elsewhere than the same stance with all that is around it.
+pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: &Contacts, lock: bool) -> Result<Rounds, String> {
+    let sentence = |error: ClipError| error.to_string();
+    let fps = three.fps();
+    let count = (SHOWN_SECS * fps / cycle_frames as f64).ceil().clamp(2.0, 12.0) as usize;
+    let stands = character_frames(&three, roles);
+    let (Some(first), Some(second)) = (stands.first(), stands.get(cycle_frames)) else {
+        return Err("the cycle has no frames".to_owned());
+    };
+    let cycle = second.after(&first.inverse());
+    let three = Arc::new(three);
+    let before = slide(&three, roles, contacts);
+    let mut slides = vec![before];
+    let held = with_feet(&three, roles, contacts, lock)?;
     if lock {
-        let frames = clip.frames();
-        let (longer, longer_contacts) = played(count + 2)?;
-        let locked = with_feet(&Arc::new(longer), roles, &longer_contacts, true)?;
-        let middle = locked
-            .crop(cycle_frames..cycle_frames + frames)
-            .map_err(|error| error.to_string())?;
-        let back = match (ground_frames.first(), ground_frames.get(cycle_frames)) {
-            (Some(first), Some(second)) => first.after(&second.inverse()),
-            _ => return Err("the cycle has no frames".to_owned()),
-        };
-        clip = Arc::new(middle.transformed(&back));
-        let before = slides[0].value;
-        slides = vec![slide(&clip, roles, &contacts), slide_before(before)];
+        slides = vec![slide(&held, roles, contacts), slide_before(before.value)];
     }
+    let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;
+    let frames = count * cycle_frames + 1;
+    let clip = play_around(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
+        .and_then(|clip| clip.crop(0..frames))
+        .map_err(sentence)?;
     Ok(Rounds {
         motion: Motion {
-            clip,
+            ground_frames: character_frames(&clip, roles),
+            clip: Arc::new(clip),
             roles: roles.clone(),
-            contacts,
-            ground_frames,
+            contacts: repeated(contacts, &(cycle_frames..2 * cycle_frames), frames),
         },
         slides,
     })

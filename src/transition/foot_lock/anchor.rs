@@ -17,6 +17,7 @@ const STILL_MPS: f32 = 0.05;
 const LIFT_SECS: f64 = 0.06;
 
 /// The way of one foot through the clip.
+#[derive(Debug)]
 pub(super) struct Foot {
     points: Vec<(usize, Vec3)>,
     /// World positions of the points, frame by frame.

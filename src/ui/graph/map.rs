@@ -277,7 +277,7 @@ impl Tiles {
         let texture = ctx.load_texture("distances", image, options);
         let id = texture.id();
         if self.made.len() >= MOST_TILES {
-            self.made.remove(0);
+            drop(self.made.remove(0));
         }
         self.made.push((tile, texture));
         Some(id)
