@@ -289,8 +289,9 @@ impl WalkMeter {
                 clip: piece.stay.clip,
                 frame,
             };
-            let seen = profile.set.number(place).and_then(|number| self.seen.get_mut(number));
-            seen.into_iter().for_each(|seen| *seen = true);
+            if let Some(seen) = profile.set.number(place).and_then(|number| self.seen.get_mut(number)) {
+                *seen = true;
+            }
         }
         self.bring_over(&piece.world_from_piece.inverse().after(&self.world_from_last));
         self.world_from_last = piece.world_from_piece;
@@ -336,15 +337,18 @@ impl WalkMeter {
         for point in self.feet.iter_mut().flatten() {
             *point = here_from_last.apply(*point);
         }
-        let root_turn = self.turned.first_mut().into_iter();
-        root_turn.for_each(|turn| *turn = here_from_last.apply_vector(*turn));
+        if let Some(root_turn) = self.turned.first_mut() {
+            *root_turn = here_from_last.apply_vector(*root_turn);
+        }
         for (_, _, slid) in self.stances.iter_mut().flatten() {
             *slid = here_from_last.apply_vector(*slid);
         }
         if let Some((standing, rotations, root)) = &mut self.before {
             *standing = here_from_last.after(standing);
             *root = here_from_last.apply(*root);
-            rotations.first_mut().into_iter().for_each(|q| *q = here_from_last.rotation() * *q);
+            if let Some(q) = rotations.first_mut() {
+                *q = here_from_last.rotation() * *q;
+            }
         }
     }
 

@@ -248,10 +248,10 @@ impl Director {
     /// The clips that a walk is made of about a transition.
     fn draw_walk_ghosts(&mut self, shown: &Shown<'_>, walk: &Walk, colors: &Colors, pane: &mut Pane) {
         for (ghost, color) in walk.ghosts_at(shown.now, GHOST_FADE_SECS).into_iter().zip([colors.a, colors.b]) {
-            let Some((motion, secs, world, clear)) = ghost else { continue };
-            if let Some(world) = pose_at(motion, secs, &shown.place.after(&world)) {
-                let body = self.body(motion);
-                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * clear as f32));
+            let Some(ghost) = ghost else { continue };
+            if let Some(world) = pose_at(ghost.motion, ghost.secs, &shown.place.after(&ghost.world_from_clip)) {
+                let body = self.body(ghost.motion);
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * ghost.clear as f32));
             }
         }
     }

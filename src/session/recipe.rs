@@ -21,7 +21,7 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
-pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, write_jump, write_path, write_visits};
+pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub(super) use kept::{belongs_to, recipe_id, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};

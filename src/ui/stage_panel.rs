@@ -247,9 +247,8 @@ fn written(metric: &segue::metrics::Metric) -> String {
     let decimals = match metric.unit {
         "s" | "m" | "m/s" => 2,
         "cm" => 1,
-        "%" | "frames" => 0,
-        // What is counted.
-        "" => 0,
+        // What has no unit is counted.
+        "%" | "frames" | "" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };

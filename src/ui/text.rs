@@ -456,28 +456,25 @@ pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {
         1 => "1 dead end".to_owned(),
         count => format!("{count} dead ends"),
     };
-    let mut words = format!("{}, {dead}. ", jumps(built.whole().jumps().len()));
     let percent = |share: &f64| format!("{:.0} %", 100.0 * share);
-    match built.rings() {
-        [] => words += "Nothing leads back: every walk comes to an end.",
-        [one] => words += &format!("One component, with {} of all frames.", percent(one)),
+    let components = match built.rings() {
+        [] => "Nothing leads back: every walk comes to an end.".to_owned(),
+        [one] => format!("One component, with {} of all frames.", percent(one)),
         rings => {
             let shares: Vec<String> = rings.iter().take(4).map(percent).collect();
             let more = if rings.len() > 4 { ", …" } else { "" };
-            words += &format!(
+            format!(
                 "{} components that do not reach each other, with {}{more} of all frames: a higher threshold joins them.",
                 rings.len(),
                 shares.join(", ")
-            );
+            )
         }
-    }
-    if built.is_pruned() {
-        words += &format!(" The walk keeps to the largest: {}.", jumps(built.graph().jumps().len()));
-    }
-    if let Some(secs) = run_secs {
-        words += &format!(" A clip runs for {secs:.1} s on average until the next transition.");
-    }
-    words
+    };
+    let first = format!("{}, {dead}.", jumps(built.whole().jumps().len()));
+    let pruned = (built.is_pruned()).then(|| format!("The walk keeps to the largest: {}.", jumps(built.graph().jumps().len())));
+    let run = run_secs.map(|secs| format!("A clip runs for {secs:.1} s on average until the next transition."));
+    let sentences: Vec<String> = [first, components].into_iter().chain(pruned).chain(run).collect();
+    sentences.join(" ")
 }
 
 /// A transition: from where to where, how far apart, how probable.

@@ -10,7 +10,7 @@ mod wanted;
 pub use built::{Built, Field};
 pub use cast::Cast;
 pub(in crate::session) use grapher::Grapher;
-pub use walk::{At, Passed, Trace, Walk};
+pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub(in crate::session) use wanted::{clips_of, read_path, read_visits};
 pub use wanted::{write_jump, write_path, write_visits};
 

@@ -214,19 +214,17 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
         out.set_once(Key::GoTo, Value::Text(String::new()));
     }
-    ui.horizontal(|ui| {
-        if kit::button_ui(Button::new(text::DRAW_PATH).selected(state.drawing.is_some()), ui).clicked() {
-            if state.drawing.take().is_none() {
-                state.drawing = Some(Vec::new());
-                out.commands.push(Command::Set(vec![
-                    (Key::Camera, Value::Choice("top")),
-                    (Key::Follow, Value::Choice("off")),
-                    (Key::CameraDistance, Value::Number(14.0)),
-                    (Key::Jump, Value::Text(String::new())),
-                ]));
-            }
-        }
-    });
+    let draw = Button::new(text::DRAW_PATH).selected(state.drawing.is_some());
+    if kit::button_ui(draw, ui).clicked() && state.drawing.take().is_none() {
+        state.drawing = Some(Vec::new());
+        // From above, and far enough away for a path.
+        out.commands.push(Command::Set(vec![
+            (Key::Camera, Value::Choice("top")),
+            (Key::Follow, Value::Choice("off")),
+            (Key::CameraDistance, Value::Number(14.0)),
+            (Key::Jump, Value::Text(String::new())),
+        ]));
+    }
     if state.drawing.is_some() {
         note_ui(text::DRAWING, palette.accent_ink, ui);
     }

@@ -135,11 +135,9 @@ fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
         .get(at.stay)
         .and_then(|passed| passed.seam)
         .filter(|_| at.left.is_some());
-    match seam {
-        Some(seam) => jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default(),
-        None => {
-            let (name, frame) = named(&walk.built, at.place);
-            format!("{name} {frame}")
-        }
+    if let Some(seam) = seam {
+        return jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default();
     }
+    let (name, frame) = named(&walk.built, at.place);
+    format!("{name} {frame}")
 }

@@ -71,6 +71,19 @@ pub struct Walk {
     pub followed: Option<Trace>,
 }
 
+/// A clip that a walk is made of, as a ghost.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkGhost<'a> {
+    /// The clip.
+    pub motion: &'a Arc<Motion>,
+    /// Its time, seconds.
+    pub secs: f64,
+    /// Where it lies in the walk's world.
+    pub world_from_clip: Planar,
+    /// How clear it is, 0 to 1.
+    pub clear: f64,
+}
+
 /// A line over the ground, and how a walk follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -122,10 +135,9 @@ impl Walk {
         Some(graph.jumps().get(passed.stay.jump?)?.distance_cm)
     }
 
-    /// The clips that play in the transition about a time, as ghosts: the motion, its time in seconds, where it lies, and how clear it is, 0 to 1. The
-    /// first is the one that is left.
+    /// The clips that play in the transition about a time, the one that is left first. They fade in before it and out behind it.
     #[must_use]
-    pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<(&Arc<Motion>, f64, Planar, f64)>; 2] {
+    pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
         let fps = self.motion.clip.fps();
         let near = |passed: &&Passed| {
             let (Some(seam), start) = (passed.seam, passed.start as f64 / fps) else {
@@ -148,10 +160,15 @@ impl Walk {
         let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
             let motion = self.built.cast().motions().get(place.clip)?;
             let stands = motion.ground_frames.get(met)?;
-            let world = self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
-            let at = place.frame as f64 / fps + secs - start;
-            let there = (0.0..=motion.clip.duration_secs()).contains(&at) && clear > 0.02;
-            there.then_some((motion, at, world, clear))
+            let world_from_clip = self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
+            let secs = place.frame as f64 / fps + secs - start;
+            let there = (0.0..=motion.clip.duration_secs()).contains(&secs) && clear > 0.02;
+            there.then_some(WalkGhost {
+                motion,
+                secs,
+                world_from_clip,
+                clear,
+            })
         };
         [
             laid(seam.leave, seam.leave.frame, passed.start, (2.0 * inside).min(1.0) * behind),
