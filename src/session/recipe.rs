@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 mod blend;
 mod feet;
+mod graph;
 mod kept;
 mod layers;
 mod looping;
@@ -21,6 +22,8 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
+pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
@@ -154,6 +157,8 @@ pub struct Outcome {
     pub registered: Option<Arc<Registered>>,
     /// The path that it goes on; `None` where it was not edited.
     pub path: Option<Arc<OnPath>>,
+    /// The walk that it is; `None` where it is none.
+    pub walk: Option<Arc<Walk>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -170,6 +175,7 @@ impl Outcome {
             layer: None,
             registered: None,
             path: None,
+            walk: None,
             metrics: Vec::new(),
         }
     }

@@ -10,7 +10,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point};
-use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value};
+use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -28,14 +28,22 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
-    let draws = drawing_input(session, &shown, &response, state, out, ui);
-    camera_input(session, &response, draws || state.path.held.is_some(), out, ui);
+    if state.drawing.is_some() {
+        draw_path(session, &response, shown.first(), state, out, ui);
+    } else {
+        let draws = drawing_input(session, &shown, &response, state, out, ui);
+        camera_input(session, &response, draws || state.path.held.is_some(), out, ui);
+    }
     paint(stage, &shown, ui);
     (state.path.hovered, state.path.place) = (None, None);
     for &(index, rect) in &shown {
         handles_ui(session, index, rect, &response, state, out, ui);
     }
 
+    if let Some(points) = &state.drawing {
+        let stroke = egui::Stroke::new(2.5, palette_of(ui).b);
+        ui.painter().add(egui::Shape::line(points.clone(), stroke));
+    }
     let verdicts = verdicts(panes);
     let mut numbers_top = stage.bottom();
     for (place, &(index, rect)) in shown.iter().enumerate() {
@@ -58,6 +66,8 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         text::REGISTER_HINT
     } else if session.params().text(Key::Lab) == "path" {
         text::PATH_HINT
+    } else if session.params().text(Key::Lab) == "graph" {
+        text::GRAPH_HINT
     } else {
         ""
     };
@@ -109,6 +119,10 @@ fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
     let of = |id| ranking(panes, id);
+    let walk = of("walk_seam_dps");
+    if walk.best.is_some() {
+        return walk;
+    }
     let (registered, transition, cycle) = (of("skate_mean_cm"), of("seam_dps"), of("loop_seam_dps"));
     if registered.best.is_some() {
         registered
@@ -248,7 +262,8 @@ fn written(metric: &segue::metrics::Metric) -> String {
     let decimals = match metric.unit {
         "s" | "m" | "m/s" => 2,
         "cm" => 1,
-        "%" | "frames" | "bends" => 0,
+        // What has no unit is counted.
+        "%" | "frames" | "bends" | "" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };
@@ -335,6 +350,17 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             ),
             secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
         },
+        "graph" => {
+            let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
+            let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
+            let name = |(walk, clip): (&Walk, usize)| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
+            let next = at.and_then(|(walk, at)| Some(name((walk, walk.passed.get(at.stay + 1)?.stay.clip))));
+            Words {
+                strong: at.map(|(walk, at)| name((walk, at.place.clip))).unwrap_or_default(),
+                text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
+                secondary: format!("seed {}", session.params().number(Key::Seed)),
+            }
+        }
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),
             text: String::new(),
@@ -415,6 +441,45 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
 
 /// Degrees that the camera turns when the pointer moves by a point.
 const TURN_PER_POINT: f64 = 0.35;
+
+/// Between two points of a line on the ground, points of the screen.
+const DRAWN_EVERY: f32 = 6.0;
+
+/// A line that is drawn on the ground with the pointer: when it is let go, the walk follows it.
+fn draw_path(session: &Session, response: &Response, pane: Option<&(usize, Rect)>, state: &mut UiState, out: &mut Out, ui: &Ui) {
+    let (Some(points), Some(&(index, rect))) = (&mut state.drawing, pane) else {
+        return;
+    };
+    ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.dragged())
+        && points.last().is_none_or(|last| last.distance(pos) >= DRAWN_EVERY)
+    {
+        points.push(pos);
+    }
+    if !response.drag_stopped() {
+        return;
+    }
+    let points = state.drawing.take().unwrap_or_default();
+    let Some(shown) = session.panes().get(index).and_then(|pane| pane.shown_at(session.now_secs())) else {
+        return;
+    };
+    let params = session.params();
+    let pan = [Key::PanX, Key::PanY, Key::PanZ].map(|key| params.number(key) as f32);
+    let camera = segue::scene::Camera {
+        target: resting_point(shown.outcome, &shown.place) + glam::Vec3::from(pan),
+        ..camera_of(params)
+    };
+    let on_ground = points.into_iter().filter_map(|pos| {
+        let ray = camera.ray(glam_vec2(pos - rect.min), glam_vec2(rect.size()));
+        let hit = ray.ground_hit()?;
+        Some(glam::DVec2::new(hit.x.into(), hit.z.into()))
+    });
+    let path: Vec<glam::DVec2> = on_ground.collect();
+    if path.len() > 1 {
+        out.set_once(Key::WalkPath, Value::Text(write_path(&path)));
+        out.commands.push(segue::session::Command::Seek(0.0));
+    }
+}
 
 /// Turns, moves and zooms: drag; Shift or another button, or two fingers; wheel or pinch.
 fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut Out, ui: &Ui) {

@@ -1,7 +1,8 @@
 //! What the interface remembers that is nobody else's business.
 
 use super::path_hand::PathHand;
-use eframe::egui::Rect;
+use eframe::egui::{Pos2, Rect};
+use segue::graph::Place;
 use segue::scene::Camera;
 use segue::session::export::ExportOptions;
 
@@ -76,6 +77,16 @@ pub(crate) struct UiState {
     pub(crate) path: PathHand,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
+    /// The transition that the pointer is at, on the map of distances or on an arc.
+    pub(crate) hovered_jump: Option<[Place; 2]>,
+    /// Likewise in the frame before.
+    pub(crate) last_jump: Option<[Place; 2]>,
+    /// The line that is drawn on the ground, on the screen: points; none while nobody draws.
+    pub(crate) drawing: Option<Vec<Pos2>>,
+    /// Where the walk was when a single transition was opened, seconds.
+    pub(crate) walk_secs: f64,
+    /// How much room there is.
+    pub(crate) layout: Layout,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -104,6 +115,11 @@ impl Default for UiState {
             hovered_pair: None,
             path: PathHand::default(),
             cameras: Vec::new(),
+            hovered_jump: None,
+            last_jump: None,
+            drawing: None,
+            walk_secs: 0.0,
+            layout: Layout::Desk,
             export: ExportOptions::default(),
             saved_pane: 0,
             filming: Filming::default(),

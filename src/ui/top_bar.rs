@@ -1,6 +1,7 @@
 //! The bar at the top: which lab, and what concerns the whole page.
 
 use super::cycle_panels::{compare_loops, compare_speeds};
+use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
@@ -143,6 +144,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "loop" => return compare_loops(session, out),
         "register" => return compare_warps(session, out),
         "path" => return compare_points(session, out),
+        "graph" => return compare_windows(out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,

@@ -70,6 +70,22 @@ onBothBackends("a character goes on the path of the link, beside others", async 
   assert.match(id, /^path\(a:walk,path:[\w-]+\)$/);
 });
 
+// Fails when the graph has no walk, when a seed gives another one, when the walk does not grow, and when a classic mistake does not spin.
+onBothBackends("the graph lab walks by its seed, and the mistake spins", async ({ open }) => {
+  const { segue } = await open("lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&compare=atan:atan2,atan&play=off", DESK);
+  await segue("set", {});
+  const spins = await panes(segue, "spins");
+  assert.ok(spins[0] === 0 && spins[1] > 0, `spins: ${spins}`);
+  const [seams] = await panes(segue, "seams_per_min");
+  assert.ok(seams > 5, `${seams} transitions a minute`);
+  const before = await segue("pose", "result", 15);
+  await segue("set", { seed: 8 });
+  assert.ok(apart(await segue("pose", "result", 15), before) > 0.01, "another seed, another walk");
+  await segue("set", { seed: 7, t: 45 });
+  assert.ok(apart(await segue("pose", "result", 15), before) < 1e-6, "the same seed, the same walk");
+  await until("the walk is longer than what is measured", async () => (await segue("time")) === 45);
+});
+
 // Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
 onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);

@@ -2,6 +2,7 @@
 
 mod company;
 mod going_round;
+mod graphing;
 mod loading;
 mod panes;
 
@@ -19,8 +20,8 @@ use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Layerer, Outcome, Pairs, Paths, Registrar, Slot, read_pins,
-    read_weights,
+    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrar, Slot,
+    read_pins, read_weights,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
@@ -97,6 +98,7 @@ pub struct Session {
     registrar: Registrar,
     paths: Paths,
     company: Vec<Companion>,
+    grapher: Grapher,
     feet: FeetHolder,
     requests: Vec<Request>,
     reading: Vec<Reading>,
@@ -129,6 +131,7 @@ impl Session {
             registrar: Registrar::default(),
             paths: Paths::default(),
             company: Vec::new(),
+            grapher: Grapher::default(),
             feet: FeetHolder::default(),
             requests: Vec::new(),
             reading: Vec::new(),
@@ -338,6 +341,7 @@ impl Session {
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
+            Command::StopGraph(stop) => self.grapher.stop(stop),
             Command::Undo => {
                 if self.history.undo(&mut self.params, &mut self.library) {
                     self.library_revision += 1;
@@ -437,6 +441,9 @@ impl Session {
         if changed.contains(&Key::Src) {
             self.fetch_sources();
         }
+        if changed.iter().any(|key| key.param().group.is_of_lab()) {
+            self.grapher.stop(false);
+        }
         if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
             self.library_revision += 1;
         }
@@ -534,6 +541,7 @@ impl Session {
         self.remember(None);
         self.library.remove(&entry.id);
         self.leave_company(&entry.id);
+        self.leave_out_of_graph(&entry.id);
         self.library_revision += 1;
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
@@ -587,6 +595,11 @@ impl Session {
         let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
         let params = self.params_of(pane);
         let outcome = pane.outcome.clone().ok_or(nothing)?;
+        if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
+            return Err(CommandError::NotPossible(
+                "this walk goes like the one in the first pane: open it alone to keep it",
+            ));
+        }
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
             motion.map_or(1.0, |motion| motion.clip.fps())
@@ -670,6 +683,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
 
 #[cfg(test)]
 mod going_round_tests;
+#[cfg(test)]
+mod graphing_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]
