@@ -440,7 +440,7 @@ impl Segue {
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
-        self.picture.mark_path(self.panels.path.marks(&self.session));
+        self.picture.mark_path(self.panels.path_marks(&self.session));
         self.picture.show_jump(self.panels.hovered_jump);
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {

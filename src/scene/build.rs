@@ -1,4 +1,4 @@
-use super::path::{PathMarks, add_path};
+use super::path::{PathMarks, add_drawn, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::graph::Place;
@@ -102,7 +102,8 @@ impl Director {
                     (None, None) => self.draw(&shown, params, &look, colors, pane),
                 }
                 self.draw_company(session, &look, colors, pane);
-                add_drawn_path(session, colors, pane);
+                add_walk_path(session, colors, pane);
+                add_drawn(&self.marks, colors, pane);
                 self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
@@ -523,7 +524,7 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
 }
 
 /// The line that a walk follows.
-fn add_drawn_path(session: &Session, colors: &Colors, pane: &mut Pane) {
+fn add_walk_path(session: &Session, colors: &Colors, pane: &mut Pane) {
     if session.params().text(Key::Lab) == "graph" {
         let points = session
             .graph_path()

@@ -4,6 +4,7 @@ mod break_it;
 mod clip_panel;
 mod cycle_panels;
 mod graph;
+mod ground_line;
 pub(crate) mod kit;
 mod lab_panel;
 mod layers_rows;
@@ -59,7 +60,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
-    if !graph::is_open(session) {
+    if !matches!(session.params().text(Key::Lab), "graph" | "path") {
         state.drawing = None;
     }
     if session.params().is_on(Key::Embed) {

@@ -1,9 +1,10 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
+use super::ground_line::{GroundLine, ground_line};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::out::{Action, Out};
 use super::path_hand::path_of;
-use super::path_stage::{drawing_input, frame_once, handles_ui, said_ui};
+use super::path_stage::{frame_once, handles_ui, said_ui};
 use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
@@ -28,22 +29,23 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
-    if state.drawing.is_some() {
-        draw_path(session, &response, shown.first(), state, out, ui);
-    } else {
-        let draws = drawing_input(session, &shown, &response, state, out, ui);
-        camera_input(session, &response, draws || state.path.held.is_some(), out, ui);
+    let line = ground_line(&shown, &response, state, ui);
+    let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some();
+    if let GroundLine::Done(points) = line {
+        if session.params().text(Key::Lab) == "path" {
+            state.path.take_drawn(&points, session, out);
+        } else if points.len() > 1 {
+            out.set_once(Key::WalkPath, Value::Text(write_path(&points)));
+            out.commands.push(segue::session::Command::Seek(0.0));
+        }
     }
+    camera_input(session, &response, takes_drag, out, ui);
     paint(stage, &shown, ui);
     (state.path.hovered, state.path.place) = (None, None);
     for &(index, rect) in &shown {
         handles_ui(session, index, rect, &response, state, out, ui);
     }
 
-    if let Some(points) = &state.drawing {
-        let stroke = egui::Stroke::new(2.5, palette_of(ui).b);
-        ui.painter().add(egui::Shape::line(points.clone(), stroke));
-    }
     let verdicts = verdicts(panes);
     let mut numbers_top = stage.bottom();
     for (place, &(index, rect)) in shown.iter().enumerate() {
@@ -71,7 +73,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     } else {
         ""
     };
-    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.path.drawing);
+    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
@@ -441,45 +443,6 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
 
 /// Degrees that the camera turns when the pointer moves by a point.
 const TURN_PER_POINT: f64 = 0.35;
-
-/// Between two points of a line on the ground, points of the screen.
-const DRAWN_EVERY: f32 = 6.0;
-
-/// A line that is drawn on the ground with the pointer: when it is let go, the walk follows it.
-fn draw_path(session: &Session, response: &Response, pane: Option<&(usize, Rect)>, state: &mut UiState, out: &mut Out, ui: &Ui) {
-    let (Some(points), Some(&(index, rect))) = (&mut state.drawing, pane) else {
-        return;
-    };
-    ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
-    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.dragged())
-        && points.last().is_none_or(|last| last.distance(pos) >= DRAWN_EVERY)
-    {
-        points.push(pos);
-    }
-    if !response.drag_stopped() {
-        return;
-    }
-    let points = state.drawing.take().unwrap_or_default();
-    let Some(shown) = session.panes().get(index).and_then(|pane| pane.shown_at(session.now_secs())) else {
-        return;
-    };
-    let params = session.params();
-    let pan = [Key::PanX, Key::PanY, Key::PanZ].map(|key| params.number(key) as f32);
-    let camera = segue::scene::Camera {
-        target: resting_point(shown.outcome, &shown.place) + glam::Vec3::from(pan),
-        ..camera_of(params)
-    };
-    let on_ground = points.into_iter().filter_map(|pos| {
-        let ray = camera.ray(glam_vec2(pos - rect.min), glam_vec2(rect.size()));
-        let hit = ray.ground_hit()?;
-        Some(glam::DVec2::new(hit.x.into(), hit.z.into()))
-    });
-    let path: Vec<glam::DVec2> = on_ground.collect();
-    if path.len() > 1 {
-        out.set_once(Key::WalkPath, Value::Text(write_path(&path)));
-        out.commands.push(segue::session::Command::Seek(0.0));
-    }
-}
 
 /// Turns, moves and zooms: drag; Shift or another button, or two fingers; wheel or pinch.
 fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut Out, ui: &Ui) {

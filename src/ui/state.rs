@@ -1,10 +1,12 @@
 //! What the interface remembers that is nobody else's business.
 
 use super::path_hand::PathHand;
-use eframe::egui::{Pos2, Rect};
+use eframe::egui::Rect;
+use glam::DVec2;
 use segue::graph::Place;
-use segue::scene::Camera;
+use segue::scene::{Camera, PathMarks};
 use segue::session::export::ExportOptions;
+use segue::session::{Key, Session};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,8 +83,8 @@ pub(crate) struct UiState {
     pub(crate) hovered_jump: Option<[Place; 2]>,
     /// Likewise in the frame before.
     pub(crate) last_jump: Option<[Place; 2]>,
-    /// The line that is drawn on the ground, on the screen: points; none while nobody draws.
-    pub(crate) drawing: Option<Vec<Pos2>>,
+    /// The line that is drawn on the ground, (x, z) in metres; none while nobody draws.
+    pub(crate) drawing: Option<Vec<DVec2>>,
     /// Where the walk was when a single transition was opened, seconds.
     pub(crate) walk_secs: f64,
     /// How much room there is.
@@ -126,6 +128,22 @@ impl Default for UiState {
             hint: true,
             stage: Rect::NOTHING,
             fetching: Vec::new(),
+        }
+    }
+}
+
+impl UiState {
+    /// What is to be seen on the stage of the hand that works on it.
+    pub(crate) fn path_marks(&self, session: &Session) -> PathMarks {
+        let is_open = session.params().text(Key::Lab) == "path";
+        let drawn = self.drawing.clone().unwrap_or_default();
+        PathMarks {
+            handles: is_open && drawn.is_empty(),
+            chosen: self.path.chosen,
+            hovered: self.path.hovered,
+            place: self.path.place.map(|(place, _)| place),
+            is_held: is_open && (self.path.held.is_some() || !drawn.is_empty()),
+            drawn,
         }
     }
 }

@@ -64,7 +64,7 @@ impl Page {
             others: [color; 4],
             ghost_alpha: 0.4,
         };
-        self.director.mark_path(self.state.path.marks(&self.session));
+        self.director.mark_path(self.state.path_marks(&self.session));
         self.director.stage(&self.session, &shown, 1.0, Look::DARK, &colors, 10.0);
         let panes = self.session.panes().len();
         self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
