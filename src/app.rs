@@ -98,6 +98,8 @@ pub(crate) struct Segue {
     panels: UiState,
     curves: CurveCache,
     picture: Picture,
+    /// What is said when the clipboard has taken what it was given.
+    copied: &'static str,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
 }
@@ -173,6 +175,7 @@ impl Segue {
             curves: CurveCache::default(),
             picture: Picture::default(),
             film: None,
+            copied: ui::LINK_COPIED,
         }
     }
 
@@ -238,7 +241,9 @@ impl Segue {
         self.send_requests();
         let mut more = true;
         while more && platform::now_ms() - now_ms < WORK_MS {
+            let began_ms = platform::now_ms();
             more = self.session.work();
+            self.session.work_took((platform::now_ms() - began_ms) / 1e3);
         }
         // A piece of work may have found out that it needs something.
         self.send_requests();
@@ -264,7 +269,7 @@ impl Segue {
                 self.begin_reading(&name, file);
             }
             Incoming::Reading { task, news } => self.hear_of_reading(task, news),
-            Incoming::Copied => self.session.say(Level::Info, ui::LINK_COPIED),
+            Incoming::Copied => self.session.say(Level::Info, self.copied),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
                 self.samples.retain(|id| *id != sample.id);
@@ -443,7 +448,8 @@ impl Segue {
         let look = if theme.dark { Look::DARK } else { Look::LIGHT };
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
-        self.picture.mark_path(self.panels.path.marks(&self.session));
+        self.picture.mark_path(self.panels.path_marks(&self.session));
+        self.picture.show_jump(self.panels.hovered_jump);
         self.picture.show_candidate(self.panels.drive.ghost(&self.session));
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
@@ -472,7 +478,15 @@ impl Segue {
         match action {
             Action::OpenFiles => platform::open_files(&self.inbox),
             Action::StopFetching(name) => self.stop_fetching(name),
-            Action::CopyLink => platform::copy_text(self.url(), ctx, &self.inbox),
+            Action::CopyLink => {
+                self.copied = ui::LINK_COPIED;
+                platform::copy_text(self.url(), ctx, &self.inbox);
+            }
+            Action::CopyText(text) => {
+                self.copied = ui::TABLE_COPIED;
+                platform::copy_text(text.clone(), ctx, &self.inbox);
+            }
+            Action::SaveText { name, mime, text } => platform::download(name, mime, text.as_bytes(), &self.inbox),
             Action::Save { which, how } => match self.export_as(which, how) {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
                 Err(reason) => self.session.say(

@@ -390,6 +390,7 @@ impl Segue {
             "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
             "loop" => format!("{} loop", params.text(Key::A)),
             "path" => format!("{} on a path", params.text(Key::A)),
+            "graph" => "walk".to_owned(),
             "match" => "drive".to_owned(),
             _ => params.text(Key::A).to_owned(),
         }

@@ -74,6 +74,11 @@ impl Picture {
         (0..panes).map(|pane| self.director.camera(pane).copied()).collect()
     }
 
+    /// The transition whose windows are shown in place of the result from now on.
+    pub(crate) fn show_jump(&mut self, ends: Option<[segue::graph::Place; 2]>) {
+        self.director.show_jump(ends);
+    }
+
     /// Draws the session's present state into the place that was kept.
     pub(crate) fn finish(&mut self, place: Place, session: &Session, palette: &Palette, look: Look, ui: &Ui) {
         let now_ms = now_ms();

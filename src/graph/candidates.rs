@@ -1,9 +1,13 @@
 use super::{AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place};
-use crate::clip::jolts;
 use crate::math::Planar;
+use crate::registration::Progress;
+use std::sync::Arc;
 
 /// More are not held: of these many the closest are kept.
 const MOST_CANDIDATES: usize = 400_000;
+
+/// To align what was found takes as long as to look at so many cells.
+const CELLS_PER_FOUND: usize = 100;
 
 /// A frame in which a joint's turning changes so many times as much as in all but one in a hundred frames is not left or entered.
 const MOST_JOLT: f32 = 4.0;
@@ -41,41 +45,9 @@ impl Candidates {
     /// # Errors
     /// [`GraphError`] when the options do not fit the clips, or the distances are those of another window.
     pub fn find(all: &AllPairs, distances: &FrameDistances, options: &GraphOptions) -> Result<Self, GraphError> {
-        let set = distances.set();
-        options.check(set)?;
-        if distances.window() != options.blend_window {
-            return Err(GraphError::OtherWindow {
-                found: distances.window(),
-                expected: options.blend_window,
-            });
-        }
-        let mut picker = Picker::new(set, options);
-        for a in 0..set.clips().len() {
-            for b in a..set.clips().len() {
-                let Some(block) = distances.block(a, b) else { continue };
-                let place = |clip, frame| Place { clip, frame };
-                let at = |row: usize, column: usize| block.get(row, column);
-                let align = |leave, enter| all.alignment(leave, enter, options.blend_window).map(|found| found.transform);
-                if let Construction::Segments { .. } = options.construction {
-                    for (row, column) in picker.cells(a, b) {
-                        if let Some(distance) = at(row, column) {
-                            picker.offer(place(a, row), place(b, column), distance, || true, align)?;
-                        }
-                    }
-                    continue;
-                }
-                for row in 0..block.size().0 {
-                    let (first, cells) = block.row(row);
-                    for (column, &distance) in cells.iter().enumerate().map(|(at, cell)| (first + at, cell)) {
-                        if picker.is_worth(distance) {
-                            let minimum = || is_minimum(at, row, column);
-                            picker.offer(place(a, row), place(b, column), distance, minimum, align)?;
-                        }
-                    }
-                }
-            }
-        }
-        Ok(picker.finish())
+        let mut search = CandidateSearch::new(distances, options)?;
+        while !search.advance(all, distances, usize::MAX)?.is_complete() {}
+        Ok(search.finish())
     }
 
     /// The places, closest first.
@@ -97,6 +69,117 @@ impl Candidates {
     }
 }
 
+/// [`Candidates::find`] in slices. Between them it holds neither the pairs nor the distances.
+#[derive(Clone, Debug)]
+pub struct CandidateSearch {
+    picker: Picker,
+    /// The clips a ≤ b and the row that come next.
+    next: (usize, usize, usize),
+    done: usize,
+    total: usize,
+}
+
+impl CandidateSearch {
+    /// Prepares the search.
+    ///
+    /// # Errors
+    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another window.
+    pub fn new(distances: &FrameDistances, options: &GraphOptions) -> Result<Self, GraphError> {
+        let set = distances.set();
+        options.check(set)?;
+        if distances.window() != options.blend_window {
+            return Err(GraphError::OtherWindow {
+                found: distances.window(),
+                expected: options.blend_window,
+            });
+        }
+        let clips = set.clips().len();
+        let pairs = (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b)));
+        let cells = pairs
+            .filter_map(|(a, b)| distances.block(a, b))
+            .map(|block| block.size().0 * block.size().1);
+        Ok(Self {
+            picker: Picker::new(Arc::clone(set), *options),
+            next: (0, 0, 0),
+            done: 0,
+            total: cells.sum(),
+        })
+    }
+
+    /// Looks at about `cells` more cells of the matrix (less where much is found), at least one row of a pair of clips, and says how many are done. All that is between two
+    /// clips is looked at in one slice if the construction is by segments: that is little.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`]; not for the pairs and distances that it was made of.
+    pub fn advance(&mut self, all: &AllPairs, distances: &FrameDistances, cells: usize) -> Result<Progress, GraphError> {
+        let clips = distances.set().clips().len();
+        let window = distances.window();
+        let align = |leave, enter| all.alignment(leave, enter, window).map(|found| found.transform);
+        let place = |clip, frame| Place { clip, frame };
+        let until = self.done.saturating_add(cells.max(1));
+        let found = self.picker.found.len();
+        let work = |search: &Self| search.done + CELLS_PER_FOUND * search.picker.found.len().saturating_sub(found);
+        while self.next.0 < clips && work(self) < until {
+            let (a, b, row) = self.next;
+            let Some(block) = distances.block(a, b) else {
+                self.next = following(a, b, clips);
+                continue;
+            };
+            let (rows, columns) = block.size();
+            if let Construction::Segments { .. } = self.picker.options.construction {
+                for (row, column) in self.picker.cells(a, b) {
+                    if let Some(distance) = block.get(row, column) {
+                        self.picker.offer(place(a, row), place(b, column), distance, || true, align)?;
+                    }
+                }
+                self.done += rows * columns;
+                self.next = following(a, b, clips);
+                continue;
+            }
+            if row >= rows {
+                self.next = following(a, b, clips);
+                continue;
+            }
+            let at = |row: usize, column: usize| block.get(row, column);
+            let (first, cells) = block.row(row);
+            for (column, &distance) in cells.iter().enumerate().map(|(at, cell)| (first + at, cell)) {
+                if self.picker.is_worth(distance) {
+                    let minimum = || is_minimum(at, row, column);
+                    self.picker.offer(place(a, row), place(b, column), distance, minimum, align)?;
+                }
+            }
+            self.done += columns;
+            self.next.2 += 1;
+        }
+        let done = if self.next.0 < clips {
+            self.done.min(self.total.saturating_sub(1))
+        } else {
+            self.total
+        };
+        Ok(Progress { done, total: self.total })
+    }
+
+    /// How far it has come.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        Progress {
+            done: self.done.min(self.total),
+            total: self.total,
+        }
+    }
+
+    /// What was found so far.
+    #[must_use]
+    pub fn finish(self) -> Candidates {
+        self.picker.finish()
+    }
+}
+
+/// The pair of clips after a ≤ b, from its first row on.
+fn following(a: usize, b: usize, clips: usize) -> (usize, usize, usize) {
+    if b + 1 < clips { (a, b + 1, 0) } else { (a + 1, a + 1, 0) }
+}
+
 /// No larger than its eight neighbours; of a plateau the first.
 pub(super) fn is_minimum(at: impl Fn(usize, usize) -> Option<f32>, row: usize, column: usize) -> bool {
     let Some(here) = at(row, column) else { return false };
@@ -113,12 +196,11 @@ pub(super) fn is_minimum(at: impl Fn(usize, usize) -> Option<f32>, row: usize, c
 }
 
 /// Takes places in, in any order.
-pub(super) struct Picker<'a> {
-    set: &'a FrameSet,
-    options: &'a GraphOptions,
+#[derive(Clone, Debug)]
+pub(super) struct Picker {
+    set: Arc<FrameSet>,
+    pub(super) options: GraphOptions,
     min_jump: usize,
-    /// Per clip and frame, how much the joints jolt.
-    jolts: Vec<Vec<f32>>,
     /// Metres of the clips' own body.
     threshold_m: f32,
     nearest_m: f32,
@@ -126,18 +208,17 @@ pub(super) struct Picker<'a> {
     left_out: usize,
 }
 
-impl<'a> Picker<'a> {
-    pub(super) fn new(set: &'a FrameSet, options: &'a GraphOptions) -> Self {
+impl Picker {
+    pub(super) fn new(set: Arc<FrameSet>, options: GraphOptions) -> Self {
         Self {
-            set,
-            options,
-            jolts: set.clips().iter().map(|source| jolts(source.clip())).collect(),
             min_jump: (options.min_jump_secs * set.fps()).round().max(1.0) as usize,
             // A little more than the threshold; what is above it is told by the rounded distance.
             threshold_m: ((options.edge_threshold_cm + 0.001) / set.cm_per_m()) as f32,
             nearest_m: f32::INFINITY,
             found: Vec::new(),
             left_out: 0,
+            set,
+            options,
         }
     }
 
@@ -162,7 +243,7 @@ impl<'a> Picker<'a> {
 
     /// The frames of a clip at which its segments are entered or left.
     fn ends(&self, clip: usize) -> Vec<usize> {
-        let mut frames: Vec<usize> = (self.options.stretches(self.set, clip).iter())
+        let mut frames: Vec<usize> = (self.options.stretches(&self.set, clip).iter())
             .flat_map(|stretch| [stretch.start, stretch.end - self.options.blend_window])
             .collect();
         frames.sort_unstable();
@@ -224,14 +305,14 @@ impl<'a> Picker<'a> {
             && enter.frame + window < self.set.frames_of(enter.clip);
         fits && match self.options.construction {
             Construction::Minima => self.is_calm(leave) && self.is_calm(enter),
-            Construction::Segments { .. } => self.options.is_left_at(self.set, leave) && self.options.is_entered_at(self.set, enter),
+            Construction::Segments { .. } => self.options.is_left_at(&self.set, leave) && self.options.is_entered_at(&self.set, enter),
         }
     }
 
     /// No joint jolts around a frame: a capture that trembles has velocities there that nobody had, and a transition would carry them on.
     fn is_calm(&self, place: Place) -> bool {
         let around = place.frame.saturating_sub(1)..=place.frame;
-        let jolts = self.jolts.get(place.clip).and_then(|jolts| jolts.get(around));
+        let jolts = self.set.jolts(place.clip).get(around);
         jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= MOST_JOLT))
     }
 

@@ -1,7 +1,7 @@
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
-    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PointClouds, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep,
-    SymmetricDistances,
+    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds, Progress, RegistrationError, SelfSweep,
+    SelfTerms, Sweep, SymmetricDistances,
 };
 use std::sync::Arc;
 
@@ -190,7 +190,67 @@ enum Now<'a> {
     Pair(Sweep<'a>),
 }
 
+/// An [`AllSweep`] that lets go of the terms until it goes on.
+#[derive(Clone, Debug)]
+pub struct PausedAllSweep {
+    window: usize,
+    blocks: Vec<BlockDistances>,
+    now: Option<PausedNow>,
+}
+
+#[derive(Clone, Debug)]
+enum PausedNow {
+    Itself(PausedSelfSweep),
+    Pair(PausedSweep),
+}
+
+impl PausedAllSweep {
+    /// Goes on where it was left. `all` is what the sweep was made of.
+    #[must_use]
+    pub fn resume(self, all: &AllPairs) -> AllSweep<'_> {
+        let now = match (self.now, all.blocks.get(self.blocks.len())) {
+            (Some(PausedNow::Itself(sweep)), Some(Block::Itself(terms, _))) => Some(Now::Itself(sweep.resume(terms))),
+            (Some(PausedNow::Pair(sweep)), Some(Block::Pair(terms, _))) => Some(Now::Pair(sweep.resume(terms))),
+            _ => None,
+        };
+        AllSweep {
+            all,
+            window: self.window,
+            blocks: self.blocks,
+            now,
+        }
+    }
+
+    /// Frames of the windows.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.window
+    }
+
+    /// How many pairs of clips are done, and of how many.
+    #[must_use]
+    pub fn progress(&self, all: &AllPairs) -> Progress {
+        Progress {
+            done: self.blocks.len(),
+            total: all.blocks.len(),
+        }
+    }
+}
+
 impl AllSweep<'_> {
+    /// Lets go of the terms, so that the rest can be done later.
+    #[must_use]
+    pub fn pause(self) -> PausedAllSweep {
+        PausedAllSweep {
+            window: self.window,
+            blocks: self.blocks,
+            now: self.now.map(|now| match now {
+                Now::Itself(sweep) => PausedNow::Itself(sweep.pause()),
+                Now::Pair(sweep) => PausedNow::Pair(sweep.pause()),
+            }),
+        }
+    }
+
     /// Does up to `rows` more rows of a pair of clips, and says how many pairs of clips are done.
     ///
     /// # Errors
@@ -308,7 +368,7 @@ impl FrameDistances {
     }
 
     /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value is the mean distance (centimetres) of a square of
-    /// `factor` × `factor` of them, row-major; NaN where no window starts.
+    /// `factor` × `factor` of them, of which at most 4 × 4 are looked at, row-major; NaN where no window starts.
     #[must_use]
     pub fn picture(&self, rows: std::ops::Range<usize>, columns: std::ops::Range<usize>, factor: usize) -> Vec<f32> {
         let factor = factor.max(1);
@@ -318,12 +378,13 @@ impl FrameDistances {
         };
         let (rows, columns) = (places(rows), places(columns));
         let scale = self.set.cm_per_m() as f32;
+        let every = factor.div_ceil(4);
         let mut picture = Vec::new();
         for rows in rows.chunks(factor) {
             for columns in columns.chunks(factor) {
                 let (mut sum, mut count) = (0.0, 0);
-                for &a in rows.iter().flatten() {
-                    for &b in columns.iter().flatten() {
+                for &a in rows.iter().step_by(every).flatten() {
+                    for &b in columns.iter().step_by(every).flatten() {
                         let (a, b) = (a.min(b), a.max(b));
                         if let Some(found) = self.block(a.clip, b.clip).and_then(|block| block.get(a.frame, b.frame)) {
                             sum += found;
@@ -342,21 +403,34 @@ impl FrameDistances {
     #[must_use]
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
-        let last = counts.len() - 1;
+        for block in 0..self.blocks.len() {
+            self.count(block, bin_cm, &mut counts);
+        }
+        counts
+    }
+
+    /// How many pairs of clips there are, a clip with itself included.
+    #[must_use]
+    pub fn pairs_of_clips(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// [`Self::histogram`] of one pair of clips, added to what is counted already.
+    pub fn count(&self, pair: usize, bin_cm: f64, counts: &mut [u32]) {
+        let (Some(block), Some(last)) = (self.blocks.get(pair), counts.len().checked_sub(1)) else {
+            return;
+        };
         let scale = if bin_cm > 0.0 {
             (self.set.cm_per_m() / bin_cm) as f32
         } else {
             f32::MAX
         };
-        for block in &self.blocks {
-            for row in 0..block.size().0 {
-                let (_, distances) = block.row(row);
-                let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
-                for &distance in distances.get(itself..).unwrap_or_default() {
-                    counts[((distance * scale) as usize).min(last)] += 1;
-                }
+        for row in 0..block.size().0 {
+            let (_, distances) = block.row(row);
+            let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
+            for &distance in distances.get(itself..).unwrap_or_default() {
+                counts[((distance * scale) as usize).min(last)] += 1;
             }
         }
-        counts
     }
 }

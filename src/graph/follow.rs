@@ -99,55 +99,93 @@ pub struct Followed {
 /// off that by centimetres per transition.
 #[must_use]
 pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Followed {
-    let world_from_first = first_place(graph, start, path);
-    let mut search = Search {
-        graph,
-        path,
-        looked_at: 0,
-        stop_at: 0,
-        until: 0.0,
-        trail: Vec::new(),
-        best: None,
-    };
-    let mut here = State {
-        node: start,
-        world: world_from_first,
-        last: None,
-        along: 0.0,
-        cost: 0,
-        square: 0.0,
-        frames: 0,
-    };
-    let fps = graph.set().fps();
-    // Enough for every second of the path at a slow walk.
-    let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
-    let mut edges = Vec::new();
-    while here.along < path.length() && search.looked_at < budget {
-        search.stop_at = (search.looked_at + (budget / stages).max(64)).min(budget);
-        search.until = here.frames as f64 + HORIZON_SECS * fps;
-        (search.best, search.trail) = (None, Vec::new());
-        search.descend(&here);
-        let Some((_, way)) = search.best.take() else { break };
-        let kept = here.frames as f64 + KEPT_SECS * fps;
-        let before = edges.len();
-        for edge in way {
-            if edges.len() > before && here.frames as f64 >= kept {
-                break;
-            }
-            here = search.behind(&here, edge);
-            edges.push(edge);
-        }
-        if edges.len() == before {
-            break;
+    let mut search = PathSearch::new(graph, start, path, budget);
+    while !search.advance(graph, path) {}
+    search.finish(path)
+}
+
+/// [`follow`], second by second of the walk.
+#[derive(Clone, Debug)]
+pub struct PathSearch {
+    world_from_first: Planar,
+    here: State,
+    edges: Vec<EdgeIndex>,
+    looked_at: usize,
+    budget: usize,
+}
+
+impl PathSearch {
+    /// Stands at the start; the arguments are those of [`follow`].
+    #[must_use]
+    pub fn new(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Self {
+        let world_from_first = first_place(graph, start, path);
+        Self {
+            world_from_first,
+            here: State {
+                node: start,
+                world: world_from_first,
+                last: None,
+                along: 0.0,
+                cost: 0,
+                square: 0.0,
+                frames: 0,
+            },
+            edges: Vec::new(),
+            looked_at: 0,
+            budget,
         }
     }
-    Followed {
-        edges,
-        world_from_first,
-        rms_m: (here.square / (here.frames as f64).max(1.0)).sqrt(),
-        along_m: here.along.min(path.length()),
-        arrives: here.along >= path.length(),
-        looked_at: search.looked_at,
+
+    /// Looks a few seconds ahead and goes on by one; `true` when the path, the ways or the budget are at an end.
+    pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath) -> bool {
+        if self.here.along >= path.length() || self.looked_at >= self.budget {
+            return true;
+        }
+        // Enough for every second of the path at a slow walk.
+        let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
+        let fps = graph.set().fps();
+        let mut search = Search {
+            graph,
+            path,
+            looked_at: self.looked_at,
+            stop_at: (self.looked_at + (self.budget / stages).max(64)).min(self.budget),
+            until: self.here.frames as f64 + HORIZON_SECS * fps,
+            trail: Vec::new(),
+            best: None,
+        };
+        search.descend(&self.here);
+        self.looked_at = search.looked_at;
+        let Some((_, way)) = search.best.take() else { return true };
+        let kept = self.here.frames as f64 + KEPT_SECS * fps;
+        let before = self.edges.len();
+        for edge in way {
+            if self.edges.len() > before && self.here.frames as f64 >= kept {
+                break;
+            }
+            self.here = search.behind(&self.here, edge);
+            self.edges.push(edge);
+        }
+        self.edges.len() == before
+    }
+
+    /// How much of the path is walked along, 0 to 1.
+    #[must_use]
+    pub fn progress(&self, path: &GroundPath) -> f64 {
+        (self.here.along / path.length()).min(1.0)
+    }
+
+    /// The best so far.
+    #[must_use]
+    pub fn finish(self, path: &GroundPath) -> Followed {
+        let here = self.here;
+        Followed {
+            edges: self.edges,
+            world_from_first: self.world_from_first,
+            rms_m: (here.square / (here.frames as f64).max(1.0)).sqrt(),
+            along_m: here.along.min(path.length()),
+            arrives: here.along >= path.length(),
+            looked_at: self.looked_at,
+        }
     }
 }
 
@@ -160,7 +198,7 @@ fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Plan
 }
 
 /// At the start of a node.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct State {
     node: NodeIndex,
     /// `world_from_clip` of the node's clip.

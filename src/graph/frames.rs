@@ -1,7 +1,8 @@
 use super::GraphError;
 use crate::blend::{Source, check};
+use crate::clip::jolts;
 use crate::registration::{DistanceMatrix, limb_weights};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A frame of one of the clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
@@ -20,6 +21,8 @@ pub struct FrameSet {
     starts: Vec<usize>,
     weights: Vec<f64>,
     body_height: f64,
+    /// Per clip and frame, how much the joints jolt; found when it is asked for.
+    jolts: Vec<OnceLock<Vec<f32>>>,
 }
 
 impl FrameSet {
@@ -47,11 +50,20 @@ impl FrameSet {
             starts.push(starts.last().copied().unwrap_or(0) + clip.clip().frames());
         }
         Ok(Self {
+            jolts: vec![OnceLock::new(); clips.len()],
             clips,
             starts,
             weights,
             body_height,
         })
+    }
+
+    /// How much the joints of a clip jolt in each of its frames ([`jolts`]); empty where there is no such clip.
+    pub(super) fn jolts(&self, clip: usize) -> &[f32] {
+        match (self.jolts.get(clip), self.clips.get(clip)) {
+            (Some(found), Some(source)) => found.get_or_init(|| jolts(source.clip())),
+            _ => &[],
+        }
     }
 
     /// The clips.

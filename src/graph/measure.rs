@@ -1,3 +1,4 @@
+use super::stitch::PieceSeam;
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
 use crate::clip::{Clip, Contacts, stillest_step, turn_change};
 use crate::math::{Planar, quat, stats, wrap_angle};
@@ -38,10 +39,33 @@ impl WalkProfile {
     /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames × joints).
     #[must_use]
     pub fn new(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
-        let joints = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
+        let mut profile = Self::begun(set, roles, contacts);
+        while !profile.advance(usize::MAX) {}
+        profile
+    }
+
+    /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is complete.
+    #[must_use]
+    pub fn begun(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
+        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
+        Self {
+            step: stats::percentile(&steps, 0.999).unwrap_or(0.0),
+            set,
+            roles: roles.clone(),
+            contacts,
+            turns: Vec::new(),
+            changes: Vec::new(),
+        }
+    }
+
+    /// Measures up to so many more joints; `true` when all are measured.
+    pub fn advance(&mut self, joints: usize) -> bool {
+        let set = &self.set;
+        let all = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
         let percentile = |values: &[f32], p: f32| stats::percentile(values, p).unwrap_or(0.0);
-        let (mut turns, mut changes) = (Vec::new(), Vec::new());
-        for joint in 0..joints {
+        let (turns, changes) = (&mut self.turns, &mut self.changes);
+        for joint in turns.len()..turns.len().saturating_add(joints).min(all) {
             let (mut turned, mut changed) = (Vec::new(), Vec::new());
             for source in set.clips() {
                 let clip = source.clip();
@@ -56,16 +80,7 @@ impl WalkProfile {
             turns.push([percentile(&turned, 0.99), percentile(&turned, 0.999)]);
             changes.push(percentile(&changed, 0.99));
         }
-        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
-        let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
-        Self {
-            step: percentile(&steps, 0.999),
-            set,
-            roles: roles.clone(),
-            contacts,
-            turns,
-            changes,
-        }
+        turns.len() == all
     }
 
     fn planted(&self, place: Place, side: Side) -> bool {
@@ -120,7 +135,7 @@ pub struct WalkMetrics {
 }
 
 /// What is read of a walk, frame by frame.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 struct Walked {
     steps: Vec<Planar>,
     turns: Vec<f32>,
@@ -134,33 +149,11 @@ impl WalkMetrics {
     /// Measures consecutive pieces of a walk.
     #[must_use]
     pub fn measure(pieces: &[WalkPiece], graph: &MotionGraph, profile: &WalkProfile) -> Self {
-        let fps = profile.set.fps();
-        let walked = Walked::of(pieces, profile);
-        let first = pieces.first().map_or(0, |piece| piece.start);
-        let seams = pieces
-            .iter()
-            .filter_map(|piece| seam(piece, first, &walked, profile, fps))
-            .collect::<Vec<_>>();
-        let touches = |stance: &(usize, usize, f32)| seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1);
-        let own: Vec<f32> = walked
-            .stances
-            .iter()
-            .filter(|stance| !touches(stance))
-            .map(|stance| stance.2 * 100.0)
-            .collect();
-        let mut seen = vec![false; graph.set().frames()];
-        for stay in pieces.iter().map(|piece| piece.stay) {
-            let number = |frame| graph.set().number(Place { clip: stay.clip, frame });
-            for frame in (stay.from..stay.to).filter_map(number) {
-                seen[frame] = true;
-            }
+        let mut meter = WalkMeter::new(graph.set());
+        for piece in pieces {
+            meter.add(piece, profile);
         }
-        Self {
-            secs: walked.steps.len() as f64 / fps,
-            variety: seen.iter().filter(|seen| **seen).count() as f64 / seen.len().max(1) as f64,
-            seams,
-            own_skate_cm: stats::percentile(&own, 0.5),
-        }
+        meter.metrics(profile)
     }
 
     /// Transitions with more than 30° of yaw in 0.2 s that neither clip has.
@@ -251,74 +244,147 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }
 
-impl Walked {
-    fn of(pieces: &[WalkPiece], profile: &WalkProfile) -> Self {
-        let mut walked = Self::default();
-        let Some(first) = pieces.first() else { return walked };
-        let points = Side::BOTH.map(|side| profile.roles.foot_points(first.clip.skeleton(), side));
-        let mut feet: [Vec<Vec3>; 2] = Default::default();
-        // Per side: the first frame of the stance, and how far it has slid at most and by now.
-        let mut stances: [Option<(usize, f32, Vec3)>; 2] = [None; 2];
-        let mut before: Option<(Planar, Vec<Quat>, Vec3)> = None;
-        let mut turned: Vec<Vec3> = Vec::new();
-        let mut world = WorldPose::default();
-        let mut last_world = first.world_from_piece;
-        for piece in pieces {
-            let mut next = Some(piece.world_from_piece.inverse().after(&last_world));
-            last_world = piece.world_from_piece;
-            for frame in 0..piece.clip.frames() {
-                // What is known of the last piece is brought into this one: nothing is compared far from the origin.
-                if let Some(here_from_last) = next.take() {
-                    for points in &mut feet {
-                        for point in points.iter_mut() {
-                            *point = here_from_last.apply(*point);
-                        }
-                    }
-                    turned
-                        .first_mut()
-                        .into_iter()
-                        .for_each(|turn| *turn = here_from_last.apply_vector(*turn));
-                    for (_, _, slid) in stances.iter_mut().flatten() {
-                        *slid = here_from_last.apply_vector(*slid);
-                    }
-                    if let Some((standing, rotations, root)) = &mut before {
-                        *standing = here_from_last.after(standing);
-                        *root = here_from_last.apply(*root);
-                        rotations.first_mut().into_iter().for_each(|q| *q = here_from_last.rotation() * *q);
-                    }
-                }
-                let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
-                let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
-                let sources = Sources::of(piece, frame, &profile.set);
-                walked.step(before.as_ref(), (&standing, rotations, root), &mut turned, profile, &sources);
-                before = Some((standing, rotations.to_vec(), root));
-                piece.clip.world_pose_into(frame, &mut world);
-                let number = walked.steps.len() - 1;
-                for side in Side::BOTH {
-                    let now: Vec<Vec3> = points[side.index()]
-                        .iter()
-                        .map(|&(joint, point)| world.point(joint, point))
-                        .collect();
-                    let stands = profile.planted(shown(piece, frame), side);
-                    let (feet, stance) = (&mut feet[side.index()], &mut stances[side.index()]);
-                    if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
-                        *slid += step;
-                        *most = most.max(slid.length());
-                    } else {
-                        walked.stances.extend(stance.take().map(|(first, most, _)| (first, number, most)));
-                        *stance = stands.then_some((number, 0.0, Vec3::ZERO));
-                    }
-                    *feet = now;
-                }
-            }
+/// Measures a walk piece by piece, as it is made.
+#[derive(Clone, Debug)]
+pub struct WalkMeter {
+    walked: Walked,
+    /// The first frame of the walk that is measured.
+    first: Option<usize>,
+    /// Where each transition begins, and which it is.
+    seams: Vec<(usize, PieceSeam)>,
+    /// Per frame of the set.
+    seen: Vec<bool>,
+    feet: [Vec<Vec3>; 2],
+    /// Per side: the first frame of the stance, and how far it has slid at most and by now.
+    stances: [Option<(usize, f32, Vec3)>; 2],
+    /// The last frame: where the character stands, its joints, its root.
+    before: Option<(Planar, Vec<Quat>, Vec3)>,
+    turned: Vec<Vec3>,
+    world_from_last: Planar,
+}
+
+impl WalkMeter {
+    /// Nothing is measured yet.
+    #[must_use]
+    pub fn new(set: &FrameSet) -> Self {
+        Self {
+            walked: Walked::default(),
+            first: None,
+            seams: Vec::new(),
+            seen: vec![false; set.frames()],
+            feet: Default::default(),
+            stances: [None; 2],
+            before: None,
+            turned: Vec::new(),
+            world_from_last: Planar::IDENTITY,
         }
-        let last = walked.steps.len().saturating_sub(1);
-        walked
-            .stances
-            .extend(stances.into_iter().flatten().map(|(first, most, _)| (first, last, most)));
-        walked
     }
 
+    /// The next piece. O(frames × joints).
+    pub fn add(&mut self, piece: &WalkPiece, profile: &WalkProfile) {
+        self.first.get_or_insert(piece.start);
+        self.seams.extend(piece.seam.map(|seam| (piece.start, seam)));
+        for frame in piece.stay.from..piece.stay.to {
+            let place = Place {
+                clip: piece.stay.clip,
+                frame,
+            };
+            if let Some(seen) = profile.set.number(place).and_then(|number| self.seen.get_mut(number)) {
+                *seen = true;
+            }
+        }
+        self.bring_over(&piece.world_from_piece.inverse().after(&self.world_from_last));
+        self.world_from_last = piece.world_from_piece;
+        let points = Side::BOTH.map(|side| profile.roles.foot_points(piece.clip.skeleton(), side));
+        let mut world = WorldPose::default();
+        for frame in 0..piece.clip.frames() {
+            let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
+            let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
+            let sources = Sources::of(piece, frame, &profile.set);
+            self.walked.step(
+                self.before.as_ref(),
+                (&standing, rotations, root),
+                &mut self.turned,
+                profile,
+                &sources,
+            );
+            self.before = Some((standing, rotations.to_vec(), root));
+            piece.clip.world_pose_into(frame, &mut world);
+            let number = self.walked.steps.len() - 1;
+            for side in Side::BOTH {
+                let now: Vec<Vec3> = points[side.index()]
+                    .iter()
+                    .map(|&(joint, point)| world.point(joint, point))
+                    .collect();
+                let stands = profile.planted(piece.shown_at(frame), side);
+                let (feet, stance) = (&mut self.feet[side.index()], &mut self.stances[side.index()]);
+                if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
+                    *slid += step;
+                    *most = most.max(slid.length());
+                } else {
+                    self.walked
+                        .stances
+                        .extend(stance.take().map(|(first, most, _)| (first, number, most)));
+                    *stance = stands.then_some((number, 0.0, Vec3::ZERO));
+                }
+                *feet = now;
+            }
+        }
+    }
+
+    /// What is known of the last piece is brought into the next one: nothing is compared far from the origin.
+    fn bring_over(&mut self, here_from_last: &Planar) {
+        for point in self.feet.iter_mut().flatten() {
+            *point = here_from_last.apply(*point);
+        }
+        if let Some(root_turn) = self.turned.first_mut() {
+            *root_turn = here_from_last.apply_vector(*root_turn);
+        }
+        for (_, _, slid) in self.stances.iter_mut().flatten() {
+            *slid = here_from_last.apply_vector(*slid);
+        }
+        if let Some((standing, rotations, root)) = &mut self.before {
+            *standing = here_from_last.after(standing);
+            *root = here_from_last.apply(*root);
+            if let Some(q) = rotations.first_mut() {
+                *q = here_from_last.rotation() * *q;
+            }
+        }
+    }
+
+    /// How many frames are measured.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.walked.steps.len()
+    }
+
+    /// What was measured so far. `profile` is the one that the pieces were measured by.
+    #[must_use]
+    pub fn metrics(&self, profile: &WalkProfile) -> WalkMetrics {
+        let fps = profile.set.fps();
+        let first = self.first.unwrap_or(0);
+        let last = self.walked.steps.len().saturating_sub(1);
+        let open = self.stances.iter().flatten().map(|&(first, most, _)| (first, last, most));
+        let stances: Vec<(usize, usize, f32)> = self.walked.stances.iter().copied().chain(open).collect();
+        let seams: Vec<Seam> = (self.seams.iter())
+            .map(|(start, of)| seam(start - first, of, &self.walked, &stances, profile))
+            .collect();
+        let touches = |stance: &(usize, usize, f32)| seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1);
+        let own: Vec<f32> = stances
+            .iter()
+            .filter(|stance| !touches(stance))
+            .map(|stance| stance.2 * 100.0)
+            .collect();
+        WalkMetrics {
+            secs: self.walked.steps.len() as f64 / fps,
+            variety: self.seen.iter().filter(|seen| **seen).count() as f64 / self.seen.len().max(1) as f64,
+            seams,
+            own_skate_cm: stats::percentile(&own, 0.5),
+        }
+    }
+}
+
+impl Walked {
     /// The step into a frame.
     fn step(
         &mut self,
@@ -409,23 +475,8 @@ impl<'a> Sources<'a> {
     }
 }
 
-/// The frame of a clip that has the greater part in a frame of a piece.
-fn shown(piece: &WalkPiece, frame: usize) -> Place {
-    match piece.seam.filter(|seam| frame < seam.handover) {
-        Some(seam) => Place {
-            frame: seam.leave.frame + frame,
-            ..seam.leave
-        },
-        None => Place {
-            clip: piece.stay.clip,
-            frame: piece.stay.from + frame,
-        },
-    }
-}
-
-fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile, fps: f64) -> Option<Seam> {
-    let of = piece.seam?;
-    let at = piece.start - first;
+fn seam(at: usize, of: &PieceSeam, walked: &Walked, stances: &[(usize, usize, f32)], profile: &WalkProfile) -> Seam {
+    let fps = profile.set.fps();
     let end = (at + of.frames).min(walked.steps.len().saturating_sub(1));
     let most = |values: &[f32]| values.get(at..=end).unwrap_or_default().iter().copied().fold(0.0, f32::max);
     let behind = |place: Place, steps: usize| Place {
@@ -440,8 +491,8 @@ fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile,
         .collect();
     let flashes = walked.flashes.get(at..=end).unwrap_or_default().iter();
     let (flash, flash_joint) = flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-    let stances = walked.stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
-    Some(Seam {
+    let stances = stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
+    Seam {
         at,
         frames: of.frames,
         turn_deg: most(&walked.turns).to_degrees(),
@@ -451,7 +502,7 @@ fn seam(piece: &WalkPiece, first: usize, walked: &Walked, profile: &WalkProfile,
         flash_joint,
         skate_cm: stances.map(|stance| stance.2 * 100.0).max_by(f32::total_cmp),
         lag_s: lag(&steps, fps),
-    })
+    }
 }
 
 /// The most that the first turns beyond both others over any run of at most `longest` steps, radians.

@@ -58,16 +58,16 @@ mod walk;
 mod weights;
 
 pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
-pub use candidates::{Candidate, Candidates};
-pub use distances::{AllPairs, AllSweep, FrameDistances};
+pub use candidates::{Candidate, CandidateSearch, Candidates};
+pub use distances::{AllPairs, AllSweep, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
-pub use follow::{Followed, GroundPath, follow};
+pub use follow::{Followed, GroundPath, PathSearch, follow};
 pub use frames::{FrameSet, Place};
-pub use measure::{Seam, WalkMetrics, WalkProfile};
-pub use stitch::{StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
+pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
+pub use stitch::{PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};
-pub use weights::{Choices, DistanceLaw, WeightOptions};
+pub use weights::{Choices, DistanceLaw, RunLength, WeightOptions};
 
 #[cfg(test)]
 mod tests;

@@ -70,6 +70,23 @@ pub struct WalkPiece {
     pub seam: Option<PieceSeam>,
 }
 
+impl WalkPiece {
+    /// The frame of a clip that has the greater part in a frame of the piece.
+    #[must_use]
+    pub fn shown_at(&self, frame: usize) -> Place {
+        match self.seam.filter(|seam| frame < seam.handover) {
+            Some(seam) => Place {
+                frame: seam.leave.frame + frame,
+                ..seam.leave
+            },
+            None => Place {
+                clip: self.stay.clip,
+                frame: self.stay.from + frame,
+            },
+        }
+    }
+}
+
 /// The transition at the start of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PieceSeam {
@@ -92,6 +109,7 @@ pub struct Stitcher {
     options: StitchOptions,
     playing: Option<Tail>,
     made: usize,
+    world_from_first: Planar,
 }
 
 /// What has played of the last piece, and what would have played on.
@@ -114,7 +132,13 @@ impl Stitcher {
             options: *options,
             playing: None,
             made: 0,
+            world_from_first: Planar::IDENTITY,
         }
+    }
+
+    /// Where the first piece's clip lies in the walk's world, which it otherwise lies in as it was recorded. For a stitcher that has made nothing yet.
+    pub fn start_at(&mut self, world_from_first: Planar) {
+        self.world_from_first = world_from_first;
     }
 
     /// The next piece. Stays come in the order in which a walk gives them; `graph` is the one it goes through.
@@ -147,7 +171,7 @@ impl Stitcher {
                     Some(seam),
                 )
             }
-            _ => (part(source, stay.from..until)?, 0, Planar::IDENTITY, None),
+            _ => (part(source, stay.from..until)?, 0, self.world_from_first, None),
         };
         let leave = entered + (stay.to - stay.from);
         let past = (PAST_SECS * self.set.fps()).round() as usize;

@@ -3,6 +3,7 @@ use super::distances::level_m;
 use super::{Candidates, Construction, FrameSet, GraphError, GraphOptions, Place};
 use crate::registration::{PairTerms, PointClouds, Progress};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Windows of a tile, to a side.
 const TILE: usize = 512;
@@ -11,10 +12,11 @@ const TILE: usize = 512;
 ///
 /// 30,000 frames of 31 joints are 1,770 tiles of about 5 ms each, and 5 MB at a time beside the points (12 bytes per joint and frame) and what
 /// is found. A new window or threshold means to begin again.
-pub struct CandidateStream<'a> {
-    set: &'a FrameSet,
-    options: &'a GraphOptions,
-    picker: Picker<'a>,
+#[derive(Clone, Debug)]
+pub struct CandidateStream {
+    set: Arc<FrameSet>,
+    options: GraphOptions,
+    picker: Picker,
     parts: Vec<Part>,
     /// The next tile: parts a ≤ b.
     next: (usize, usize),
@@ -22,6 +24,7 @@ pub struct CandidateStream<'a> {
 }
 
 /// A part of a clip: the windows that start in `starts`, and one more to either side, so that a minimum is seen to be one.
+#[derive(Clone, Debug)]
 struct Part {
     clip: usize,
     starts: Range<usize>,
@@ -30,12 +33,12 @@ struct Part {
     clouds: PointClouds,
 }
 
-impl<'a> CandidateStream<'a> {
+impl CandidateStream {
     /// Prepares the search.
     ///
     /// # Errors
     /// [`GraphError`] when the options do not fit the clips, or a position is not finite.
-    pub fn new(set: &'a FrameSet, options: &'a GraphOptions) -> Result<Self, GraphError> {
+    pub fn new(set: &Arc<FrameSet>, options: &GraphOptions) -> Result<Self, GraphError> {
         options.check(set)?;
         let (level, window) = (level_m(set)?, options.blend_window);
         let mut parts = Vec::new();
@@ -55,9 +58,9 @@ impl<'a> CandidateStream<'a> {
             }
         }
         Ok(Self {
-            set,
-            options,
-            picker: Picker::new(set, options),
+            set: Arc::clone(set),
+            options: *options,
+            picker: Picker::new(Arc::clone(set), *options),
             parts,
             next: (0, 0),
             done: 0,
@@ -79,6 +82,15 @@ impl<'a> CandidateStream<'a> {
             };
         }
         Ok(Progress { done: self.done, total })
+    }
+
+    /// How many tiles are done.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        Progress {
+            done: self.done,
+            total: self.parts.len() * (self.parts.len() + 1) / 2,
+        }
     }
 
     /// The rest, and what is found.
@@ -107,7 +119,7 @@ impl<'a> CandidateStream<'a> {
         let at = |row: usize, column: usize| distances.get(row, column);
         let only_minima = self.options.construction == Construction::Minima;
         for i in a.starts.clone() {
-            if !only_minima && !self.options.is_end(self.set, Place { clip: a.clip, frame: i }) {
+            if !only_minima && !self.options.is_end(&self.set, Place { clip: a.clip, frame: i }) {
                 continue;
             }
             let row = i - a.from;
@@ -117,7 +129,7 @@ impl<'a> CandidateStream<'a> {
                 let Some(&distance) = cells.get(column) else { continue };
                 let (leave, enter) = (Place { clip: a.clip, frame: i }, Place { clip: b.clip, frame: j });
                 // Of a clip with itself only one half counts.
-                if leave < enter && self.picker.is_worth(distance) && (only_minima || self.options.is_end(self.set, enter)) {
+                if leave < enter && self.picker.is_worth(distance) && (only_minima || self.options.is_end(&self.set, enter)) {
                     let minimum = || !only_minima || is_minimum(at, row, column);
                     self.picker.offer(leave, enter, distance, minimum, align)?;
                 }

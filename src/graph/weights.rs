@@ -100,27 +100,61 @@ impl Choices {
     /// comes to an end.
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
-        let nodes = self.ways.len();
-        let mut now = vec![1.0 / nodes as f64; nodes];
-        for _ in 0..MOST_STEPS {
+        let mut run = RunLength::new(self.ways.len());
+        while !run.advance(graph, self, MOST_STEPS) {}
+        run.secs(graph, self)
+    }
+}
+
+/// [`Choices::expected_run_secs`] in slices.
+#[derive(Clone, Debug)]
+pub struct RunLength {
+    /// How probable it is to be in each node.
+    now: Vec<f64>,
+    steps: usize,
+}
+
+impl RunLength {
+    /// Of a graph with so many nodes.
+    #[must_use]
+    pub fn new(nodes: usize) -> Self {
+        Self {
+            now: vec![1.0 / nodes as f64; nodes],
+            steps: 0,
+        }
+    }
+
+    /// Does up to `steps` more steps, O(edges) each; `true` when no more are needed.
+    pub fn advance(&mut self, graph: &MotionGraph, choices: &Choices, steps: usize) -> bool {
+        for _ in 0..steps {
+            if self.steps >= MOST_STEPS {
+                break;
+            }
+            self.steps += 1;
             // Half of it stays where it is: a walk that comes round in a fixed number of steps would never settle.
-            let mut next: Vec<f64> = now.iter().map(|p| 0.5 * p).collect();
-            for (node, p) in graph.graph.node_indices().zip(&now) {
-                for (edge, share) in self.probabilities(node) {
+            let mut next: Vec<f64> = self.now.iter().map(|p| 0.5 * p).collect();
+            for (node, p) in graph.graph.node_indices().zip(&self.now) {
+                for (edge, share) in choices.probabilities(node) {
                     if let Some((_, to)) = graph.graph.edge_endpoints(edge) {
                         next[to.index()] += 0.5 * p * share;
                     }
                 }
             }
-            let change: f64 = next.iter().zip(&now).map(|(a, b)| (a - b).abs()).sum();
-            now = next;
+            let change: f64 = next.iter().zip(&self.now).map(|(a, b)| (a - b).abs()).sum();
+            self.now = next;
             if change < 1e-12 {
-                break;
+                self.steps = MOST_STEPS;
             }
         }
+        self.steps >= MOST_STEPS
+    }
+
+    /// Seconds from one transition to the next; `None` where there are none in the long run.
+    #[must_use]
+    pub fn secs(&self, graph: &MotionGraph, choices: &Choices) -> Option<f64> {
         let (mut frames, mut jumps) = (0.0, 0.0);
-        for (node, p) in graph.graph.node_indices().zip(&now) {
-            for (edge, share) in self.probabilities(node) {
+        for (node, p) in graph.graph.node_indices().zip(&self.now) {
+            for (edge, share) in choices.probabilities(node) {
                 frames += p * share * graph.frames_of(edge) as f64;
                 jumps += if graph.jump(edge).is_some() { p * share } else { 0.0 };
             }

@@ -36,7 +36,7 @@ pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
-pub use self_terms::{SelfSweep, SelfTerms, SymmetricDistances};
+pub use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
 pub use sweep::{PausedSweep, Sweep};
 pub(crate) use terms::MOST_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};

@@ -1,4 +1,4 @@
-use super::sweep::{Sweep, packed_start};
+use super::sweep::{PausedSweep, Sweep, packed_start};
 use super::{Alignment, PairTerms, PointClouds, Progress, RegistrationError};
 
 /// The terms of all pairs of frames of one clip with itself: [`PairTerms`] at half the time and half the memory, since the distance of two
@@ -65,7 +65,34 @@ pub struct SelfSweep<'a> {
     rows: usize,
 }
 
+/// A [`SelfSweep`] that lets go of the terms until it goes on.
+#[derive(Clone, Debug)]
+pub struct PausedSelfSweep {
+    sweep: PausedSweep,
+    rows: usize,
+}
+
+impl PausedSelfSweep {
+    /// Goes on where it was left. `terms` are those that the sweep was made of.
+    #[must_use]
+    pub fn resume(self, terms: &SelfTerms) -> SelfSweep<'_> {
+        SelfSweep {
+            sweep: self.sweep.resume(&terms.0),
+            rows: self.rows,
+        }
+    }
+}
+
 impl SelfSweep<'_> {
+    /// Lets go of the terms, so that the rest can be done later.
+    #[must_use]
+    pub fn pause(self) -> PausedSelfSweep {
+        PausedSelfSweep {
+            sweep: self.sweep.pause(),
+            rows: self.rows,
+        }
+    }
+
     /// Does up to `rows` more rows, and says how far it has come.
     pub fn advance(&mut self, rows: usize) -> Progress {
         self.sweep.advance(rows)

@@ -1,10 +1,11 @@
 use super::drive::add_drive;
-use super::path::{PathMarks, add_path};
+use super::path::{PathMarks, add_drawn, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
+use crate::graph::Place;
 use crate::matching;
 use crate::math::Planar;
-use crate::session::{self, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, joint_of};
+use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
 use glam::Vec3;
 use std::sync::{Arc, Weak};
@@ -36,6 +37,7 @@ pub struct Director {
     marks_joint: bool,
     pair: Option<[f64; 2]>,
     marks: PathMarks,
+    jump: Option<[Place; 2]>,
     candidate: Option<matching::Place>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
@@ -58,6 +60,8 @@ const COMPANY_SHARE: f32 = 0.55;
 const CROWD_SHARE: f32 = 0.3;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
+/// So much of a walk's path is drawn, behind and before it, seconds.
+const WALK_PATH_SECS: f64 = 30.0;
 /// A camera that nothing is followed with comes to a new view this fast.
 const VIEW_HALF_LIFE_SECS: f32 = 0.06;
 /// A followed character that jumped farther than this (a loop began again) is not chased but cut to.
@@ -97,11 +101,14 @@ impl Director {
                     place,
                     world,
                 };
-                match self.pair.zip(session.distance_map()) {
-                    Some((frames, map)) => self.draw_pair(&shown, frames, map, params, colors, pane),
-                    None => self.draw(&shown, params, &look, colors, pane),
+                match (self.pair.zip(session.distance_map()), self.jump.zip(session.graph_built())) {
+                    (Some((frames, map)), _) => self.draw_pair(&shown, frames, map, params, colors, pane),
+                    (None, Some((ends, built))) => self.draw_jump(&shown, ends, built, colors, pane),
+                    (None, None) => self.draw(&shown, params, &look, colors, pane),
                 }
                 self.draw_company(session, &look, colors, pane);
+                add_walk_path(session, colors, pane);
+                add_drawn(&self.marks, colors, pane);
                 if index == 0 {
                     self.draw_crowd(session, &shown, &look, colors, pane);
                 }
@@ -136,6 +143,11 @@ impl Director {
     /// What the hand does with a path, from now on.
     pub fn mark_path(&mut self, marks: PathMarks) {
         self.marks = marks;
+    }
+
+    /// The transition whose windows are shown in place of the result from now on, laid on each other; `None` for the result itself.
+    pub fn show_jump(&mut self, ends: Option<[Place; 2]>) {
+        self.jump = ends;
     }
 
     /// Whether a camera is still on its way, so that another frame is needed.
@@ -207,7 +219,7 @@ impl Director {
         if let Some(path) = &outcome.path {
             add_path(path, &self.marks, look, colors, pane);
         } else if params.is_on(Key::Trail) {
-            add_ground_path(outcome, place, colors, pane);
+            add_ground_path(outcome, place, now, colors, pane);
         }
         if let Some(driven) = &outcome.driven {
             if params.is_on(Key::Trail) {
@@ -288,7 +300,44 @@ impl Director {
             }
         }
         if params.is_on(Key::Trail) {
-            add_ground_path(shown.outcome, &shown.place, colors, pane);
+            add_ground_path(shown.outcome, &shown.place, shown.now, colors, pane);
+        }
+    }
+
+    /// Both windows of a transition where the result stands: their first, middle and last frame.
+    fn draw_jump(&mut self, shown: &Shown<'_>, [leave, enter]: [Place; 2], built: &Built, colors: &Colors, pane: &mut Pane) {
+        let Some(jump) = built.jump_of(leave, enter).and_then(|index| built.whole().jumps().get(index)) else {
+            return;
+        };
+        let motions = built.cast().motions();
+        let (Some(a), Some(b)) = (motions.get(leave.clip), motions.get(enter.clip)) else {
+            return;
+        };
+        let last = jump.window.saturating_sub(1);
+        let stands = shown.place.after(&shown.outcome.motion.standing_at(shown.now));
+        let fps = a.clip.fps();
+        let secs = |frame: usize| frame as f64 / fps;
+        let middle = a.standing_at(secs(leave.frame + last / 2));
+        let world_from_a = stands.after(&middle.inverse());
+        let world_from_b = world_from_a.after(&jump.alignment);
+        for (step, clear) in [(0, 0.55), (last, 0.55), (last / 2, 1.0)] {
+            for (motion, from, place, color) in [(a, leave.frame, &world_from_a, colors.a), (b, enter.frame, &world_from_b, colors.b)] {
+                if let Some(world) = pose_at(motion, secs(from + step), place) {
+                    let body = self.body(motion);
+                    pane.add_ghost(&body, &world, with_alpha(color, (PAIR_ALPHA * clear * colors.ghost_alpha).min(0.9)));
+                }
+            }
+        }
+    }
+
+    /// The clips that a walk is made of about a transition.
+    fn draw_walk_ghosts(&mut self, shown: &Shown<'_>, walk: &Walk, colors: &Colors, pane: &mut Pane) {
+        for (ghost, color) in walk.ghosts_at(shown.now, GHOST_FADE_SECS).into_iter().zip([colors.a, colors.b]) {
+            let Some(ghost) = ghost else { continue };
+            if let Some(world) = pose_at(ghost.motion, ghost.secs, &shown.place.after(&ghost.world_from_clip)) {
+                let body = self.body(ghost.motion);
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * ghost.clear as f32));
+            }
         }
     }
 
@@ -315,6 +364,10 @@ impl Director {
     /// Both sources about the transition, as far as they differ from the result: A appears as its weight falls, B vanishes as its weight rises.
     fn draw_sources(&mut self, shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
         let (outcome, now) = (shown.outcome, shown.now);
+        if let Some(walk) = outcome.walk.as_ref().filter(|walk| !walk.is_jump) {
+            self.draw_walk_ghosts(shown, walk, colors, pane);
+            return;
+        }
         if outcome.registered.is_some() {
             let away = outcome.transition.map_or(0.0, |transition| {
                 (transition.start_secs - now).max(now - transition.end_secs).max(0.0) / GHOST_FADE_SECS
@@ -491,17 +544,37 @@ fn color_at(outcome: &Outcome, secs: f64, colors: &Colors) -> Color {
     }
 }
 
-fn add_ground_path(outcome: &Outcome, at: &Planar, colors: &Colors, pane: &mut Pane) {
+fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pane: &mut Pane) {
     let frames = &outcome.motion.ground_frames;
     let fps = outcome.motion.clip.fps();
-    let stride = frames.len().div_ceil(PATH_POINTS).max(1);
-    let points = frames.iter().enumerate().step_by(stride).map(|(frame, place)| {
-        (
-            at.apply(place.origin()).with_y(0.004),
-            color_at(outcome, frame as f64 / fps, colors),
-        )
+    // Of a long walk what lies about the present.
+    let near = match &outcome.walk {
+        Some(walk) if !walk.is_jump && walk.followed.is_none() => {
+            let frame = |secs: f64| ((secs.max(0.0) * fps) as usize).min(frames.len());
+            frame(now - WALK_PATH_SECS)..frame(now + WALK_PATH_SECS)
+        }
+        _ => 0..frames.len(),
+    };
+    let stride = near.len().div_ceil(PATH_POINTS).max(1);
+    let points = near.step_by(stride).filter_map(|frame| {
+        let secs = frame as f64 / fps;
+        let mut color = color_at(outcome, secs, colors);
+        // What is to come is fainter than what was walked.
+        color[3] *= if outcome.walk.is_some() && secs > now { 0.45 } else { 1.0 };
+        Some((at.apply(frames.get(frame)?.origin()).with_y(0.004), color))
     });
     pane.add_path(points, 2.0, Layer::Ground);
+}
+
+/// The line that a walk follows.
+fn add_walk_path(session: &Session, colors: &Colors, pane: &mut Pane) {
+    if session.params().text(Key::Lab) == "graph" {
+        let points = session
+            .graph_path()
+            .into_iter()
+            .map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
+        pane.add_dashed_path(points, colors.b, 0.12, 2.5, Layer::Ground);
+    }
 }
 
 fn add_joint_trail(motion: &Motion, joint: usize, now: f64, place: &Planar, color: Color, pane: &mut Pane) {

@@ -61,6 +61,10 @@ pub(super) fn add_path(path: &OnPath, marks: &PathMarks, look: &Look, colors: &C
             add_dot(place, HANDLE - 1.0, with_alpha(colors.result, 0.7), pane);
         }
     }
+}
+
+/// Adds the line that is being drawn by hand.
+pub(super) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
     let drawn = marks.drawn.iter().map(|&point| (on_ground(point, HIGHEST), colors.result));
     pane.add_path(drawn, 3.0, Layer::Over);
 }

@@ -51,6 +51,8 @@ pub enum Command {
     Redo,
     /// Takes a message away.
     Dismiss(u64),
+    /// Gives up making the graph and the walk that are under way, or goes on with them.
+    StopGraph(bool),
     /// Gives up reading a file, by the number of its task.
     StopReading(u64),
 }

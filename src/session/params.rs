@@ -21,6 +21,7 @@ pub enum Group {
     Layers,
     Register,
     Path,
+    Graph,
     Match,
 }
 
@@ -42,6 +43,7 @@ impl Group {
             Self::Layers => "layers",
             Self::Register => "register",
             Self::Path => "path",
+            Self::Graph => "graph",
             Self::Match => "match",
         }
     }
@@ -217,6 +219,7 @@ const LABS: &[Choice] = &[
     choice("layers", "Layers"),
     choice("register", "Register"),
     choice("path", "Path"),
+    choice("graph", "Graph"),
     choice("match", "Match"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
@@ -274,6 +277,16 @@ const KEEPS: &[Choice] = &[
     choice("whole", "whole way"),
 ];
 const FACINGS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it did")];
+const CONSTRUCTIONS: &[Choice] = &[choice("segments", "segments"), choice("minima", "local minima")];
+const EDGE_WEIGHTS: &[Choice] = &[
+    choice("inverse", "1 / d"),
+    choice("exponential", "exp(−d)"),
+    choice("uniform", "uniform"),
+    choice("proportional", "d, wrong"),
+];
+const WALK_METHODS: &[Choice] = &[choice("dissolve", "dissolve"), choice("inertialize", "inertialize")];
+const TRANSFORMS: &[Choice] = &[choice("whole", "whole clip"), choice("first", "first frame only")];
+const ATANS: &[Choice] = &[choice("atan2", "atan2"), choice("atan", "atan, wrong")];
 const SCENARIOS: &[Choice] = &[
     choice("own", "my own"),
     choice("straight", "walk straight"),
@@ -392,6 +405,23 @@ parameters! {
     PinStart "pin_start" "Pin the start" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
     PinEnd "pin_end" "Pin the end" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
     Others "others" "Others" Path Kind::Text, Start::Word(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
+    Clips "clips" "Clips" Graph Kind::Text, Start::Word("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
+    Construction "construction" "Construction" Graph Kind::Choice(CONSTRUCTIONS), Start::Word("minima"), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
+    SegmentSize "segment_size" "Segment size" Graph number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
+    EdgeThreshold "edge_threshold" "Edge threshold" Graph number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
+    MinJump "min_jump" "Shortest jump" Graph number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
+    EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EDGE_WEIGHTS), Start::Word("inverse"), "", "How the distance of a transition makes it more or less probable.";
+    EdgeSigma "edge_sigma" "Width σ" Graph logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
+    Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
+    VisitedDiscount "visited_discount" "Worth after a visit" Graph number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
+    Prune "prune" "Largest component only" Graph Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
+    WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WALK_METHODS), Start::Word("dissolve"), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
+    Transform "transform" "Transform" Graph Kind::Choice(TRANSFORMS), Start::Word("whole"), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake.";
+    Atan "atan" "Angle of the transform" Graph Kind::Choice(ATANS), Start::Word("atan2"), "", "Taken by atan2, or by atan, which cannot tell a direction from its opposite.";
+    WalkSeconds "walk_seconds" "Measured walk" Graph number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
+    GoTo "go_to" "Go to" Graph Kind::Text, Start::Word(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
+    WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Word(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
+    Jump "jump" "Transition" Graph Kind::Text, Start::Word(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
 
     Scenario "scenario" "Input" Match Kind::Choice(SCENARIOS), Start::Word("own"), "", "Who drives: you, or input that was written down, the same for everybody.";
     Drive "drive" "Recorded input" Match Kind::Text, Start::Word(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";

@@ -9,6 +9,7 @@ use std::sync::Arc;
 mod blend;
 mod driving;
 mod feet;
+mod graph;
 mod kept;
 mod layers;
 mod looping;
@@ -24,8 +25,10 @@ pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
 pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, recording_of};
 pub use driving::{DriveMoment, Driven};
-pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
+pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
+pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub use kept::write_ids;
+pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
@@ -158,6 +161,8 @@ pub struct Outcome {
     pub registered: Option<Arc<Registered>>,
     /// The path that it goes on; `None` where it was not edited.
     pub path: Option<Arc<OnPath>>,
+    /// The walk that it is; `None` where it is none.
+    pub walk: Option<Arc<Walk>>,
     /// How it was driven; `None` where it was not.
     pub driven: Option<Arc<Driven>>,
     /// The artefacts, as numbers.
@@ -176,6 +181,7 @@ impl Outcome {
             layer: None,
             registered: None,
             path: None,
+            walk: None,
             driven: None,
             metrics: Vec::new(),
         }

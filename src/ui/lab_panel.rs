@@ -4,6 +4,7 @@ use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::cycle_panels::{loop_ui, speed_ui};
 use super::drive::drive_ui;
+use super::graph::graph_ui;
 use super::kit::{self, Button, Icon};
 use super::layers_rows::layers_ui;
 use super::out::Out;
@@ -30,6 +31,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "layers" => layers_ui(session, state, out, ui),
         "register" => register_ui(session, state, out, ui),
         "path" => path_ui(session, state, out, ui),
+        "graph" => graph_ui(session, state, out, ui),
         "match" => drive_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }

@@ -4,6 +4,8 @@ mod break_it;
 mod clip_panel;
 mod cycle_panels;
 mod drive;
+mod graph;
+mod ground_line;
 pub(crate) mod kit;
 mod lab_panel;
 mod layers_rows;
@@ -30,7 +32,7 @@ pub(crate) use drive::Pad;
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};
-pub(crate) use text::LINK_COPIED;
+pub(crate) use text::{LINK_COPIED, TABLE_COPIED};
 pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
@@ -56,8 +58,13 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     let mut out = Out::default();
     state.joints_open = false;
     state.hovered_pair = None;
+    state.last_jump = state.hovered_jump.take();
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
+    state.layout = layout;
+    if !matches!(session.params().text(Key::Lab), "graph" | "path") {
+        state.drawing = None;
+    }
     if session.params().is_on(Key::Embed) {
         embedded_ui(session, state, curves, &mut out, paint, ui);
     } else {
@@ -111,10 +118,12 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
         .frame(panel_frame(ui, space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {
-            timeline_panel::timeline_panel_ui(session, layout, curves, out, ui);
+            time_ui(session, layout, state, curves, out, ui);
         });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
-    if layout == Layout::Desk || state.library_open {
+    // The map of the graph takes the library's room.
+    let drawer = layout == Layout::Tablet || graph::is_open(session);
+    if !drawer || state.library_open {
         Panel::left("library")
             .exact_size(244.0 * scale)
             .frame(side(ui))
@@ -128,15 +137,30 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
         .frame(scrolling_frame(ui, space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
-            if layout == Layout::Tablet {
+            if drawer {
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
             scrolled_ui(space::L, ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
         });
+    if layout == Layout::Desk && graph::is_open(session) {
+        Panel::right("graph map")
+            .exact_size((graph::map_share(session) * ui.available_width()).round())
+            .frame(panel_frame(ui, space::M, space::M))
+            .resizable(false)
+            .show(ui, |ui| graph::map_panel_ui(session, state, out, ui));
+    }
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
         stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
     });
+}
+
+/// What happens in time; of a walk, the graph that it goes through.
+fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+    match session.graph_walk().filter(|walk| !walk.is_jump) {
+        Some(walk) => graph::walk_panel_ui(session, walk, layout, state, out, ui),
+        None => timeline_panel::timeline_panel_ui(session, layout, curves, out, ui),
+    }
 }
 
 /// One column: bar, stage, timeline, parameters.
@@ -155,7 +179,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
     // The stripes of the feet need more room than the bars of the clips.
-    let timeline = if matches!(session.params().text(Key::Lab), "register" | "match") {
+    let timeline = if matches!(session.params().text(Key::Lab), "register" | "graph" | "match") {
         144.0
     } else {
         104.0
@@ -164,7 +188,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         .exact_size(timeline * scale)
         .frame(panel_frame(ui, space::L, space::S))
         .show(ui, |ui| {
-            timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
+            time_ui(session, Layout::Phone, state, curves, out, ui);
         });
     egui::CentralPanel::default()
         .frame(scrolling_frame(ui, space::L, space::M))
@@ -191,7 +215,7 @@ fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, 
         .exact_size(104.0 * scale)
         .frame(panel_frame(ui, space::M, space::S))
         .show(ui, |ui| {
-            timeline_panel::timeline_panel_ui(session, Layout::Phone, curves, out, ui);
+            time_ui(session, Layout::Phone, state, curves, out, ui);
         });
     if lab_panel::has_named_params(session) {
         let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);

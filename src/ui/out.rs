@@ -19,6 +19,17 @@ pub(crate) enum Action {
         /// As what, and how.
         how: ExportOptions,
     },
+    /// Put a text into the clipboard.
+    CopyText(String),
+    /// Save a text as a file.
+    SaveText {
+        /// The file's name.
+        name: &'static str,
+        /// Its type.
+        mime: &'static str,
+        /// What it holds.
+        text: String,
+    },
     /// Save the stage as a picture.
     SavePicture,
     /// Begin to film the page, or end it and save the film.

@@ -4,7 +4,6 @@ use super::out::Out;
 use super::text;
 use glam::DVec2;
 use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, drawn_path};
-use segue::scene::PathMarks;
 use segue::session::{Command, Key, OnPath, Pane, Session, Value};
 
 /// The hand on the path, remembered between frames.
@@ -16,10 +15,6 @@ pub(crate) struct PathHand {
     pub(super) hovered: Option<usize>,
     /// The place on the path under the pointer, and its parameter.
     pub(super) place: Option<(DVec2, f64)>,
-    /// The next drag on the stage draws a curve.
-    pub(super) drawing: bool,
-    /// What was drawn so far, (x, z) in metres.
-    pub(super) drawn: Vec<DVec2>,
     /// The point that is dragged.
     pub(super) held: Option<Held>,
     /// Why the last edit was not made.
@@ -49,19 +44,6 @@ const DRAWN_SMOOTHING: f64 = 1e-3;
 const LOOP_POINTS: usize = 6;
 
 impl PathHand {
-    /// What is to be seen of it on the stage.
-    pub(crate) fn marks(&self, session: &Session) -> PathMarks {
-        let is_open = session.params().text(Key::Lab) == "path";
-        PathMarks {
-            handles: is_open && self.drawn.is_empty(),
-            chosen: self.chosen,
-            hovered: self.hovered,
-            place: self.place.map(|(place, _)| place),
-            is_held: is_open && (self.held.is_some() || !self.drawn.is_empty()),
-            drawn: self.drawn.clone(),
-        }
-    }
-
     /// Edits a path, and says why where that is not possible. The caller ends the step.
     pub(super) fn edit(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
         let edited = from.edited(edit, pins(session));
@@ -94,16 +76,8 @@ impl PathHand {
         }
     }
 
-    /// Nothing is drawn after all.
-    pub(super) fn stop_drawing(&mut self) {
-        self.drawing = false;
-        self.drawn.clear();
-    }
-
     /// Makes a path of what was drawn.
-    pub(super) fn finish_drawing(&mut self, session: &Session, out: &mut Out) {
-        let drawn = std::mem::take(&mut self.drawn);
-        self.drawing = false;
+    pub(super) fn take_drawn(&mut self, drawn: &[DVec2], session: &Session, out: &mut Out) {
         let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let gap = drawn.first().zip(drawn.last()).map_or(0.0, |(first, last)| first.distance(*last));
         let is_loop = gap < LOOP_SHARE * length;
@@ -113,7 +87,7 @@ impl PathHand {
             smoothing: DRAWN_SMOOTHING,
             pin_ends: true,
         };
-        let path = drawn_path(&drawn, &options).and_then(|path| {
+        let path = drawn_path(drawn, &options).and_then(|path| {
             if is_loop {
                 path.edited(&PathEdit::Close, Pins::default())
             } else {

@@ -84,9 +84,9 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
         let draw = Button::new(text::DRAW)
             .icon(Icon::Pencil)
             .hint(text::DRAW_HELP)
-            .selected(state.path.drawing);
+            .selected(state.drawing.is_some());
         if kit::button_ui(draw, ui).clicked() {
-            state.path.drawing = !state.path.drawing;
+            state.drawing = if state.drawing.is_some() { None } else { Some(Vec::new()) };
             state.path.said = None;
         }
         if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {

@@ -1,17 +1,15 @@
-//! The path on the stage: its control points are taken with mouse, finger or keys, and a curve is drawn by hand.
+//! The path on the stage: its control points are taken with mouse, finger or keys.
 
+use super::ground_line::View;
 use super::kit;
 use super::out::Out;
 use super::path_hand::{Held, path_of, snapped};
 use super::state::UiState;
 use super::text;
 use super::theme::space;
-use eframe::egui::{
-    self, CursorIcon, EventFilter, Key as Keyboard, Modifiers, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,
-};
+use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 use glam::DVec2;
 use segue::path::{GroundSpline, PathEdit};
-use segue::scene::Camera;
 use segue::session::{Command, Group, Key, OnPath, Session};
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
@@ -20,93 +18,15 @@ const GRIP: f32 = 30.0;
 const REACH: f32 = 12.0;
 /// An arrow key moves a point by this, metres; with Shift by five times as much.
 const KEY_STEP_M: f64 = 0.05;
-/// Drawn points are at least this far apart, metres.
-const DRAWN_STEP_M: f64 = 0.02;
-/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the horizon a hair's breadth is a mile.
-const FARTHEST: f32 = 6.0;
 /// From how high the camera looks when the lab opens, degrees.
 const PITCH_DEG: f64 = 34.0;
-
-/// A pane as its camera sees it.
-struct View<'a> {
-    camera: &'a Camera,
-    rect: Rect,
-}
-
-impl View<'_> {
-    fn size(&self) -> glam::Vec2 {
-        glam::Vec2::new(self.rect.width(), self.rect.height())
-    }
-
-    /// Where a point of the ground is on the page.
-    fn on_page(&self, point: DVec2) -> Option<Pos2> {
-        let world = glam::Vec3::new(point.x as f32, 0.0, point.y as f32);
-        let at = self.camera.project(world, self.size())?;
-        Some(self.rect.min + vec2(at.x, at.y))
-    }
-
-    /// The place on the ground under a point of the page.
-    fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
-        let pixel = pos - self.rect.min;
-        let hit = self.camera.ray(glam::Vec2::new(pixel.x, pixel.y), self.size()).ground_hit()?;
-        let near = hit.distance(self.camera.target) < FARTHEST * self.camera.distance;
-        near.then(|| DVec2::new(f64::from(hit.x), f64::from(hit.z)))
-    }
-}
-
-/// Draws a curve if that is what is wanted now; whether the stage's own drag is taken by it.
-pub(super) fn drawing_input(
-    session: &Session,
-    shown: &[(usize, Rect)],
-    response: &Response,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &Ui,
-) -> bool {
-    if session.params().text(Key::Lab) != "path" || !state.path.drawing {
-        state.path.stop_drawing();
-        return false;
-    }
-    if response.hovered() {
-        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-    }
-    if ui.input(egui::InputState::multi_touch).is_some() {
-        // Two fingers move the camera.
-        state.path.drawn.clear();
-        return false;
-    }
-    let started = ui.input(|input| input.pointer.press_origin());
-    let pos = response
-        .interact_pointer_pos()
-        .filter(|_| response.dragged_by(egui::PointerButton::Primary));
-    if let (Some(origin), Some(pos)) = (started, pos) {
-        let pane = shown.iter().find(|(_, rect)| rect.contains(origin));
-        let view = pane.and_then(|&(index, rect)| {
-            let camera = state.cameras.get(index)?.as_ref()?;
-            Some(View { camera, rect })
-        });
-        // A drag is one only after some points of way: its beginning counts.
-        let from = Some(origin).filter(|_| state.path.drawn.is_empty());
-        let places = from.into_iter().chain([pos]).filter_map(|pos| view.as_ref()?.on_ground(pos));
-        for place in places.collect::<Vec<_>>() {
-            let last = state.path.drawn.last();
-            if last.is_none_or(|last| last.distance(place) > DRAWN_STEP_M) {
-                state.path.drawn.push(place);
-            }
-        }
-    }
-    if response.drag_stopped() {
-        state.path.finish_drawing(session, out);
-    }
-    true
-}
 
 /// The control points of one pane, and the place on the path that the pointer is at.
 pub(super) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Response, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let Some(path) = session.panes().get(pane).and_then(|pane| path_of(session, pane)) else {
         return;
     };
-    let Some(camera) = state.cameras.get(pane).copied().flatten().filter(|_| !state.path.drawing) else {
+    let Some(camera) = state.cameras.get(pane).copied().flatten().filter(|_| state.drawing.is_none()) else {
         return;
     };
     let view = View { camera: &camera, rect };
@@ -257,7 +177,7 @@ fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session
 pub(super) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
     let words = match &state.path.said {
         Some(said) => said.as_str(),
-        None if state.path.drawing => text::DRAW_HINT,
+        None if state.drawing.is_some() => text::DRAW_HINT,
         None => return,
     };
     kit::caption_ui(words, stage.with_max_y(numbers_top - space::S), ui);

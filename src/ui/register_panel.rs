@@ -350,7 +350,7 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     Some(picture)
 }
 
-fn heat_at(share: f32, heat: &[Color32; 5]) -> Color32 {
+pub(super) fn heat_at(share: f32, heat: &[Color32; 5]) -> Color32 {
     let at = share * (heat.len() - 1) as f32;
     let index = (at as usize).min(heat.len() - 2);
     heat[index].lerp_to_gamma(heat[index + 1], at - index as f32)

@@ -43,7 +43,7 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     if pressed(none, Keyboard::Escape) {
         (state.help_open, state.library_open) = (false, false);
-        state.path.stop_drawing();
+        state.drawing = None;
     }
     // A focused slider or tab takes Space and the arrows for itself.
     let focused = ctx.memory(|memory| memory.focused().is_some());

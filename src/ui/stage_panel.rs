@@ -1,17 +1,18 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
 use super::drive::stick_on_stage_ui;
+use super::ground_line::{GroundLine, ground_line};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::out::{Action, Out};
 use super::path_hand::path_of;
-use super::path_stage::{drawing_input, frame_once, handles_ui, said_ui};
+use super::path_stage::{frame_once, handles_ui, said_ui};
 use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point};
-use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value};
+use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -29,8 +30,17 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
-    let draws = drawing_input(session, &shown, &response, state, out, ui);
-    camera_input(session, &response, draws || state.path.held.is_some() || state.drive.is_held(), out, ui);
+    let line = ground_line(&shown, &response, state, ui);
+    let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
+    if let GroundLine::Done(points) = line {
+        if session.params().text(Key::Lab) == "path" {
+            state.path.take_drawn(&points, session, out);
+        } else if points.len() > 1 {
+            out.set_once(Key::WalkPath, Value::Text(write_path(&points)));
+            out.commands.push(segue::session::Command::Seek(0.0));
+        }
+    }
+    camera_input(session, &response, takes_drag, out, ui);
     paint(stage, &shown, ui);
     (state.path.hovered, state.path.place) = (None, None);
     for &(index, rect) in &shown {
@@ -60,12 +70,14 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         text::REGISTER_HINT
     } else if session.params().text(Key::Lab) == "path" {
         text::PATH_HINT
+    } else if session.params().text(Key::Lab) == "graph" {
+        text::GRAPH_HINT
     } else if session.is_driven() {
         text::MATCH_HINT
     } else {
         ""
     };
-    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.path.drawing);
+    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
@@ -113,6 +125,10 @@ fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
     let of = |id| ranking(panes, id);
+    let walk = of("walk_seam_dps");
+    if walk.best.is_some() {
+        return walk;
+    }
     let (registered, transition, cycle) = (of("skate_mean_cm"), of("seam_dps"), of("loop_seam_dps"));
     if registered.best.is_some() {
         registered
@@ -252,7 +268,8 @@ fn written(metric: &segue::metrics::Metric) -> String {
     let decimals = match metric.unit {
         "s" | "m" | "m/s" => 2,
         "cm" => 1,
-        "%" | "frames" | "bends" => 0,
+        // What has no unit is counted.
+        "%" | "frames" | "bends" | "" => 0,
         _ => usize::from(value < 9.95),
     };
     let degree = if metric.unit == "°" { "°" } else { "" };
@@ -339,6 +356,17 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             ),
             secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
         },
+        "graph" => {
+            let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
+            let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
+            let name = |(walk, clip): (&Walk, usize)| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
+            let next = at.and_then(|(walk, at)| Some(name((walk, walk.passed.get(at.stay + 1)?.stay.clip))));
+            Words {
+                strong: at.map(|(walk, at)| name((walk, at.place.clip))).unwrap_or_default(),
+                text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
+                secondary: format!("seed {}", session.params().number(Key::Seed)),
+            }
+        }
         "match" => Words {
             strong: if session.is_driven() {
                 text::LIVE.to_owned()

@@ -3,8 +3,11 @@
 use super::drive::DriveHand;
 use super::path_hand::PathHand;
 use eframe::egui::Rect;
-use segue::scene::Camera;
+use glam::DVec2;
+use segue::graph::Place;
+use segue::scene::{Camera, PathMarks};
 use segue::session::export::ExportOptions;
+use segue::session::{Key, Session};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +82,16 @@ pub(crate) struct UiState {
     pub(crate) drive: DriveHand,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
+    /// The transition that the pointer is at, on the map of distances or on an arc.
+    pub(crate) hovered_jump: Option<[Place; 2]>,
+    /// Likewise in the frame before.
+    pub(crate) last_jump: Option<[Place; 2]>,
+    /// The line that is drawn on the ground, (x, z) in metres; none while nobody draws.
+    pub(crate) drawing: Option<Vec<DVec2>>,
+    /// Where the walk was when a single transition was opened, seconds.
+    pub(crate) walk_secs: f64,
+    /// How much room there is.
+    pub(crate) layout: Layout,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -108,12 +121,33 @@ impl Default for UiState {
             path: PathHand::default(),
             drive: DriveHand::default(),
             cameras: Vec::new(),
+            hovered_jump: None,
+            last_jump: None,
+            drawing: None,
+            walk_secs: 0.0,
+            layout: Layout::Desk,
             export: ExportOptions::default(),
             saved_pane: 0,
             filming: Filming::default(),
             hint: true,
             stage: Rect::NOTHING,
             fetching: Vec::new(),
+        }
+    }
+}
+
+impl UiState {
+    /// What is to be seen on the stage of the hand that works on it.
+    pub(crate) fn path_marks(&self, session: &Session) -> PathMarks {
+        let is_open = session.params().text(Key::Lab) == "path";
+        let drawn = self.drawing.clone().unwrap_or_default();
+        PathMarks {
+            handles: is_open && drawn.is_empty(),
+            chosen: self.path.chosen,
+            hovered: self.path.hovered,
+            place: self.path.place.map(|(place, _)| place),
+            is_held: is_open && (self.path.held.is_some() || !drawn.is_empty()),
+            drawn,
         }
     }
 }

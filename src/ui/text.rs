@@ -4,7 +4,7 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Entry, LayerFacts, LayerFit, OnPath, Origin, Retargeted};
+use segue::session::{Built, Cast, Entry, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -165,6 +165,14 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
 
 /// The artefact numbers under a pane, by id, with the short names that fit there. The first four are what a narrow pane has room for.
 pub(crate) const METRICS: &[(&str, &str)] = &[
+    ("spins", "spins"),
+    ("flashes", "flashes"),
+    ("seams_per_min", "seams / min"),
+    ("walk_skate_cm", "skate cm"),
+    ("walk_lag_s", "drag s"),
+    ("walk_seam_dps", "seam °/s"),
+    ("walk_seam_deg", "seam °"),
+    ("variety", "% seen"),
     ("speed_mps", "m/s"),
     ("stride_m", "stride m"),
     ("cadence_spm", "steps/min"),
@@ -517,6 +525,170 @@ pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
 /// The dissolve with as much of A in it.
 pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
 
+/// What the Graph lab does.
+pub(crate) const GRAPH_ABOUT: &str =
+    "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
+/// Over the stage.
+pub(crate) const GRAPH_HINT: &str = "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+/// Of the clips.
+pub(crate) const GRAPH_CLIPS: &str = "Clips of the graph";
+/// Adds one.
+pub(crate) const ADD_CLIP: &str = "Add a clip";
+/// Takes one out.
+pub(crate) const LEAVE_OUT: &str = "Leave out";
+/// While it is computed.
+pub(crate) const GRAPHING: &str = "Making graph and walk";
+/// After it was given up.
+pub(crate) const GO_ON: &str = "Go on";
+/// Of the parameters that say where the walk goes.
+pub(crate) const WALK: &str = "Walk";
+/// The picture of the distances.
+pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
+/// Below it.
+pub(crate) const MATRIX_HELP: &str =
+    "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
+/// Where the clips are too long for a picture.
+pub(crate) const NO_MATRIX: &str =
+    "So many frames are compared without holding all distances: there is no picture of them, only the transitions that were found.";
+/// The histogram's name.
+pub(crate) const ALL_HISTOGRAM: &str = "How many pairs of windows are how far apart";
+/// The strip's name.
+pub(crate) const GRAPH_STRIP: &str = "The graph: clips and transitions";
+/// Of the links to what is worth a look.
+pub(crate) const EXPERIMENTS: &str = "Experiments";
+/// Chooses a clip to go to.
+pub(crate) const GO_TO_CLIP: &str = "Go to a clip from here";
+/// Takes that back.
+pub(crate) const FORGET_VISITS: &str = "By chance again";
+/// Draws a line to follow.
+pub(crate) const DRAW_PATH: &str = "Draw a path on the ground";
+/// While it is drawn.
+pub(crate) const DRAWING: &str = "Press on the ground and draw. The walk starts at its beginning.";
+/// Takes it away.
+pub(crate) const REMOVE_PATH: &str = "Remove the path";
+/// Back from one transition.
+pub(crate) const BACK_TO_WALK: &str = "Back to the walk";
+/// Of the files.
+pub(crate) const GRAPH_FILES: &str = "The graph as a file";
+/// Of the table of numbers.
+pub(crate) const NUMBERS: &str = "Numbers";
+/// Copies it.
+pub(crate) const COPY_MARKDOWN: &str = "Copy as Markdown";
+/// Copies it.
+pub(crate) const COPY_CSV: &str = "Copy as CSV";
+/// What is said then.
+pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
+/// A row of it.
+pub(crate) const BUILD_TIME: &str = "Build time";
+/// A mark of the walk.
+pub(crate) const SEAM: &str = "Into another clip";
+
+/// What is opened by a click: its name, what it does, and the values that it sets.
+pub(crate) struct Experiment {
+    pub(crate) name: &'static str,
+    pub(crate) help: &'static str,
+    pub(crate) query: &'static str,
+}
+
+/// The experiments of the course, each on the same seed.
+pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "Windows: full, half, third",
+        help: "A long one drags, a short one bursts.",
+        query: "construction=minima&blend_window=30&compare=blend_window:30,15,10",
+    },
+    Experiment {
+        name: "Segments: full, half, third",
+        help: "Long segments repeat little, short ones never come to rest.",
+        query: "construction=segments&blend_window=15&segment_size=60&compare=segment_size:60,30,20",
+    },
+    Experiment {
+        name: "Continuity: low, middle, high",
+        help: "How long a clip is left unbroken.",
+        query: "compare=continuity:0.3,0.8,0.98",
+    },
+    Experiment {
+        name: "atan for atan2",
+        help: "Half of all clips are laid on with their back to the front: spins.",
+        query: "transform=whole&compare=atan:atan2,atan",
+    },
+    Experiment {
+        name: "First frame only",
+        help: "The clip starts in the right place and goes off as it was recorded.",
+        query: "atan=atan2&compare=transform:whole,first",
+    },
+];
+
+/// What there is of a graph.
+pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {
+    let jumps = |count: usize| {
+        if count == 1 {
+            "1 transition".to_owned()
+        } else {
+            format!("{count} transitions")
+        }
+    };
+    let dead = match built.dead_ends() {
+        0 => "no dead end".to_owned(),
+        1 => "1 dead end".to_owned(),
+        count => format!("{count} dead ends"),
+    };
+    let percent = |share: &f64| format!("{:.0} %", 100.0 * share);
+    let components = match built.rings() {
+        [] => "Nothing leads back: every walk comes to an end.".to_owned(),
+        [one] => format!("One component, with {} of all frames.", percent(one)),
+        rings => {
+            let shares: Vec<String> = rings.iter().take(4).map(percent).collect();
+            let more = if rings.len() > 4 { ", …" } else { "" };
+            format!(
+                "{} components that do not reach each other, with {}{more} of all frames: a higher threshold joins them.",
+                rings.len(),
+                shares.join(", ")
+            )
+        }
+    };
+    let first = format!("{}, {dead}.", jumps(built.whole().jumps().len()));
+    let pruned = (built.is_pruned()).then(|| format!("The walk keeps to the largest: {}.", jumps(built.graph().jumps().len())));
+    let run = run_secs.map(|secs| format!("A clip runs for {secs:.1} s on average until the next transition."));
+    let sentences: Vec<String> = [first, components].into_iter().chain(pruned).chain(run).collect();
+    sentences.join(" ")
+}
+
+/// A transition: from where to where, how far apart, how probable.
+pub(crate) fn jump_in_words([leave, enter]: [(&str, usize); 2], cm: f64, probability: Option<f64>) -> String {
+    let probable = probability.map_or_else(String::new, |p| format!(" · p {p:.2}"));
+    format!("{} {} → {} {} · {cm:.1} cm{probable}", leave.0, leave.1, enter.0, enter.1)
+}
+
+/// A pair of windows that is no transition.
+pub(crate) fn windows_apart([leave, enter]: [(&str, usize); 2], cm: Option<f64>) -> String {
+    let apart = cm.map_or_else(|| "no window starts here".to_owned(), |cm| format!("{cm:.1} cm apart"));
+    format!("{} {} | {} {}: {apart}", leave.0, leave.1, enter.0, enter.1)
+}
+
+/// Which clips were moved onto the skeleton of the first; `None` where all are on it.
+pub(crate) fn moved_onto_first(cast: &Cast) -> Option<String> {
+    let moved: Vec<&str> = (cast.names().iter().enumerate())
+        .filter(|(clip, _)| cast.retargeted(*clip).is_some())
+        .map(|(_, name)| name.as_str())
+        .collect();
+    let first = cast.names().first()?;
+    (!moved.is_empty()).then(|| format!("Moved onto the skeleton of {first}: {}.", moved.join(", ")))
+}
+
+/// How a walk follows its line.
+pub(crate) fn followed(trace: &Trace) -> String {
+    format!(
+        "Follows {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
+        trace.along_m, trace.length_m, trace.rms_m, trace.looked_at
+    )
+}
+
+/// That a walk has an end.
+pub(crate) fn dead_end(secs: f64) -> String {
+    format!("The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does.")
+}
+
 /// What the Match lab does.
 pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Ten times a second the frame of all clips that fits best is looked for.";
 /// The same over the stage.
@@ -643,7 +815,11 @@ pub(crate) fn searched(search: &SearchRecord, frames: usize) -> String {
         Reason::ClipEnd => "The clip came to its end",
         Reason::InputChange => "The input changed",
     };
-    format!("{why}; {}. {} of {frames} frames were looked at.", held(search.held), search.visited)
+    format!(
+        "{why}; {}. {} of {frames} frames were looked at.",
+        held(search.held),
+        search.visited
+    )
 }
 
 /// How large a database is.

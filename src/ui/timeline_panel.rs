@@ -102,6 +102,14 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
             .find(params.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     });
+    let names = match &outcome.walk {
+        Some(walk) => [0, 1].map(|part: usize| {
+            let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
+            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned())
+                .unwrap_or_default()
+        }),
+        None => names,
+    };
     let made = params.text(Key::Lab) == "make";
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered.is_some() {
@@ -132,7 +140,7 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
         tracks: &tracks,
         stripes: &stripes,
         transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
-        transition_editable: session.panes().len() == 1,
+        transition_editable: session.panes().len() == 1 && outcome.walk.is_none(),
         in_point: params.optional(Key::In),
         out_point: params.optional(Key::Out),
         moments: &seams,

@@ -2,6 +2,7 @@
 
 use super::cycle_panels::{compare_loops, compare_speeds};
 use super::drive::compare_hysteresis;
+use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
@@ -144,6 +145,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "loop" => return compare_loops(session, out),
         "register" => return compare_warps(session, out),
         "path" => return compare_points(session, out),
+        "graph" => return compare_windows(out),
         "match" => return compare_hysteresis(session, out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,

@@ -70,6 +70,35 @@ onBothBackends("a character goes on the path of the link, beside others", async 
   assert.match(id, /^path\(a:walk,path:[\w-]+\)$/);
 });
 
+// Fails when the graph has no walk, when a seed gives another one, when the walk does not grow, and when a classic mistake does not spin.
+onBothBackends("the graph lab walks by its seed, and the mistake spins", async ({ open }) => {
+  const { segue } = await open("lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&compare=atan:atan2,atan&play=off", DESK);
+  await segue("set", {});
+  const spins = await panes(segue, "spins");
+  assert.ok(spins[0] === 0 && spins[1] > 0, `spins: ${spins}`);
+  const [seams] = await panes(segue, "seams_per_min");
+  assert.ok(seams > 5, `${seams} transitions a minute`);
+  const before = await segue("pose", "result", 15);
+  await segue("set", { seed: 8 });
+  assert.ok(apart(await segue("pose", "result", 15), before) > 0.01, "another seed, another walk");
+  await segue("set", { seed: 7, t: 45 });
+  assert.ok(apart(await segue("pose", "result", 15), before) < 1e-6, "the same seed, the same walk");
+  await until("the walk is longer than what is measured", async () => (await segue("time")) === 45);
+});
+
+// Fails when a scenario does not turn the character, when weights need a reload, and when what was driven is not in the link.
+onBothBackends("a character is driven through a scenario", async ({ open }) => {
+  const { segue } = await open("lab=match&scenario=spin&play=off", DESK);
+  await segue("set", {});
+  const [turn] = await panes(segue, "match_turn");
+  assert.ok(turn > 0.2 && turn < 2, `turned in ${turn} s`);
+  const before = await segue("pose", "result", 3);
+  await segue("set", { weight_feet: 3, weight_path: 0.2 });
+  assert.ok(apart(await segue("pose", "result", 3), before) > 0.01, "other weights, other frames");
+  const id = await segue("keep", "result");
+  assert.match(id, /^match\(scenario:spin,weight_path:0.2,weight_feet:3\)$/);
+});
+
 // Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
 onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);

@@ -76,7 +76,10 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
     let id = other.library().entries().last().unwrap().id.clone();
     assert!(id.starts_with("match(drive:"), "{id}");
     let viewed = open(&format!("lab=view&a={}", id.replace('%', "%25")));
-    assert_eq!(viewed.main_outcome().unwrap().motion.clip.root_translations(), replay.root_translations());
+    assert_eq!(
+        viewed.main_outcome().unwrap().motion.clip.root_translations(),
+        replay.root_translations()
+    );
     // Undo leads back to a character that stands.
     session.apply(Command::Undo).unwrap();
     while session.work() {}
@@ -94,7 +97,10 @@ fn time_of_any_rate_makes_whole_ticks_and_a_pause_stands() {
     assert!((29..=30).contains(&ticks), "{ticks}");
     let shown = session.now_secs();
     session.tick(0.004);
-    assert!(session.recording().ticks() > ticks || session.now_secs() > shown, "smooth between two ticks");
+    assert!(
+        session.recording().ticks() > ticks || session.now_secs() > shown,
+        "smooth between two ticks"
+    );
     session.apply(Command::TogglePlay).unwrap();
     let now = (session.recording().ticks(), session.now_secs());
     assert!(!session.tick(0.5));
@@ -122,13 +128,19 @@ fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
     let before = roots(&session);
     assert_eq!(before.len(), 3);
     session.apply(Command::Set(vec![(Key::WeightPath, Value::Number(3.0))])).unwrap();
-    assert!(Arc::ptr_eq(&driven(&session).database, &database) && roots(&session) == before, "live, without a rebuild");
+    assert!(
+        Arc::ptr_eq(&driven(&session).database, &database) && roots(&session) == before,
+        "live, without a rebuild"
+    );
     session.apply(Command::Set(vec![(Key::AheadFar, Value::Number(0.8))])).unwrap();
     assert!(session.is_driven() && session.jobs().len() == 1);
     session.tick(1.0 / 30.0);
     while session.work() {}
     assert_eq!(driven(&session).database.features().layout().ahead(), [20, 40, 48]);
-    assert!(roots(&session)[0].shift.distance(before[0].shift) < 0.2, "it goes on from where it was");
+    assert!(
+        roots(&session)[0].shift.distance(before[0].shift) < 0.2,
+        "it goes on from where it was"
+    );
     session.apply(Command::Set(vec![(Key::AheadFar, Value::Number(0.4))])).unwrap();
     while session.work() {}
     assert!(session.panes()[0].problem.as_ref().unwrap().contains("must rise"));
@@ -146,7 +158,11 @@ fn tags_are_asked_for_and_searches_tell_of_candidates() {
     let database = &driven(&session).database;
     let search = moment.search.as_ref().unwrap();
     for candidate in &search.candidates {
-        assert!(database.tags(database.number(candidate.place).unwrap()).has(crate::matching::Tag::Walk));
+        assert!(
+            database
+                .tags(database.number(candidate.place).unwrap())
+                .has(crate::matching::Tag::Walk)
+        );
     }
     assert_eq!(search.candidates.len(), 4);
     assert_eq!(search.candidates[0].place, search.winner.unwrap().place);
@@ -166,7 +182,14 @@ fn a_crowd_shares_the_database() {
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
     }
-    let moved = session.crowd().unwrap().1.iter().zip(&before).filter(|(a, b)| a.root_translation.distance(**b) > 0.2).count();
+    let moved = session
+        .crowd()
+        .unwrap()
+        .1
+        .iter()
+        .zip(&before)
+        .filter(|(a, b)| a.root_translation.distance(**b) > 0.2)
+        .count();
     assert!(moved >= 3, "{moved}");
     session.apply(Command::Set(vec![(Key::Crowd, Value::Number(1.0))])).unwrap();
     assert!(session.crowd().is_none());
@@ -175,7 +198,10 @@ fn a_crowd_shares_the_database() {
 #[test]
 fn what_cannot_be_done_is_a_sentence() {
     for (link, part) in [
-        ("lab=match&match_clips=walk(make_seconds:2)&ahead_far=3", "has a frame that can be searched"),
+        (
+            "lab=match&match_clips=walk(make_seconds:2)&ahead_far=3",
+            "has a frame that can be searched",
+        ),
         ("lab=match&match_clips=nobody", "is not here"),
         ("lab=match&match_clips=walk,(run", "cannot be read"),
         ("lab=match&drive=x", "recorded input"),
@@ -189,6 +215,10 @@ fn what_cannot_be_done_is_a_sentence() {
     let mut session = open(SMALL);
     assert!(matches!(session.apply(Command::ReplayDrive), Err(CommandError::NotPossible(_))));
     // A controller of the core stands where this one stands.
-    let core = Controller::new(Arc::clone(&driven(&session).database), crate::session::recipe::options_of(session.params()), &crate::math::Planar::IDENTITY);
+    let core = Controller::new(
+        Arc::clone(&driven(&session).database),
+        crate::session::recipe::options_of(session.params()),
+        &crate::math::Planar::IDENTITY,
+    );
     assert_eq!(core.unwrap().place(), driven(&session).moments[0].place);
 }

@@ -3,6 +3,7 @@
 mod company;
 mod driving;
 mod going_round;
+mod graphing;
 mod loading;
 mod panes;
 
@@ -20,8 +21,8 @@ use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, Driver, FeetHolder, GaitFinder, Layerer, Outcome, Pairs, Paths, Registrar, Slot, read_pins,
-    read_weights,
+    Blender, CycleFinder, CycleMade, DistanceMap, Driver, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrar, Slot,
+    read_pins, read_weights,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
@@ -98,6 +99,7 @@ pub struct Session {
     registrar: Registrar,
     paths: Paths,
     company: Vec<Companion>,
+    grapher: Grapher,
     feet: FeetHolder,
     driver: Driver,
     driving: driving::Driving,
@@ -132,6 +134,7 @@ impl Session {
             registrar: Registrar::default(),
             paths: Paths::default(),
             company: Vec::new(),
+            grapher: Grapher::default(),
             feet: FeetHolder::default(),
             driver: Driver::default(),
             driving: driving::Driving::default(),
@@ -355,6 +358,7 @@ impl Session {
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
+            Command::StopGraph(stop) => self.grapher.stop(stop),
             Command::Undo => {
                 if self.history.undo(&mut self.params, &mut self.library) {
                     self.library_revision += 1;
@@ -454,6 +458,9 @@ impl Session {
         if changed.contains(&Key::Src) {
             self.fetch_sources();
         }
+        if changed.iter().any(|key| key.param().group.is_of_lab()) {
+            self.grapher.stop(false);
+        }
         if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
             self.library_revision += 1;
         }
@@ -551,6 +558,7 @@ impl Session {
         self.remember(None);
         self.library.remove(&entry.id);
         self.leave_company(&entry.id);
+        self.leave_out_of_graph(&entry.id);
         self.library_revision += 1;
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
@@ -604,6 +612,11 @@ impl Session {
         let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
         let params = self.with_recording(self.params_of(pane));
         let outcome = pane.outcome.clone().ok_or(nothing)?;
+        if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
+            return Err(CommandError::NotPossible(
+                "this walk goes like the one in the first pane: open it alone to keep it",
+            ));
+        }
         let is_whole = !outcome.awaits_feet() && !self.is_driven();
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
@@ -695,6 +708,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
 mod driving_tests;
 #[cfg(test)]
 mod going_round_tests;
+#[cfg(test)]
+mod graphing_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]

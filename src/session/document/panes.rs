@@ -9,9 +9,10 @@ use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::{
-    BlendInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs, ViewInputs,
+    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs,
+    ViewInputs,
 };
-use crate::session::recipe::{belongs_to, made_id, make, preset_motion, recipe_name, recipe_params};
+use crate::session::recipe::{belongs_to, clips_of, made_id, make, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -66,7 +67,7 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, `registering`, `holding feet`, or the file that is read.
+    /// What it is: `matching`, `registering`, `graphing`, `holding feet`, or the file that is read.
     pub name: String,
     /// How much is done, 0 to 1.
     pub progress: f64,
@@ -85,6 +86,7 @@ pub(super) enum Inputs {
     Layers(LayerInputs),
     Register(RegisterInputs),
     Path(PathInputs),
+    Graph(GraphInputs),
     Match(ReplayInputs),
 }
 
@@ -99,6 +101,7 @@ impl PartialEq for Inputs {
             (Self::Layers(a), Self::Layers(b)) => a == b,
             (Self::Register(a), Self::Register(b)) => a == b,
             (Self::Path(a), Self::Path(b)) => a == b,
+            (Self::Graph(a), Self::Graph(b)) => a == b,
             (Self::Match(a), Self::Match(b)) => a == b,
             _ => false,
         }
@@ -117,7 +120,11 @@ impl Session {
         if self.registrar.work() || self.feet.work() || self.paths.work() || self.driver.work() {
             return true;
         }
-        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.driver.is_ready() {
+        let now_secs = self.params.number(Key::Time);
+        if self.grapher.work(now_secs) {
+            return true;
+        }
+        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.grapher.is_ready() || self.driver.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -166,14 +173,26 @@ impl Session {
             progress,
             size: None,
         });
-        self.reading_jobs().chain(matching).chain(registering).chain(holding).chain(driving).collect()
+        let graphing = self.grapher.progress().map(|progress| Job {
+            task: None,
+            name: "graphing".into(),
+            progress,
+            size: None,
+        });
+        let computed = matching
+            .into_iter()
+            .chain(registering)
+            .chain(graphing)
+            .chain(holding)
+            .chain(driving);
+        self.reading_jobs().chain(computed).collect()
     }
 
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
         match (self.params.text(Key::Lab), slot) {
-            ("make" | "match", _) => false,
+            ("make" | "graph" | "match", _) => false,
             (_, Slot::A) => true,
             (lab, Slot::B) => !matches!(lab, "view" | "loop" | "path"),
         }
@@ -232,6 +251,7 @@ impl Session {
             self.bring(&reference);
         }
         let mut pane = Pane::default();
+        self.grapher.guide_by(None);
         self.refresh_pane(&mut pane, params, widest_window(params, None));
         // One that is being dragged may be seen before its feet are planted, and one that is kept may not.
         let is_whole = |outcome: &Arc<Outcome>| !outcome.awaits_feet();
@@ -267,9 +287,11 @@ impl Session {
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrar.ask_anew();
         self.paths.ask_anew();
+        self.grapher.ask_anew();
         self.driver.ask_anew();
         self.feet.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
+        self.grapher.guide_by(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
@@ -277,10 +299,25 @@ impl Session {
             if !self.is_own_drive() {
                 self.refresh_pane(&mut pane, &params, match_window);
             }
+            if self.panes.is_empty() {
+                self.grapher.guide_by(Some(&params));
+            }
             self.panes.push(pane);
         }
         self.refresh_driving();
         self.refresh_company();
+    }
+
+    /// The clips of the graph, with what a person calls them.
+    fn graph_clips(&mut self, params: &Params) -> Result<Vec<(String, Arc<Motion>)>, String> {
+        let mut clips = Vec::new();
+        for id in clips_of(params.text(Key::Clips))? {
+            self.bring(&id);
+            let motion = self.motion_of(&id)?;
+            let name = self.library.find(&id).map_or(id, |entry| entry.name.clone());
+            clips.push((name, motion));
+        }
+        Ok(clips)
     }
 
     /// A and B, made ready for each other.
@@ -296,6 +333,10 @@ impl Session {
             "register" => {
                 let pair = self.pair_of(params)?;
                 return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
+            }
+            "graph" => {
+                let clips = self.graph_clips(params)?;
+                return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
             }
             "match" => return self.match_inputs(params),
             "view" => {
@@ -337,6 +378,7 @@ impl Session {
                     Inputs::Layers(layers) => layers.run(),
                     Inputs::Register(register) => register.run(),
                     Inputs::Path(path) => path.run(),
+                    Inputs::Graph(graph) => Ok(graph.run()),
                     Inputs::Match(replay) => Ok(replay.run()),
                 };
                 match outcome {

@@ -354,6 +354,7 @@ impl BlendInputs {
             layer: None,
             registered: None,
             path: None,
+            walk: None,
             driven: None,
             metrics,
         })

@@ -24,6 +24,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "layers" => group == Group::Layers || key == Key::FootLock,
         "register" => group == Group::Register || key == Key::FootLock,
         "path" => group == Group::Path || key == Key::FootLock,
+        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed),
         "match" => group == Group::Match || matches!(key, Key::HalfLife | Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
@@ -32,8 +33,8 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
-        Key::A => lab != "match",
-        Key::B => !matches!(lab, "view" | "loop" | "path" | "match"),
+        Key::A => !matches!(lab, "graph" | "match"),
+        Key::B => !matches!(lab, "view" | "loop" | "path" | "graph" | "match"),
         // Looked at or worked with, and not made from.
         Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
         Key::WalkSpeed | Key::RunSpeed | Key::Strafe | Key::ShownCandidates | Key::SearchBy | Key::Crowd => false,
@@ -57,6 +58,11 @@ pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f6
         _ => {}
     }
     let mut params = params.clone();
+    if lab == "graph" {
+        // As long as it is by now, as far as a link can say it.
+        let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
+        params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
+    }
     for (key, value) in found(lab, outcome, fps) {
         if *params.get(key) == Value::Auto {
             params.set(key, Value::Number(value)).ok()?;
@@ -111,6 +117,7 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),
         "path" => format!("{a} on a path"),
+        "graph" => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
         "match" => match params.text(Key::Scenario) {
             "own" => "a drive".to_owned(),
             _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
@@ -172,7 +179,7 @@ fn written(param: &Param, value: &Value) -> String {
 }
 
 /// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
-fn parts(list: &str) -> Option<Vec<&str>> {
+pub(super) fn parts(list: &str) -> Option<Vec<&str>> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
     for (at, letter) in list.char_indices() {
         match letter {

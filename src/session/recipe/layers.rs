@@ -296,6 +296,7 @@ impl LayerInputs {
             }),
             registered: None,
             path: None,
+            walk: None,
             driven: None,
             metrics,
         })

@@ -170,6 +170,7 @@ impl LoopInputs {
             layer: None,
             registered: None,
             path: None,
+            walk: None,
             driven: None,
             metrics,
         })

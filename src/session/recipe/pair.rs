@@ -21,33 +21,40 @@ pub(in crate::session) struct Pair {
 
 impl Pair {
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
-        let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
-        let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
-        let incoming = if same_skeleton && same_rate {
-            Arc::clone(b)
-        } else {
-            let mut clip = (*b.clip).clone();
-            if !same_skeleton {
-                clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
-            }
-            if !same_rate {
-                clip = resample(&clip, a.clip.fps(), Interpolation::Linear).map_err(|error| error.to_string())?;
-            }
-            let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
-            Arc::new(Motion::analyze(clip, Some(roles)))
-        };
-        let profiles = [a, &incoming].map(|motion| {
-            let source = blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone());
-            Profile::new(Arc::new(source), &motion.roles, motion.contacts.clone())
-        });
+        let (incoming, retargeted) = fitted(a, b)?;
+        let profiles = [a, &incoming].map(|motion| Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone()));
         Ok(Self {
             a: Arc::clone(a),
             b: Arc::clone(b),
             incoming,
             profiles,
-            retargeted: (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b))),
+            retargeted,
         })
     }
+}
+
+/// B on the skeleton and at the frame rate of A, and how it came there if that is not its own.
+pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), String> {
+    let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
+    let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
+    if same_skeleton && same_rate {
+        return Ok((Arc::clone(b), None));
+    }
+    let mut clip = (*b.clip).clone();
+    if !same_skeleton {
+        clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
+    }
+    if !same_rate {
+        clip = resample(&clip, a.clip.fps(), Interpolation::Linear).map_err(|error| error.to_string())?;
+    }
+    let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
+    let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
+    Ok((Arc::new(Motion::analyze(clip, Some(roles))), retargeted))
+}
+
+/// A motion as what is blended.
+pub(super) fn source_of(motion: &Motion) -> blend::Source {
+    blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone())
 }
 
 impl Retargeted {

@@ -348,6 +348,7 @@ impl RegisterInputs {
                 steps: Contacts::detect(&clip, &roles, &ContactOptions::default()),
                 part_secs: part.map(|frame| frame / fps),
             })),
+            walk: None,
             motion: Arc::new(Motion {
                 clip,
                 roles,

@@ -147,6 +147,7 @@ impl SpeedInputs {
             layer: None,
             registered: None,
             path: None,
+            walk: None,
             driven: None,
             metrics,
         })

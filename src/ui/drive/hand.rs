@@ -77,10 +77,7 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
         let down = |letter: Keyboard, arrow: Keyboard| free && (input.key_down(letter) || (!focused && input.key_down(arrow)));
         let axis = |more: bool, less: bool| f32::from(i8::from(more) - i8::from(less));
         let keys = vec2(
-            axis(
-                down(Keyboard::D, Keyboard::ArrowRight),
-                down(Keyboard::A, Keyboard::ArrowLeft),
-            ),
+            axis(down(Keyboard::D, Keyboard::ArrowRight), down(Keyboard::A, Keyboard::ArrowLeft)),
             axis(down(Keyboard::W, Keyboard::ArrowUp), down(Keyboard::S, Keyboard::ArrowDown)),
         );
         (keys, free && input.modifiers.shift)
@@ -94,11 +91,18 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
             push / length * ((length.min(1.0) - DEAD) / (1.0 - DEAD))
         }
     };
-    let pushes = [keys.normalized(), live(state.drive.stick.unwrap_or_default()), live(Vec2::from(pad.walk))];
+    let pushes = [
+        keys.normalized(),
+        live(state.drive.stick.unwrap_or_default()),
+        live(Vec2::from(pad.walk)),
+    ];
     // The hand that pushes hardest.
-    let push = pushes.into_iter().fold(Vec2::ZERO, |most, push| {
-        if push.length_sq() > most.length_sq() { push } else { most }
-    });
+    let push = pushes.into_iter().fold(
+        Vec2::ZERO,
+        |most, push| {
+            if push.length_sq() > most.length_sq() { push } else { most }
+        },
+    );
     let runs = shift || pad.run || (state.drive.runs && state.drive.stick.is_some());
     let speed = params.number(if runs { Key::RunSpeed } else { Key::WalkSpeed });
     let yaw = params.number(Key::CameraYaw).to_radians();

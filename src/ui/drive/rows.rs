@@ -1,7 +1,7 @@
 //! What is set in the Match lab.
 
-use super::why::why_ui;
 use super::note_ui;
+use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
 use crate::ui::out::Out;

@@ -21,14 +21,22 @@ const MOST_BARS: usize = 300;
 pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driven, layout: Layout, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let now = session.now_secs();
-    let frames = if driven.is_live { session.recording().ticks() } else { driven.moments.len() };
+    let frames = if driven.is_live {
+        session.recording().ticks()
+    } else {
+        driven.moments.len()
+    };
     let caption = caption(session, driven);
     let transport = Transport {
         playing: params.is_on(Key::Play),
         repeat: params.is_on(Key::Loop),
         speed: params.number(Key::Rate),
         now: if driven.is_live { frames as f64 / RATE as f64 } else { now },
-        frame: if driven.is_live { frames } else { (now * RATE as f64).round() as usize },
+        frame: if driven.is_live {
+            frames
+        } else {
+            (now * RATE as f64).round() as usize
+        },
         frames,
         caption: if layout == Layout::Phone { "" } else { &caption },
     };
@@ -98,7 +106,11 @@ fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out,
         jumps.clear();
     }
     let timeline = Timeline {
-        duration: if driven.is_live { outcome.duration_secs() } else { session.duration_secs() },
+        duration: if driven.is_live {
+            outcome.duration_secs()
+        } else {
+            session.duration_secs()
+        },
         now: session.now_secs(),
         fps: RATE as f64,
         in_point: session.params().optional(Key::In).filter(|_| !driven.is_live),
@@ -157,7 +169,9 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, ui: &mut Ui) {
     let frame = (now_secs * RATE as f64).round().max(0.0) as usize;
     let moment = driven.at(now_secs);
     let reach = (JUMP_SECS * RATE as f64) as usize;
-    let moments = driven.moments.get(frame.saturating_sub(reach)..(frame + 1).min(driven.moments.len()));
+    let moments = driven
+        .moments
+        .get(frame.saturating_sub(reach)..(frame + 1).min(driven.moments.len()));
     let mut jumps = Vec::new();
     for (index, moment) in moments.unwrap_or(&[]).iter().rev().enumerate() {
         if let (true, Some(search)) = (moment.jumped, &moment.search)
@@ -189,7 +203,11 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, ui: &mut Ui) {
 /// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of a motion is the number of its clip.
 fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
-    let bar = if database.options().mirrored { place.motion / 2 } else { place.motion };
+    let bar = if database.options().mirrored {
+        place.motion / 2
+    } else {
+        place.motion
+    };
     (bar < MOST_BARS).then_some(StripPlace {
         bar,
         row: usize::from(motion.is_mirrored()),

@@ -42,12 +42,7 @@ pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         strong,
         shown,
     };
-    let current = row(
-        text::going_on(&place_name(database, &search.current)),
-        &search.current,
-        true,
-        false,
-    );
+    let current = row(text::going_on(&place_name(database, &search.current)), &search.current, true, false);
     let found = search.candidates.iter().enumerate().map(|(index, candidate)| {
         row(
             place_name(database, candidate),

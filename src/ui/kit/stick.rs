@@ -43,7 +43,11 @@ pub(crate) fn stick_ui(label: &str, center: Pos2, shown: Vec2, ui: &mut Ui) -> O
         painter.line_segment([center + way * (radius - 9.0), center + way * (radius - 5.0)], mark);
     }
     let knob = center + vec2(at.x, -at.y) * reach;
-    let fill = if at == Vec2::ZERO { palette.handle.gamma_multiply(0.75) } else { palette.accent };
+    let fill = if at == Vec2::ZERO {
+        palette.handle.gamma_multiply(0.75)
+    } else {
+        palette.accent
+    };
     painter.circle(knob, KNOB * theme.scale(), fill, Stroke::new(1.5, palette.panel));
     pushed
 }

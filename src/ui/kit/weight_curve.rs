@@ -88,10 +88,8 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
         events.extend(changed.map(WeightCurveEvent::Keys));
         events.push(WeightCurveEvent::Settled);
     }
-    if let Some(pos) = ground.hover_pos() {
-        if near(pos).is_some() {
-            ui.ctx().set_cursor_icon(CursorIcon::Grab);
-        }
+    if ground.hover_pos().and_then(near).is_some() {
+        ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
 
     let painter = ui.painter_at(whole);
@@ -143,10 +141,8 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
         let response = ui.interact(handle, id.with(index), Sense::focusable_noninteractive());
         let name = format!("{}: {} % at {} %", row.label, key.1, key.0);
         response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, &name));
-        if response.has_focus() {
-            if let Some(changed) = worked(row.keys, index, ui) {
-                events.extend([changed, WeightCurveEvent::Settled]);
-            }
+        if let Some(changed) = response.has_focus().then(|| worked(row.keys, index, ui)).flatten() {
+            events.extend([changed, WeightCurveEvent::Settled]);
         }
         painter.circle(at, 5.0 * scale, palette.handle, Stroke::new(1.5 * scale, palette.on_handle));
         focus_ring(handle, radius::S, &response, ui);

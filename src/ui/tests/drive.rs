@@ -51,7 +51,10 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     harness.key_down(Keyboard::D);
     play(1, &mut harness);
     let velocity = control(&harness).velocity();
-    assert!(velocity.x < -0.9 && velocity.y > 0.9, "right of a camera that looks along +Z is -X: {velocity}");
+    assert!(
+        velocity.x < -0.9 && velocity.y > 0.9,
+        "right of a camera that looks along +Z is -X: {velocity}"
+    );
     harness.key_up(Keyboard::W);
     harness.key_up(Keyboard::D);
     play(1, &mut harness);
@@ -133,7 +136,11 @@ fn a_search_tells_why_and_a_candidate_is_a_ghost() {
     harness.key_press(Keyboard::Space);
     harness.run();
     assert!(!harness.state().session.params().is_on(Key::Play));
-    let search = driven(&harness).moments.last().and_then(|moment| moment.search.clone()).expect("a search");
+    let search = driven(&harness)
+        .moments
+        .last()
+        .and_then(|moment| moment.search.clone())
+        .expect("a search");
     assert_eq!(harness.state().state.drive.ghost(&harness.state().session), None);
     let rows: Vec<Rect> = harness.get_all_by_label_contains(" s: ").map(|node| node.rect()).collect();
     assert_eq!(rows.len(), 1 + search.candidates.len());
@@ -170,14 +177,23 @@ fn the_lab_has_room_on_every_page() {
     for (name, size, theme, link) in [
         ("match-desk-dark", DESK, DARK, "lab=match"),
         ("match-desk-light", DESK, LIGHT, "lab=match&scenario=spin&play=off&t=2.2"),
-        ("match-compare-dark", DESK, DARK, "lab=match&scenario=left&compare=hysteresis:none,bias,votes&play=off&t=3"),
+        (
+            "match-compare-dark",
+            DESK,
+            DARK,
+            "lab=match&scenario=left&compare=hysteresis:none,bias,votes&play=off&t=3",
+        ),
         ("match-phone-dark", PHONE, DARK, "lab=match"),
         ("match-phone-light", PHONE, LIGHT, "lab=match&scenario=run&play=off&t=4"),
         ("match-projector", vec2(1280.0, 720.0), HALL, "lab=match"),
     ] {
         let mut harness = harness(size, theme, page(link));
         let walk = Control::new(glam::DVec2::new(0.6, 1.2), None);
-        harness.state_mut().session.apply(Command::Steer(walk)).expect("a page as the tests need it");
+        harness
+            .state_mut()
+            .session
+            .apply(Command::Steer(walk))
+            .expect("a page as the tests need it");
         for _ in 0..150 {
             harness.state_mut().session.tick(1.0 / 60.0);
         }

@@ -230,14 +230,14 @@ fn a_path_is_drawn_by_hand() {
         camera,
         "the stage does not turn"
     );
-    assert!(!harness.state().state.path.drawing);
+    assert!(harness.state().state.drawing.is_none());
     assert!(path(&harness).is_edited);
     let first = handle(1, &harness);
     assert!(first.distance(way[0]) < 12.0, "{first:?} {:?}", way[0]);
     press(text::DRAW, &mut harness);
     harness.key_press(Keyboard::Escape);
     harness.run_steps(2);
-    assert!(!harness.state().state.path.drawing);
+    assert!(harness.state().state.drawing.is_none());
     // A point that is no curve is not taken, and that is said.
     press(text::DRAW, &mut harness);
     drag(&[stage.center(), stage.center() + vec2(7.0, 0.0)], &mut harness);

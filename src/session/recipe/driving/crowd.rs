@@ -1,7 +1,7 @@
 //! Others that walk about, with the same clips and controllers of their own.
 
-use crate::math::Planar;
 use crate::matching::{Control, Controller, ControllerOptions, Database, RATE};
+use crate::math::Planar;
 use crate::skeleton::Pose;
 use glam::DVec2;
 use std::f64::consts::TAU;
@@ -24,7 +24,12 @@ pub(in crate::session) struct Crowd {
 
 impl Crowd {
     /// So many stand about a place, each looking its own way.
-    pub(in crate::session) fn new(database: &Arc<Database>, options: ControllerOptions, about: &Planar, count: usize) -> Result<Self, String> {
+    pub(in crate::session) fn new(
+        database: &Arc<Database>,
+        options: ControllerOptions,
+        about: &Planar,
+        count: usize,
+    ) -> Result<Self, String> {
         let options = ControllerOptions { candidates: 1, ..options };
         let walker = |index: usize| {
             // A sunflower: as even as it is far from rows.
@@ -92,7 +97,9 @@ impl Crowd {
 
 /// A number from 0 to 1 that is the same for everybody (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 fn chance(who: u64, when: u64) -> f64 {
-    let mut z = (who.wrapping_mul(0x1_0000) ^ when).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut z = (who.wrapping_mul(0x1_0000) ^ when)
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64

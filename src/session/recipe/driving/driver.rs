@@ -1,11 +1,11 @@
 //! Builds databases and plays recorded input, slice by slice.
 
 use super::trace::Tracer;
-use crate::math::Planar;
 use crate::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError, Recording, TagFilter,
-    made_clip, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError, Recording,
+    TagFilter, made_clip, made_params,
 };
+use crate::math::Planar;
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -162,7 +162,11 @@ impl Driver {
                 _ => 0.0,
             };
             let all = made_params().len().max(1) as f64;
-            let made = if source.clips.is_empty() { self.made.len() as f64 / all } else { 1.0 };
+            let made = if source.clips.is_empty() {
+                self.made.len() as f64 / all
+            } else {
+                1.0
+            };
             return Some(("building the database", 0.4 * made + 0.6 * built));
         }
         let script = self.next_script()?;
@@ -221,7 +225,10 @@ impl Driver {
                 if let Some((_, Ok(database))) = alike {
                     Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
                 } else if !source.clips.is_empty() {
-                    let clips = source.clips.iter().map(|motion| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone()));
+                    let clips = source
+                        .clips
+                        .iter()
+                        .map(|motion| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone()));
                     Box::new(DatabaseBuilder::new(clips.collect(), &source.options)?)
                 } else if let Some(params) = made_params().get(self.made.len()) {
                     let roles = self.made.first().map(|first| first.roles.clone());
@@ -247,7 +254,11 @@ impl Driver {
                 let controller = Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
                 Box::new(Playing {
                     tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
-                    controls: script.recording.controls().map(|control| filtered(control, script.filter)).collect(),
+                    controls: script
+                        .recording
+                        .controls()
+                        .map(|control| filtered(control, script.filter))
+                        .collect(),
                     next: 0,
                 })
             }

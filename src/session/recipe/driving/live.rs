@@ -1,8 +1,8 @@
 //! A character that is driven now.
 
 use super::trace::Tracer;
-use crate::math::Planar;
 use crate::matching::{Control, Controller, ControllerOptions, Database, RATE};
+use crate::math::Planar;
 use crate::metrics::Metric;
 use crate::session::recipe::Outcome;
 use std::collections::VecDeque;

@@ -1,6 +1,8 @@
 //! From parameters to what the controller is told.
 
-use crate::matching::{ControllerOptions, FootPlanting, Following, Hysteresis, Recording, Scenario, SearchMethod, Steering, Tag, TagFilter, TagSet, Weights};
+use crate::matching::{
+    ControllerOptions, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Tag, TagFilter, TagSet, Weights,
+};
 use crate::math::Decay;
 use crate::session::params::{Key, Params};
 use crate::transition::Inertialization;

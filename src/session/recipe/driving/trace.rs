@@ -1,10 +1,8 @@
 //! What a character did, tick by tick: its motion, and why it went where it went.
 
 use crate::clip::{Clip, Contacts};
+use crate::matching::{Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering};
 use crate::math::Planar;
-use crate::matching::{
-    Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering,
-};
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
 use crate::session::recipe::Outcome;

@@ -1,0 +1,374 @@
+use super::walk::Trace;
+use super::wanted::{Wanted, sentence};
+use super::{Built, Passed, Walk};
+use crate::clip::Contacts;
+use crate::graph::{
+    Choices, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece, Walker, assembled,
+};
+use crate::metrics::Metric;
+use crate::session::motion::Motion;
+use crate::skeleton::Side;
+use petgraph::graph::{EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
+use std::sync::Arc;
+
+/// A walk is made so far ahead of the playhead, seconds.
+const AHEAD_SECS: f64 = 20.0;
+/// It does not get longer than this, seconds: at 60 frames per second and 31 joints that is 54 MB.
+const LONGEST_SECS: f64 = 1_800.0;
+/// Before and behind a single transition so much of both clips plays, seconds.
+const AROUND_JUMP_SECS: f64 = 1.2;
+/// Nodes that a search for a ground path looks at in all.
+const PATH_BUDGET: usize = 60_000;
+/// How far from another walk's transition one counts as the same, seconds at each end.
+const GUIDE_SECS: f64 = 0.3;
+/// Stays of that walk among which it is looked for.
+const GUIDE_STAYS: usize = 12;
+/// Edges that one slice goes over for the expected run.
+const RUN_EDGES: usize = 200_000;
+
+/// The stays of a walk that another goes like, and its blend window.
+pub(super) type Guide = (Arc<Vec<Passed>>, usize);
+
+/// Makes a walk, stay by stay.
+#[derive(Debug)]
+pub(super) struct Maker {
+    built: Arc<Built>,
+    wanted: Wanted,
+    choices: Arc<Choices>,
+    run: RunLength,
+    run_is_known: bool,
+    search: Option<(PathSearch, GroundPath)>,
+    trace: Option<Trace>,
+    walker: Walker,
+    stitcher: Stitcher,
+    meter: WalkMeter,
+    metrics: Option<Vec<Metric>>,
+    pieces: Vec<WalkPiece>,
+    /// When left and right foot stand.
+    planted: [Vec<bool>; 2],
+    frames: usize,
+    visited: usize,
+    /// Which stay of the walk that this one goes like plays now.
+    guided: usize,
+    ends: bool,
+    /// How long it is to be next.
+    goal: usize,
+    walk: Option<Arc<Walk>>,
+}
+
+impl Maker {
+    pub(super) fn new(built: &Arc<Built>, wanted: &Wanted) -> Result<Self, String> {
+        let graph = built.graph();
+        let choices = Arc::new(Choices::new(graph, &wanted.weights).map_err(|error| sentence(&error))?);
+        let walker = Walker::new(Arc::clone(graph), Arc::clone(&choices), wanted.seed);
+        let walker = walker.with_visited_discount(wanted.discount).map_err(|error| sentence(&error))?;
+        let mut search = None;
+        if !wanted.path.is_empty() && wanted.jump.is_none() {
+            let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
+            search = Some((PathSearch::new(graph, NodeIndex::new(0), &path, PATH_BUDGET), path));
+        }
+        Ok(Self {
+            run: RunLength::new(graph.graph().node_count()),
+            run_is_known: false,
+            walker,
+            search,
+            trace: None,
+            stitcher: Stitcher::new(Arc::clone(built.cast.set()), &wanted.stitch),
+            meter: WalkMeter::new(built.cast.set()),
+            metrics: None,
+            pieces: Vec::new(),
+            planted: Default::default(),
+            frames: 0,
+            visited: 0,
+            guided: 0,
+            ends: false,
+            goal: 0,
+            walk: None,
+            choices,
+            built: Arc::clone(built),
+            wanted: wanted.clone(),
+        })
+    }
+
+    /// As far as it was given out.
+    pub(super) fn walk(&self) -> Option<&Arc<Walk>> {
+        self.walk.as_ref()
+    }
+
+    fn fps(&self) -> f64 {
+        self.built.cast.set().fps()
+    }
+
+    /// Whether it should be longer while the playhead is there.
+    pub(super) fn is_short(&self, now_secs: f64) -> bool {
+        let Some(walk) = &self.walk else { return true };
+        let secs = walk.motion.clip.frames() as f64 / self.fps();
+        !walk.ends && !walk.is_jump && secs < (now_secs + AHEAD_SECS).min(LONGEST_SECS)
+    }
+
+    /// How much of what is under way is done, 0 to 1.
+    pub(super) fn progress(&self) -> f64 {
+        let searched = self.search.as_ref().map_or(1.0, |(search, path)| search.progress(path));
+        0.4 * searched + 0.6 * (self.frames as f64 / self.goal.max(1) as f64).min(1.0)
+    }
+
+    /// One slice. `true` when there is a new walk to give out. `guide` is what the walk that this one goes like is made of, and its blend window.
+    pub(super) fn step(&mut self, now_secs: f64, guide: Option<Guide>) -> Result<bool, String> {
+        let told = |error: GraphError| sentence(&error);
+        if let Some([leave, enter]) = self.wanted.jump {
+            self.walk = Some(Arc::new(self.jump(leave, enter)?));
+            return Ok(true);
+        }
+        if !self.run_is_known {
+            let steps = (RUN_EDGES / self.built.graph().graph().edge_count().max(1)).max(1);
+            self.run_is_known = self.run.advance(self.built.graph(), &self.choices, steps);
+            return Ok(false);
+        }
+        if let Some((search, path)) = &mut self.search {
+            if search.advance(self.built.graph(), path) {
+                self.follow();
+            }
+            return Ok(false);
+        }
+        if self.goal <= self.frames || self.goal == 0 {
+            self.goal = self.next_goal(now_secs);
+        }
+        if self.frames < self.goal && !self.ends {
+            if let Some((passed, window)) = guide {
+                self.go_like(&passed, window);
+            }
+            self.stay().map_err(told)?;
+        }
+        if self.frames < self.goal && !self.ends {
+            return Ok(false);
+        }
+        self.walk = Some(Arc::new(self.so_far().map_err(told)?));
+        Ok(true)
+    }
+
+    /// Frames: what is measured at first, then as far as the playhead asks for, and a good part more.
+    fn next_goal(&self, now_secs: f64) -> usize {
+        let mut secs = self.wanted.measured_secs;
+        if let Some(walk) = &self.walk {
+            secs = 1.25 * walk.motion.clip.frames() as f64 / self.fps();
+        }
+        if now_secs + AHEAD_SECS > secs {
+            secs = now_secs + 2.0 * AHEAD_SECS;
+        }
+        // Tens of seconds: a walk that is kept says how long it is.
+        ((secs / 10.0).ceil() * 10.0)
+            .min(LONGEST_SECS.max(self.wanted.measured_secs))
+            .mul_add(self.fps(), 0.5) as usize
+    }
+
+    /// The line was searched for: the walk takes what was found.
+    fn follow(&mut self) {
+        let Some((search, path)) = self.search.take() else { return };
+        let found = search.finish(&path);
+        self.trace = Some(Trace {
+            points: self.wanted.path.clone(),
+            rms_m: found.rms_m,
+            along_m: found.along_m,
+            length_m: path.length(),
+            looked_at: found.looked_at,
+        });
+        self.walker.take(found.edges);
+        self.stitcher.start_at(found.world_from_first);
+    }
+
+    /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
+    /// same clip.
+    fn go_like(&mut self, passed: &[Passed], window: usize) {
+        let graph = Arc::clone(self.built.graph());
+        let Some(here) = graph.graph().node_weight(self.walker.node()).copied() else {
+            return;
+        };
+        let middle = |place: Place, window: usize| place.frame + window / 2;
+        let is_ahead = |pair: &[Passed]| {
+            let seam = pair[1].seam.filter(|seam| seam.leave.clip == here.clip);
+            seam.is_some_and(|seam| middle(seam.leave, window) > here.start)
+        };
+        let next = passed
+            .get(self.guided..)
+            .unwrap_or_default()
+            .windows(2)
+            .take(GUIDE_STAYS)
+            .position(is_ahead);
+        let Some(skipped) = next else { return };
+        let Some(wanted) = passed.get(self.guided + skipped + 1).and_then(|passed| passed.seam) else {
+            return;
+        };
+        let near = (GUIDE_SECS * self.fps()).round() as usize;
+        let mut on = Vec::new();
+        let mut best: Option<(usize, Vec<EdgeIndex>)> = None;
+        let mut node = self.walker.node();
+        loop {
+            let mut onward = None;
+            for edge in graph.graph().edges(node) {
+                let Some(jump) = graph.jump(edge.id()) else {
+                    onward = Some((edge.id(), edge.target()));
+                    continue;
+                };
+                let apart = |a: Place, b: Place| (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)));
+                let off = apart(jump.leave, wanted.leave).zip(apart(jump.enter, wanted.enter));
+                let Some((leave, enter)) = off.filter(|off| off.0 <= near && off.1 <= near) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|(least, _)| leave + enter < *least) {
+                    let mut way: Vec<EdgeIndex> = on.clone();
+                    way.push(edge.id());
+                    best = Some((leave + enter, way));
+                }
+            }
+            let Some((edge, target)) = onward else { break };
+            on.push(edge);
+            node = target;
+        }
+        if let Some((_, way)) = best {
+            self.walker.take(way);
+            self.guided += skipped + 1;
+        }
+    }
+
+    /// One stay more.
+    fn stay(&mut self) -> Result<(), GraphError> {
+        let graph = Arc::clone(self.built.graph());
+        let mut next = self.walker.clone();
+        let mut stay = next.next_stay();
+        if let (Some(&(secs, clip)), Some(made)) = (self.wanted.visits.get(self.visited), stay) {
+            let due = (secs * self.fps()).round() as usize;
+            if self.frames + (made.to - made.from) > due {
+                self.visited += 1;
+                self.set_off(due, clip);
+                next = self.walker.clone();
+                stay = next.next_stay();
+            }
+        }
+        self.walker = next;
+        let Some(stay) = stay else {
+            self.ends = true;
+            return Ok(());
+        };
+        let piece = self.stitcher.stitch(&graph, &stay)?;
+        self.take(piece);
+        if self.metrics.is_none() && (self.meter.frames() as f64) >= self.wanted.measured_secs * self.fps() {
+            self.metrics = Some(self.measured());
+        }
+        Ok(())
+    }
+
+    /// Goes on to where the playhead is `due`, and from there to a clip. Nothing changes where no way leads there.
+    fn set_off(&mut self, due: usize, clip: usize) {
+        let mut there = self.walker.clone();
+        let mut frame = self.frames;
+        while frame < due {
+            let Some(edge) = there.next_edge() else { break };
+            let graph = self.built.graph();
+            if graph.jump(edge).is_some() {
+                break;
+            }
+            frame += graph.frames_of(edge);
+        }
+        if there.go_to_clip(clip) {
+            self.walker = there;
+        }
+    }
+
+    fn take(&mut self, piece: WalkPiece) {
+        let profile = self.built.cast.profile();
+        if self.metrics.is_none() {
+            self.meter.add(&piece, profile);
+        }
+        for frame in 0..piece.clip.frames() {
+            let place = piece.shown_at(frame);
+            let motion = self.built.cast.motions().get(place.clip);
+            for side in Side::BOTH {
+                let stands = motion.is_some_and(|motion| motion.contacts.planted(side, place.frame.min(motion.clip.frames() - 1)));
+                self.planted[side.index()].push(stands);
+            }
+        }
+        self.frames += piece.clip.frames();
+        self.pieces.push(piece);
+    }
+
+    fn measured(&self) -> Vec<Metric> {
+        let metrics: WalkMetrics = self.meter.metrics(self.built.cast.profile());
+        metrics.list().to_vec()
+    }
+
+    /// The walk as it is now.
+    fn so_far(&mut self) -> Result<Walk, GraphError> {
+        let metrics = match &self.metrics {
+            Some(metrics) => metrics.clone(),
+            None => self.measured(),
+        };
+        let frames = self.goal.min(self.frames);
+        let (clip, mut ground_frames) = assembled(&self.pieces)?.ok_or(GraphError::NowhereToGo)?;
+        let clip = if frames < clip.frames() { clip.crop(0..frames)? } else { clip };
+        ground_frames.truncate(clip.frames());
+        let planted = self.planted.clone().map(|mut flags| {
+            flags.truncate(clip.frames());
+            flags
+        });
+        let roles = self.built.cast.motions().first().map(|motion| motion.roles.clone());
+        let motion = Motion {
+            contacts: Contacts::from_flags(planted),
+            roles: roles.unwrap_or_default(),
+            ground_frames,
+            clip: Arc::new(clip),
+        };
+        let run_secs = self.run.secs(self.built.graph(), &self.choices);
+        Ok(Walk {
+            built: Arc::clone(&self.built),
+            choices: Arc::clone(&self.choices),
+            run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
+            motion: Arc::new(motion),
+            passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
+            metrics,
+            ends: self.ends && frames == self.frames,
+            is_jump: self.wanted.jump.is_some(),
+            followed: self.trace.clone(),
+            is_guided: self.wanted.guide.is_some(),
+        })
+    }
+
+    /// The end of one clip, a transition, and the beginning of another.
+    fn jump(&mut self, leave: Place, enter: Place) -> Result<Walk, String> {
+        let whole = Arc::clone(self.built.whole());
+        let index = self.built.jump_of(leave, enter).ok_or_else(|| {
+            let name = |place: Place| self.built.cast.names().get(place.clip).map_or("?", String::as_str);
+            format!(
+                "There is no transition from frame {} of {} to frame {} of {} any more: go back to the walk, or raise the threshold.",
+                leave.frame,
+                name(leave),
+                enter.frame,
+                name(enter)
+            )
+        })?;
+        let set = self.built.cast.set();
+        let around = (AROUND_JUMP_SECS * self.fps()).round() as usize;
+        let first = Stay {
+            clip: leave.clip,
+            from: leave.frame.saturating_sub(around),
+            to: leave.frame,
+            jump: None,
+        };
+        let window = self.built.options().blend_window;
+        let second = Stay {
+            clip: enter.clip,
+            from: enter.frame,
+            to: (enter.frame + window + around).min(set.frames_of(enter.clip)),
+            jump: Some(index),
+        };
+        for stay in [first, second] {
+            let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
+            self.take(piece);
+        }
+        self.goal = self.frames;
+        let mut walk = self.so_far().map_err(|error| sentence(&error))?;
+        // Of one transition these say nothing.
+        walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
+        Ok(walk)
+    }
+}

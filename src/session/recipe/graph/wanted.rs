@@ -1,0 +1,246 @@
+use crate::graph::{Construction, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions};
+use crate::session::params::{Key, Params};
+use crate::session::recipe::kept::parts;
+use glam::DVec2;
+use std::fmt::Write as _;
+
+/// More clips make a picture that nobody can read.
+const MOST_CLIPS: usize = 64;
+/// Points of a ground path, visits of clips: more are an accident.
+const MOST_POINTS: usize = 1_000;
+
+/// What a walk depends on, besides the clips.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Wanted {
+    pub(super) graph: GraphKey,
+    pub(super) weights: WeightOptions,
+    pub(super) seed: u64,
+    pub(super) discount: f64,
+    pub(super) stitch: StitchOptions,
+    /// How much of the walk is measured, seconds.
+    pub(super) measured_secs: f64,
+    /// When to set off for which clip: seconds, and its index.
+    pub(super) visits: Vec<(f64, usize)>,
+    /// A line over the ground to follow; empty for none.
+    pub(super) path: Vec<DVec2>,
+    /// One transition in place of a walk.
+    pub(super) jump: Option<[Place; 2]>,
+    /// The walk through another graph that this one goes like, where it can.
+    pub(super) guide: Option<Box<Self>>,
+}
+
+/// What a graph depends on, besides the clips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct GraphKey {
+    pub(super) options: GraphOptions,
+    pub(super) pruned: bool,
+}
+
+impl Wanted {
+    pub(super) fn of(params: &Params, clips: usize) -> Result<Self, String> {
+        let window = params.number(Key::BlendWindow) as usize;
+        let (whole, atan2) = (params.text(Key::Transform) == "whole", params.text(Key::Atan) == "atan2");
+        let mistake = match (whole, atan2) {
+            (true, true) => None,
+            (false, true) => Some(WalkMistake::FirstFrameOnly),
+            (true, false) => Some(WalkMistake::AtanForAtan2),
+            (false, false) => {
+                return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
+            }
+        };
+        let stitch = match params.text(Key::WalkMethod) {
+            "inertialize" => StitchOptions::inertialize(params.number(Key::HalfLife)),
+            _ => StitchOptions::dissolve(window),
+        };
+        let visits = read_visits(params.text(Key::GoTo))?;
+        if let Some((_, clip)) = visits.iter().find(|(_, clip)| *clip >= clips) {
+            return Err(format!(
+                "Go to: there is no clip {clip}, they are counted from 0 to {}.",
+                clips.saturating_sub(1)
+            ));
+        }
+        Ok(Self {
+            graph: GraphKey {
+                options: GraphOptions {
+                    construction: match params.text(Key::Construction) {
+                        "segments" => Construction::Segments {
+                            segment_size: params.number(Key::SegmentSize) as usize,
+                        },
+                        _ => Construction::Minima,
+                    },
+                    blend_window: window,
+                    edge_threshold_cm: params.number(Key::EdgeThreshold),
+                    min_jump_secs: params.number(Key::MinJump),
+                    ..GraphOptions::default()
+                },
+                pruned: params.is_on(Key::Prune),
+            },
+            weights: WeightOptions {
+                continuity: params.number(Key::Continuity),
+                law: match params.text(Key::EdgeWeight) {
+                    "exponential" => DistanceLaw::Exponential {
+                        sigma_cm: params.number(Key::EdgeSigma),
+                    },
+                    "uniform" => DistanceLaw::Uniform,
+                    "proportional" => DistanceLaw::Proportional,
+                    _ => DistanceLaw::Inverse,
+                },
+            },
+            seed: params.number(Key::Seed) as u64,
+            discount: params.number(Key::VisitedDiscount),
+            stitch: StitchOptions { mistake, ..stitch },
+            measured_secs: params.number(Key::WalkSeconds),
+            visits,
+            path: read_path(params.text(Key::WalkPath))?,
+            jump: read_jump(params.text(Key::Jump))?,
+            guide: None,
+        })
+    }
+
+    /// Likewise, like the walk of other parameters if it goes through another graph.
+    pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
+        let wanted = Self::of(params, clips)?;
+        let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
+        let guide = guide
+            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none())
+            .map(Box::new);
+        Ok(Self { guide, ..wanted })
+    }
+}
+
+/// An error as a sentence of its own.
+pub(super) fn sentence(error: &GraphError) -> String {
+    let text = error.to_string();
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// The ids of a list of clips: at the commas outside of brackets. An id may stand there several times, and counts once.
+pub(in crate::session) fn clips_of(text: &str) -> Result<Vec<String>, String> {
+    let listed = parts(text).ok_or_else(|| format!("Clips: found `{text}`, expected clips with commas between them, as in walk,run."))?;
+    let mut ids: Vec<String> = Vec::new();
+    for id in listed.into_iter().map(str::trim).filter(|id| !id.is_empty()) {
+        if !ids.iter().any(|known| known == id) {
+            ids.push(id.to_owned());
+        }
+    }
+    match ids.len() {
+        0 => Err("A motion graph needs a clip: add at least one.".to_owned()),
+        count if count > MOST_CLIPS => Err(format!("These are {count} clips: take {MOST_CLIPS} at most.")),
+        _ => Ok(ids),
+    }
+}
+
+/// Pairs of two numbers with a colon between them and commas between the pairs.
+fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, String> {
+    let refuse = |part: &str| format!("{what}: found `{part}`, expected pairs as in {like}.");
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() < 1e5);
+    let pairs: Vec<(f64, f64)> = (text.split(','))
+        .filter(|part| !part.trim().is_empty())
+        .map(|part| {
+            let (a, b) = part.split_once(':').ok_or_else(|| refuse(part))?;
+            number(a).zip(number(b)).ok_or_else(|| refuse(part))
+        })
+        .collect::<Result<_, _>>()?;
+    if pairs.len() > MOST_POINTS {
+        return Err(format!("{what}: found {} pairs, expected {MOST_POINTS} at most.", pairs.len()));
+    }
+    Ok(pairs)
+}
+
+/// When to set off for which clip.
+pub(in crate::session) fn read_visits(text: &str) -> Result<Vec<(f64, usize)>, String> {
+    let pairs = read_pairs(text, "Go to", "12.5:3,40:0")?;
+    let mut visits: Vec<(f64, usize)> = pairs
+        .into_iter()
+        .map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize))
+        .collect();
+    visits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(visits)
+}
+
+/// Visits as the parameter has them: seconds and a clip's index.
+#[must_use]
+pub fn write_visits(visits: &[(f64, usize)]) -> String {
+    joined(visits.iter().map(|(secs, clip)| format!("{}:{clip}", rounded(*secs, 10.0))))
+}
+
+/// The points of a ground path, (x, z) in metres.
+pub(in crate::session) fn read_path(text: &str) -> Result<Vec<DVec2>, String> {
+    let pairs = read_pairs(text, "Ground path", "0:0,1.5:4")?;
+    Ok(pairs.into_iter().map(|(x, z)| DVec2::new(x, z)).collect())
+}
+
+/// A ground path as the parameter has it.
+#[must_use]
+pub fn write_path(points: &[DVec2]) -> String {
+    joined(
+        points
+            .iter()
+            .map(|point| format!("{}:{}", rounded(point.x, 100.0), rounded(point.y, 100.0))),
+    )
+}
+
+fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
+    if text.trim().is_empty() {
+        return Ok(None);
+    }
+    let place = |text: &str| {
+        let (clip, frame) = text.split_once(':')?;
+        Some(Place {
+            clip: clip.trim().parse().ok()?,
+            frame: frame.trim().parse().ok()?,
+        })
+    };
+    let ends = text.split_once('-').and_then(|(leave, enter)| Some([place(leave)?, place(enter)?]));
+    ends.map(Some)
+        .ok_or_else(|| format!("Transition: found `{text}`, expected clips and frames as in 0:52-3:14."))
+}
+
+/// A transition as the parameter has it.
+#[must_use]
+pub fn write_jump(leave: Place, enter: Place) -> String {
+    format!("{}:{}-{}:{}", leave.clip, leave.frame, enter.clip, enter.frame)
+}
+
+fn rounded(value: f64, per_unit: f64) -> f64 {
+    (value * per_unit).round() / per_unit
+}
+
+fn joined(parts: impl Iterator<Item = String>) -> String {
+    parts.enumerate().fold(String::new(), |mut text, (index, part)| {
+        let comma = if index > 0 { "," } else { "" };
+        let written = write!(text, "{comma}{part}");
+        debug_assert!(written.is_ok(), "a string takes all");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let visits = [(0.0, 3), (12.5, 0)];
+        assert_eq!(read_visits(&write_visits(&visits)).unwrap(), visits);
+        let path = [DVec2::new(0.0, -1.25), DVec2::new(3.5, 4.0)];
+        assert_eq!(read_path(&write_path(&path)).unwrap(), path);
+        let [leave, enter] = [Place { clip: 0, frame: 52 }, Place { clip: 3, frame: 14 }];
+        assert_eq!(read_jump(&write_jump(leave, enter)).unwrap(), Some([leave, enter]));
+        assert_eq!(
+            clips_of("walk,run(turn_rate:20,lean:2),walk").unwrap(),
+            ["walk", "run(turn_rate:20,lean:2)"]
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "[0-9:,.\\-a-z() ]{0,40}") {
+            let _read = (clips_of(&text), read_visits(&text), read_path(&text), read_jump(&text));
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The distances of all windows as a picture, with the transitions on it.
+
+use super::{jump_words, named, note_ui, open_jump, table};
+use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
+use crate::ui::out::Out;
+use crate::ui::register_panel::heat_at;
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
+use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
+use segue::graph::{Choices, Place};
+use segue::session::{Built, Field, Key, Session, Walk};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Of the room beside the parameters, how much is the map's.
+pub(in crate::ui) fn map_share(session: &Session) -> f32 {
+    if session.panes().len() > 1 { 0.38 } else { 0.52 }
+}
+
+/// The map beside the stage, and the numbers of several panes below it.
+pub(in crate::ui) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let several = session.panes().len() > 1;
+    let room = ui.available_height();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        map_ui(session, if several { 0.6 * room } else { room - 60.0 }, state, out, ui);
+        if several {
+            ui.add_space(space::S);
+            table::table_ui(session, out, ui);
+        }
+    });
+}
+
+/// What is drawn of a graph, by the indices of the whole graph's transitions.
+pub(super) struct Drawn {
+    built: Arc<Built>,
+    choices: Option<Arc<Choices>>,
+    pub(super) ends: Vec<[Place; 2]>,
+    marks: Vec<MatrixMark>,
+    pub(super) arcs: Vec<kit::Arc>,
+    pub(super) stretches: Vec<Stretch>,
+}
+
+impl Drawn {
+    /// Made anew when the graph or its probabilities have changed.
+    pub(super) fn of(built: &Arc<Built>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
+        let id = Id::unique("graph drawn");
+        let choices = walk.filter(|walk| Arc::ptr_eq(&walk.built, built)).map(|walk| &walk.choices);
+        let known: Option<Arc<Self>> = ui.data(|data| data.get_temp(id));
+        if let Some(known) = known {
+            let same_choices = match (&known.choices, choices) {
+                (Some(known), Some(choices)) => Arc::ptr_eq(known, choices),
+                (known, choices) => known.is_none() && choices.is_none(),
+            };
+            if Arc::ptr_eq(&known.built, built) && same_choices {
+                return known;
+            }
+        }
+        let drawn = Arc::new(Self::new(built, choices));
+        ui.data_mut(|data| data.insert_temp(id, Arc::clone(&drawn)));
+        drawn
+    }
+
+    fn new(built: &Arc<Built>, choices: Option<&Arc<Choices>>) -> Self {
+        let (whole, graph, set) = (built.whole(), built.graph(), built.cast().set());
+        let mut probable: BTreeMap<[Place; 2], f64> = BTreeMap::new();
+        for edge in graph.graph().edge_indices() {
+            if let Some(jump) = graph.jump(edge) {
+                probable.insert([jump.leave, jump.enter], 0.0);
+            }
+        }
+        for node in graph.graph().node_indices() {
+            for (edge, p) in choices.into_iter().flat_map(|choices| choices.probabilities(node)) {
+                if let Some(jump) = graph.jump(edge) {
+                    probable.insert([jump.leave, jump.enter], p);
+                }
+            }
+        }
+        let number = |place: Place| set.number(place).unwrap_or(0);
+        let ends: Vec<[Place; 2]> = whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
+        let marks = ends.iter().map(|ends| MatrixMark {
+            at: ends.map(|end| number(end) as f32),
+            faint: !probable.contains_key(ends),
+        });
+        let arcs = ends.iter().map(|ends| kit::Arc {
+            ends: ends.map(number),
+            weight: probable.get(ends).copied().unwrap_or(0.0) as f32,
+            faint: !probable.contains_key(ends),
+        });
+        let dead = whole.dead_ends();
+        let stretches = whole.graph().node_indices().filter_map(|node| {
+            let stretch = whole.graph().node_weight(node)?;
+            let from = set.number(Place {
+                clip: stretch.clip,
+                frame: stretch.start,
+            })?;
+            let fate = match built.ring_of(node.index()) {
+                Some(0) => Fate::Main,
+                Some(_) => Fate::Apart,
+                None if dead.contains(&node) => Fate::End,
+                None => Fate::Astray,
+            };
+            Some(Stretch {
+                from,
+                to: from + stretch.end - stretch.start,
+                fate,
+            })
+        });
+        Self {
+            marks: marks.collect(),
+            arcs: arcs.collect(),
+            stretches: stretches.collect(),
+            ends,
+            built: Arc::clone(built),
+            choices: choices.map(Arc::clone),
+        }
+    }
+
+    /// The transition that is pointed at, else the one that plays.
+    pub(super) fn pointed_or_lit(&self, pointed: Option<[Place; 2]>, walk: Option<&Walk>, secs: f64) -> Option<usize> {
+        let pointed = pointed.and_then(|ends| self.ends.iter().position(|known| *known == ends));
+        pointed.or_else(|| self.lit(walk, secs))
+    }
+
+    /// The transition that plays now, or the one that is shown alone.
+    fn lit(&self, walk: Option<&Walk>, secs: f64) -> Option<usize> {
+        let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, &self.built))?;
+        let at = walk.at(secs)?;
+        let stay = if walk.is_jump { 1 } else { at.stay };
+        let seam = walk.passed.get(stay)?.seam?;
+        if !walk.is_jump && at.left.is_none() {
+            return None;
+        }
+        self.ends.iter().position(|ends| *ends == [seam.leave, seam.enter])
+    }
+}
+
+/// The map, what is under the pointer in words, and what the colours mean.
+pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let Some(cast) = session.graph_cast() else {
+        note_ui(text::EMPTY_PANE, palette.muted, ui);
+        return;
+    };
+    let (walk, built) = (session.graph_walk(), session.graph_built());
+    let Some(field) = session.graph_field() else {
+        if built.is_some() {
+            note_ui(text::NO_MATRIX, palette.muted, ui);
+        }
+        return;
+    };
+    let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
+    let set = cast.set();
+    let parts: Vec<(usize, &str)> = (cast.names().iter().enumerate())
+        .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
+        .collect();
+    let lit = drawn
+        .as_ref()
+        .and_then(|drawn| drawn.pointed_or_lit(state.last_jump, walk.map(|walk| &**walk), session.now_secs()));
+    let now = walk
+        .and_then(|walk| walk.at(session.now_secs()))
+        .and_then(|at| set.number(at.place));
+    let matrix = Matrix {
+        label: text::ALL_DISTANCES,
+        size: set.frames(),
+        parts: &parts,
+        marks: drawn.as_ref().map_or(&[], |drawn| &drawn.marks),
+        lit,
+        now: now.map(|number| number as f32),
+    };
+    let mut tiles = Tiles::of(field, ui);
+    let ctx = ui.ctx().clone();
+    let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
+    tiles.keep(ui);
+    let [low, high] = text::heat_ends([0.0, tiles.high_cm]);
+    kit::heat_legend_ui(&low, &high, ui);
+    let mut words = text::MATRIX_HELP.to_owned();
+    if let (Some(drawn), Some(built)) = (&drawn, built) {
+        let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
+        if let Some(&ends) = ends {
+            state.hovered_jump = Some(ends);
+            words = jump_words(built, walk.map(|walk| &**walk), ends).unwrap_or_default();
+        } else if let Some([row, column]) = response.at {
+            let place = |at: f32| set.place(at.max(0.0) as usize);
+            if let (Some(leave), Some(enter)) = (place(row), place(column)) {
+                words = text::windows_apart([named(built, leave), named(built, enter)], field.distances().cm(leave, enter));
+            }
+        }
+        if let Some(&ends) = response.clicked.and_then(|mark| drawn.ends.get(mark)) {
+            open_jump(ends, session, state, out);
+        }
+    }
+    note_ui(&words, palette.muted, ui);
+}
+
+/// The tiles that were made of a field in the colours of a theme.
+#[derive(Clone)]
+struct Tiles {
+    field: Arc<Field>,
+    heat: [Color32; 5],
+    made: Vec<(Tile, TextureHandle)>,
+    /// The distance at the far end of the colours, centimetres.
+    high_cm: f64,
+    /// Texels that may still be made in this frame.
+    budget: usize,
+}
+
+/// Tiles on the graphics card at once, 256 KB each.
+const MOST_TILES: usize = 128;
+/// Cells that may be looked at in a frame.
+const PER_FRAME: usize = 500_000;
+
+impl Tiles {
+    fn of(field: &Arc<Field>, ui: &Ui) -> Self {
+        let heat = palette_of(ui).heat;
+        let known: Option<Self> = ui.data(|data| data.get_temp(kit::tiles_id()));
+        if let Some(mut known) = known
+            && Arc::ptr_eq(&known.field, field)
+            && known.heat == heat
+        {
+            known.budget = PER_FRAME;
+            return known;
+        }
+        let counts = field.histogram();
+        let all: u64 = counts.iter().map(|&count| u64::from(count)).sum();
+        let mut before = 0;
+        // The few worst pairs would take all contrast from the others.
+        let bin = counts.iter().position(|&count| {
+            before += u64::from(count);
+            before * 100 >= all * 95
+        });
+        Self {
+            field: Arc::clone(field),
+            heat,
+            made: Vec::new(),
+            high_cm: (bin.unwrap_or(0) + 1) as f64 * field.bin_cm(),
+            budget: PER_FRAME,
+        }
+    }
+
+    fn texture(&mut self, tile: Tile, ctx: &eframe::egui::Context) -> Option<eframe::egui::TextureId> {
+        if let Some(at) = self.made.iter().position(|(known, _)| *known == tile) {
+            // What is used last goes last.
+            let used = self.made.remove(at);
+            let id = used.1.id();
+            self.made.push(used);
+            return Some(id);
+        }
+        if self.budget == 0 {
+            ctx.request_repaint();
+            return None;
+        }
+        let cells = TILE * tile.factor;
+        self.budget = self.budget.saturating_sub(TILE * TILE * tile.factor.min(4).pow(2));
+        let distances = self.field.distances();
+        let frames = distances.set().frames();
+        let range = |at: usize| (at * cells).min(frames)..((at + 1) * cells).min(frames);
+        let (rows, columns) = (range(tile.row), range(tile.column));
+        if rows.is_empty() || columns.is_empty() {
+            return None;
+        }
+        let size = [columns.len().div_ceil(tile.factor), rows.len().div_ceil(tile.factor)];
+        let high = self.high_cm as f32;
+        let colors = distances.picture(rows, columns, tile.factor).into_iter().map(|cm| {
+            if cm.is_nan() {
+                Color32::TRANSPARENT
+            } else {
+                heat_at((cm / high).clamp(0.0, 1.0), &self.heat)
+            }
+        });
+        let image = ColorImage::new(size, colors.collect());
+        let options = if tile.factor == 1 {
+            TextureOptions::NEAREST
+        } else {
+            TextureOptions::LINEAR
+        };
+        let texture = ctx.load_texture("distances", image, options);
+        let id = texture.id();
+        if self.made.len() >= MOST_TILES {
+            drop(self.made.remove(0));
+        }
+        self.made.push((tile, texture));
+        Some(id)
+    }
+
+    fn keep(&self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(kit::tiles_id(), self.clone()));
+    }
+}
+
+/// Whether the lab is the Graph lab.
+pub(in crate::ui) fn is_open(session: &Session) -> bool {
+    session.params().text(Key::Lab) == "graph"
+}

@@ -1,0 +1,70 @@
+//! The Graph lab: the clips and what is set of graph and walk, the picture of all distances, the graph as bars and arcs, and the table of numbers.
+
+mod map;
+mod rows;
+mod strip;
+mod table;
+
+pub(super) use map::{is_open, map_panel_ui, map_share};
+pub(super) use rows::{compare_windows, graph_ui};
+pub(super) use strip::walk_panel_ui;
+
+use super::out::Out;
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, theme_of};
+use eframe::egui::{Color32, RichText, Ui};
+use segue::graph::Place;
+use segue::session::{Built, Command, Key, Session, Value, Walk, write_jump};
+
+/// Whether the lab shows one transition in place of the walk.
+fn shows_jump(session: &Session) -> bool {
+    !session.params().text(Key::Jump).is_empty()
+}
+
+/// Plays one transition; the walk is kept where it is.
+fn open_jump([leave, enter]: [Place; 2], session: &Session, state: &mut UiState, out: &mut Out) {
+    if !shows_jump(session) {
+        state.walk_secs = session.now_secs();
+    }
+    out.set_once(Key::Jump, Value::Text(write_jump(leave, enter)));
+    out.commands.push(Command::Seek(0.0));
+}
+
+/// Goes back to the walk, where it was.
+fn close_jump(state: &UiState, out: &mut Out) {
+    out.set_once(Key::Jump, Value::Text(String::new()));
+    out.set(Key::Time, Value::Number(state.walk_secs.clamp(0.0, 3600.0)));
+}
+
+/// A clip's name and the frame.
+fn named(built: &Built, place: Place) -> (&str, usize) {
+    let name = built.cast().names().get(place.clip).map_or("", String::as_str);
+    (name, place.frame)
+}
+
+/// A transition in words, with its probability where it is walked.
+fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<String> {
+    let jump = built.whole().jumps().get(built.jump_of(ends[0], ends[1])?)?;
+    let walk = walk.filter(|walk| std::ptr::eq(&raw const *walk.built, built));
+    let probability = walk.and_then(|walk| {
+        let graph = built.graph();
+        let edge = graph.graph().edge_indices().find(|&edge| {
+            let of = graph.jump(edge);
+            of.is_some_and(|of| of.leave == ends[0] && of.enter == ends[1])
+        })?;
+        let (from, _) = graph.graph().edge_endpoints(edge)?;
+        let mut ways = walk.choices.probabilities(from);
+        ways.find(|(way, _)| *way == edge).map(|(_, p)| p)
+    });
+    Some(text::jump_in_words(
+        [named(built, ends[0]), named(built, ends[1])],
+        jump.distance_cm,
+        probability,
+    ))
+}
+
+/// A sentence in small type.
+fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+}

@@ -1,0 +1,302 @@
+//! What is set of graph and walk.
+
+use super::{close_jump, map, note_ui, shows_jump, table};
+use crate::ui::kit::{self, Button, Histogram, Icon};
+use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
+use crate::ui::out::{Action, Out};
+use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::state::{Layout, UiState};
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align, Layout as Flow, RichText, Ui};
+use segue::session::{Command, Key, Session, Value, link, write_visits};
+
+/// All rows of the lab.
+pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::GRAPH_ABOUT, palette.muted, ui);
+    progress_ui(session, out, ui);
+    if shows_jump(session) && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked() {
+        close_jump(state, out);
+    }
+    if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
+        note_ui(problem, palette.warning, ui);
+    }
+    if state.layout != Layout::Desk {
+        map::map_ui(session, f32::INFINITY, state, out, ui);
+    }
+    clips_ui(session, out, ui);
+    ui.add_space(space::S);
+    construction_ui(session, out, ui);
+    ui.add_space(space::M);
+    walk_ui(session, out, ui);
+    ui.add_space(space::M);
+    ways_ui(session, state, out, ui);
+    ui.add_space(space::M);
+    experiments_ui(session, out, ui);
+    ui.add_space(space::M);
+    if state.layout != Layout::Desk || session.panes().len() < 2 {
+        kit::folded_ui(text::NUMBERS, ui, |ui| table::table_ui(session, out, ui));
+    }
+    files_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    if session.graph_is_stopped() {
+        if kit::button_ui(Button::new(text::GO_ON).outlined(), ui).clicked() {
+            out.commands.push(Command::StopGraph(false));
+        }
+        return;
+    }
+    let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") else {
+        return;
+    };
+    let percent = format!("{:.0} %", 100.0 * job.progress);
+    if kit::progress_row_ui(text::GRAPHING, Some(job.progress as f32), &percent, ui) {
+        out.commands.push(Command::StopGraph(true));
+    }
+}
+
+/// The clips, one to add, one to take out.
+fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let ids = session.graph_clip_ids();
+    let entries = session.library().entries();
+    kit::folded_ui(&format!("{}: {}", text::GRAPH_CLIPS, ids.len()), ui, |ui| {
+        for id in &ids {
+            let entry = session.library().find(id);
+            let name = entry.map_or(id.as_str(), |entry| entry.name.as_str());
+            let secs = entry
+                .and_then(|entry| entry.motion.as_ref())
+                .map(|motion| motion.clip.duration_secs());
+            ui.push_id(id, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(name).font(theme.font(Type::Label)).color(palette.text));
+                    ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
+                        let leave_out = format!("{} {name}", text::LEAVE_OUT);
+                        if ids.len() > 1 && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
+                            let rest: Vec<&str> = ids.iter().filter(|other| *other != id).map(String::as_str).collect();
+                            set_clips(&rest.join(","), out);
+                        }
+                        if let Some(secs) = secs {
+                            ui.label(
+                                RichText::new(format!("{secs:.1} s"))
+                                    .font(theme.font(Type::Small))
+                                    .color(palette.muted),
+                            );
+                        }
+                    });
+                });
+            });
+        }
+    });
+    let free: Vec<(usize, &str)> = (entries.iter().enumerate())
+        .filter(|(_, entry)| !ids.contains(&entry.id))
+        .map(|(index, entry)| (index, entry.name.as_str()))
+        .collect();
+    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui).and_then(|index| entries.get(index)) {
+        set_clips(&format!("{},{}", ids.join(","), entry.id), out);
+    }
+    if let Some(words) = session.graph_cast().and_then(|cast| text::moved_onto_first(cast)) {
+        note_ui(&words, palette.muted, ui);
+    }
+}
+
+/// Another set of clips: places in the old ones mean nothing any more.
+fn set_clips(ids: &str, out: &mut Out) {
+    let none = || Value::Text(String::new());
+    out.commands.push(Command::Set(vec![
+        (Key::Clips, Value::Text(ids.to_owned())),
+        (Key::GoTo, none()),
+        (Key::Jump, none()),
+    ]));
+    out.commands.push(Command::Settle);
+}
+
+fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    let palette = palette_of(ui);
+    let fps = session.graph_cast().map_or(60.0, |cast| cast.set().fps());
+    let secs = |key| format!("{:.2} s", params.number(key) / fps);
+    param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
+    let longest = session.graph_cast().map(|cast| cast.set().longest() as f64);
+    let window = Detail {
+        secondary: secs(Key::BlendWindow),
+        max: longest.map(|longest| (longest - 2.0).max(params.number(Key::BlendWindow))),
+        help: Some("How long a transition takes, and over which windows are compared. Long drags, short bursts.".into()),
+        ..Detail::default()
+    };
+    param_row_ui(Key::BlendWindow, &window, session, out, ui);
+    compare_ui(Key::BlendWindow, session, out, ui);
+    let compared = session.compare().map(|compare| compare.key);
+    if params.text(Key::Construction) == "segments" || matches!(compared, Some(Key::SegmentSize | Key::Construction)) {
+        let segment = Detail {
+            secondary: secs(Key::SegmentSize),
+            max: longest.map(|longest| longest.max(params.number(Key::SegmentSize))),
+            ..Detail::default()
+        };
+        ui.push_id("segments", |ui| {
+            param_row_ui(Key::SegmentSize, &segment, session, out, ui);
+            compare_ui(Key::SegmentSize, session, out, ui);
+        });
+    }
+    let quiet = Detail {
+        help: Some(String::new()),
+        ..Detail::default()
+    };
+    param_row_ui(Key::EdgeThreshold, &quiet, session, out, ui);
+    if let Some(field) = session.graph_field() {
+        let histogram = Histogram {
+            label: text::ALL_HISTOGRAM,
+            counts: field.histogram(),
+            bin: field.bin_cm(),
+            value: params.number(Key::EdgeThreshold),
+            step: 0.1,
+            unit: Key::EdgeThreshold.param().unit,
+        };
+        let dragged = kit::histogram_ui(&histogram, ui);
+        if let Some(cm) = dragged.changed {
+            out.set(Key::EdgeThreshold, Value::Number(cm.min(60.0)));
+        }
+        if dragged.settled {
+            out.commands.push(Command::Settle);
+        }
+    }
+    if let Some(built) = session.graph_built() {
+        let walk = session.graph_walk().filter(|walk| std::sync::Arc::ptr_eq(&walk.built, built));
+        note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
+    }
+    param_row_ui(Key::Prune, &Detail::default(), session, out, ui);
+    param_row_ui(Key::MinJump, &Detail::default(), session, out, ui);
+}
+
+fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    kit::section_header_ui(text::WALK, ui);
+    let plain = Detail::default();
+    let seed = Detail {
+        help: Some("Another seed, another way through the graph; the same seed, the same walk on every machine.".into()),
+        ..Detail::default()
+    };
+    param_row_ui(Key::Seed, &seed, session, out, ui);
+    param_row_ui(Key::Continuity, &plain, session, out, ui);
+    ui.label(RichText::new(Key::EdgeWeight.param().label).font(theme_of(ui).font(Type::Label)));
+    param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
+    if params.text(Key::EdgeWeight) == "exponential" {
+        param_row_ui(Key::EdgeSigma, &plain, session, out, ui);
+    }
+    param_row_ui(Key::VisitedDiscount, &plain, session, out, ui);
+    ui.label(RichText::new(Key::WalkMethod.param().label).font(theme_of(ui).font(Type::Label)));
+    param_row_ui(Key::WalkMethod, &plain, session, out, ui);
+    if params.text(Key::WalkMethod) == "inertialize" {
+        param_row_ui(Key::HalfLife, &plain, session, out, ui);
+    }
+    for key in [Key::Transform, Key::Atan] {
+        ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+        param_row_ui(key, &plain, session, out, ui);
+    }
+    param_row_ui(Key::WalkSeconds, &plain, session, out, ui);
+}
+
+/// Where the walk is sent: to a clip, or along a line.
+fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let visits = session.graph_visits();
+    if let Some(cast) = session.graph_cast() {
+        let options: Vec<(usize, &str)> = cast.names().iter().map(String::as_str).enumerate().collect();
+        if let Some(clip) = kit::choice_row_ui(text::GO_TO_CLIP, usize::MAX, &options, ui) {
+            go_to(clip, session, out);
+        }
+    }
+    if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
+        out.set_once(Key::GoTo, Value::Text(String::new()));
+    }
+    let draw = Button::new(text::DRAW_PATH).selected(state.drawing.is_some());
+    if kit::button_ui(draw, ui).clicked() && state.drawing.take().is_none() {
+        state.drawing = Some(Vec::new());
+        // From above, and far enough away for a path.
+        out.commands.push(Command::Set(vec![
+            (Key::Camera, Value::Choice("top")),
+            (Key::Follow, Value::Choice("off")),
+            (Key::CameraDistance, Value::Number(14.0)),
+            (Key::Jump, Value::Text(String::new())),
+        ]));
+    }
+    if state.drawing.is_some() {
+        note_ui(text::DRAWING, palette.accent_ink, ui);
+    }
+    if !session.params().text(Key::WalkPath).is_empty() {
+        if kit::button_ui(Button::new(text::REMOVE_PATH), ui).clicked() {
+            out.set_once(Key::WalkPath, Value::Text(String::new()));
+        }
+        if let Some(trace) = session.graph_walk().and_then(|walk| walk.followed.as_ref()) {
+            note_ui(&text::followed(trace), palette.muted, ui);
+        }
+    }
+    if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
+        note_ui(&text::dead_end(walk.motion.clip.duration_secs()), palette.warning, ui);
+    }
+}
+
+/// The walk sets off for a clip where it is now; what was to come later is given up.
+pub(super) fn go_to(clip: usize, session: &Session, out: &mut Out) {
+    let now = session.now_secs();
+    let mut visits = session.graph_visits();
+    visits.retain(|(secs, _)| *secs < now);
+    visits.push((now, clip));
+    out.set_once(Key::GoTo, Value::Text(write_visits(&visits)));
+}
+
+fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(text::EXPERIMENTS, ui);
+    let params = session.params();
+    for experiment in text::GRAPH_EXPERIMENTS {
+        let mut values = link::read(experiment.query).values;
+        let on = values.iter().all(|(key, value)| params.get(*key) == value);
+        let response = kit::button_ui(Button::new(experiment.name).selected(on).hint(experiment.help), ui);
+        note_ui(experiment.help, palette_of(ui).muted, ui);
+        if response.clicked() {
+            if on {
+                values = vec![(Key::Compare, Value::Text(String::new()))];
+            } else {
+                values.push((Key::Jump, Value::Text(String::new())));
+            }
+            out.commands.push(Command::Set(values));
+            out.commands.push(Command::Settle);
+        }
+    }
+}
+
+/// "Full, half, third" of the blend window, or back to one pane.
+pub(in crate::ui) fn compare_windows(out: &mut Out) {
+    if let Some(experiment) = text::GRAPH_EXPERIMENTS.first() {
+        out.commands.push(Command::Set(link::read(experiment.query).values));
+        out.commands.push(Command::Settle);
+    }
+}
+
+fn files_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let Some(walk) = session.graph_walk() else { return };
+    ui.label(RichText::new(text::GRAPH_FILES).font(theme_of(ui).font(Type::Label)));
+    ui.horizontal(|ui| {
+        let (graph, choices) = (walk.built.graph(), &walk.choices);
+        if kit::button_ui(Button::new("JSON").icon(Icon::Download), ui).clicked() {
+            let text = format!("{:#}\n", graph.to_json(choices));
+            out.actions.push(Action::SaveText {
+                name: "motion graph.json",
+                mime: "application/json",
+                text,
+            });
+        }
+        if kit::button_ui(Button::new("DOT").icon(Icon::Download), ui).clicked() {
+            out.actions.push(Action::SaveText {
+                name: "motion graph.dot",
+                mime: "text/vnd.graphviz",
+                text: graph.to_dot(choices),
+            });
+        }
+    });
+}

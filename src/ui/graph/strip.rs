@@ -1,0 +1,143 @@
+//! Below the stage: the walk in time, and the graph as bars and arcs.
+
+use super::map::Drawn;
+use super::{jump_words, named, open_jump, rows};
+use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent, Transport, TransportEvent};
+use crate::ui::out::Out;
+use crate::ui::state::{Layout, UiState};
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
+use eframe::egui::Ui;
+use segue::graph::Place;
+use segue::session::{Command, Key, Session, Value, Walk, frame_at};
+use std::sync::Arc;
+
+/// More seams than these are no marks any more.
+const MOST_SEAMS: usize = 160;
+
+/// The whole panel of a walk.
+pub(in crate::ui) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    let caption = caption(session, walk, state);
+    let transport = Transport {
+        playing: params.is_on(Key::Play),
+        repeat: params.is_on(Key::Loop),
+        speed: params.number(Key::Rate),
+        now: session.now_secs(),
+        frame: frame_at(&walk.motion, session.now_secs()),
+        frames: walk.motion.clip.frames(),
+        caption: if layout == Layout::Phone { "" } else { &caption },
+    };
+    match kit::transport_ui(&transport, ui) {
+        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
+        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
+        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
+        None => {}
+    }
+    if layout != Layout::Phone {
+        time_ui(session, walk, out, ui);
+    }
+    strip_ui(session, walk, state, out, ui);
+}
+
+/// Scrubbing, and where the walk goes from clip to clip.
+fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let fps = walk.motion.clip.fps();
+    let mut seams: Vec<Moment<'_>> = (walk.passed.iter())
+        .filter(|passed| passed.seam.is_some())
+        .map(|passed| Moment {
+            time: passed.start as f64 / fps,
+            color: palette.accent,
+            name: text::SEAM,
+        })
+        .filter(|moment| moment.time < walk.motion.clip.duration_secs())
+        .collect();
+    if seams.len() > MOST_SEAMS {
+        seams.clear();
+    }
+    let timeline = Timeline {
+        duration: session.duration_secs(),
+        now: session.now_secs(),
+        fps,
+        in_point: session.params().optional(Key::In),
+        out_point: session.params().optional(Key::Out),
+        moments: &seams,
+        ..Timeline::default()
+    };
+    for event in kit::timeline_ui(&timeline, ui) {
+        match event {
+            TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+            TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
+            TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
+            TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
+            TimelineEvent::EditEnded => out.commands.push(Command::Settle),
+            _ => {}
+        }
+    }
+}
+
+fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let Some(built) = session.graph_built() else { return };
+    let drawn = Drawn::of(built, Some(walk), ui);
+    let (cast, set) = (built.cast(), built.cast().set());
+    let bars: Vec<(&str, usize)> = cast
+        .names()
+        .iter()
+        .enumerate()
+        .map(|(clip, name)| (name.as_str(), set.frames_of(clip)))
+        .collect();
+    let at = walk.at(session.now_secs()).filter(|_| Arc::ptr_eq(&walk.built, built));
+    let lit_stretch = at.and_then(|at| {
+        let graph = built.graph();
+        let stretch = graph.graph().node_weight(graph.node_at(at.place)?)?;
+        let from = set.number(Place {
+            clip: stretch.clip,
+            frame: stretch.start,
+        })?;
+        Some([from, from + stretch.end - stretch.start])
+    });
+    let strip = Strip {
+        label: text::GRAPH_STRIP,
+        bars: &bars,
+        stretches: &drawn.stretches,
+        arcs: &drawn.arcs,
+        now: at.and_then(|at| set.number(at.place)),
+        lit_stretch,
+        lit_arc: drawn.pointed_or_lit(state.last_jump, Some(walk), session.now_secs()),
+    };
+    let height = (ui.available_height() - space::XS).max(40.0);
+    let response = kit::strip_ui(&strip, height, ui);
+    if let Some(&ends) = response.hovered_arc.and_then(|arc| drawn.ends.get(arc)) {
+        state.hovered_jump = Some(ends);
+    }
+    if let Some(&ends) = response.clicked_arc.and_then(|arc| drawn.ends.get(arc)) {
+        open_jump(ends, session, state, out);
+    }
+    if let Some(clip) = response.clicked_bar {
+        rows::go_to(clip, session, out);
+    }
+}
+
+/// The transition under the pointer, else the one that plays, else where the walk is.
+fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
+    let built = session.graph_built();
+    let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends));
+    if let Some(words) = pointed {
+        return words;
+    }
+    let Some(at) = walk.at(session.now_secs()) else {
+        return String::new();
+    };
+    let seam = walk
+        .passed
+        .get(at.stay)
+        .and_then(|passed| passed.seam)
+        .filter(|_| at.left.is_some());
+    if let Some(seam) = seam {
+        return jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default();
+    }
+    let (name, frame) = named(&walk.built, at.place);
+    format!("{name} {frame}")
+}

@@ -1,0 +1,86 @@
+//! A line drawn by hand on the ground: a path for the Path lab, a way for a walk of the Graph lab.
+
+use super::state::UiState;
+use eframe::egui::{CursorIcon, InputState, PointerButton, Pos2, Rect, Response, Ui, vec2};
+use glam::DVec2;
+use segue::scene::Camera;
+
+/// Drawn points are at least this far apart, metres.
+const STEP_M: f64 = 0.02;
+/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the horizon a hair's breadth is a mile.
+const FARTHEST: f32 = 6.0;
+
+/// A pane as its camera sees it.
+pub(super) struct View<'a> {
+    pub(super) camera: &'a Camera,
+    pub(super) rect: Rect,
+}
+
+impl View<'_> {
+    fn size(&self) -> glam::Vec2 {
+        glam::Vec2::new(self.rect.width(), self.rect.height())
+    }
+
+    /// Where a point of the ground is on the page.
+    pub(super) fn on_page(&self, point: DVec2) -> Option<Pos2> {
+        let world = glam::Vec3::new(point.x as f32, 0.0, point.y as f32);
+        let at = self.camera.project(world, self.size())?;
+        Some(self.rect.min + vec2(at.x, at.y))
+    }
+
+    /// The place on the ground under a point of the page.
+    pub(super) fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
+        let pixel = pos - self.rect.min;
+        let hit = self.camera.ray(glam::Vec2::new(pixel.x, pixel.y), self.size()).ground_hit()?;
+        let near = hit.distance(self.camera.target) < FARTHEST * self.camera.distance;
+        near.then(|| DVec2::new(f64::from(hit.x), f64::from(hit.z)))
+    }
+}
+
+/// What the stage's drag is.
+pub(super) enum GroundLine {
+    /// It is the camera's.
+    None,
+    /// It belongs to a line that goes on, or waits to be begun.
+    Drawing,
+    /// The line is done: (x, z) in metres.
+    Done(Vec<DVec2>),
+}
+
+/// Draws the line that is wanted now, if one is.
+pub(super) fn ground_line(shown: &[(usize, Rect)], response: &Response, state: &mut UiState, ui: &Ui) -> GroundLine {
+    let Some(drawn) = &mut state.drawing else {
+        return GroundLine::None;
+    };
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+    }
+    if ui.input(InputState::multi_touch).is_some() {
+        // Two fingers move the camera.
+        drawn.clear();
+        return GroundLine::None;
+    }
+    let started = ui.input(|input| input.pointer.press_origin());
+    let pos = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged_by(PointerButton::Primary));
+    if let (Some(origin), Some(pos)) = (started, pos) {
+        let pane = shown.iter().find(|(_, rect)| rect.contains(origin));
+        let view = pane.and_then(|&(index, rect)| {
+            let camera = state.cameras.get(index)?.as_ref()?;
+            Some(View { camera, rect })
+        });
+        // A drag is one only after some points of way: its beginning counts.
+        let from = Some(origin).filter(|_| drawn.is_empty());
+        let places = from.into_iter().chain([pos]).filter_map(|pos| view.as_ref()?.on_ground(pos));
+        for place in places {
+            if drawn.last().is_none_or(|last| last.distance(place) > STEP_M) {
+                drawn.push(place);
+            }
+        }
+    }
+    if response.drag_stopped() {
+        return GroundLine::Done(state.drawing.take().unwrap_or_default());
+    }
+    GroundLine::Drawing
+}

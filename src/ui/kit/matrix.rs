@@ -1,0 +1,307 @@
+//! A large square of values as a picture that one can go into: tiles that are made when they are seen, marks on them, and the names of its parts along
+//! both sides.
+
+use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::theme::{Type, palette_of, radius, theme_of};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Role, Sense, Stroke, StrokeKind, TextureId, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+
+/// Texels of a tile, to a side.
+pub(crate) const TILE: usize = 256;
+/// A mark is reached within this distance, points.
+const REACH: f32 = 9.0;
+/// More marks than these are points that nobody can tell apart.
+const MOST_MARKS: usize = 2_500;
+
+/// A part of the picture: values are squares of `factor` cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Tile {
+    /// Cells of a texel, to a side.
+    pub(crate) factor: usize,
+    /// Counted in tiles from the top.
+    pub(crate) row: usize,
+    /// Counted in tiles from the left.
+    pub(crate) column: usize,
+}
+
+/// A place that is marked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MatrixMark {
+    /// Row and column.
+    pub(crate) at: [f32; 2],
+    /// It is out of use.
+    pub(crate) faint: bool,
+}
+
+/// All that is shown.
+pub(crate) struct Matrix<'a> {
+    /// The accessible name.
+    pub(crate) label: &'a str,
+    /// Rows, and columns.
+    pub(crate) size: usize,
+    /// Names of the parts, each with the row at which it begins.
+    pub(crate) parts: &'a [(usize, &'a str)],
+    /// Marks, the most important first.
+    pub(crate) marks: &'a [MatrixMark],
+    /// The mark that is lit.
+    pub(crate) lit: Option<usize>,
+    /// What is shown now, as row and as column.
+    pub(crate) now: Option<f32>,
+}
+
+/// What was asked of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct MatrixResponse {
+    /// The mark under the pointer.
+    pub(crate) hovered: Option<usize>,
+    /// The row and column under the pointer.
+    pub(crate) at: Option<[f32; 2]>,
+    /// The mark that was clicked.
+    pub(crate) clicked: Option<usize>,
+}
+
+/// The part that is seen: its upper left corner in cells, and cells per point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Window {
+    corner: Vec2,
+    cells: f32,
+}
+
+impl Window {
+    fn whole(size: f32, side: f32) -> Self {
+        Self {
+            corner: Vec2::ZERO,
+            cells: size / side.max(1.0),
+        }
+    }
+
+    /// Inside of the picture, and not so near that a cell is larger than a fingertip.
+    fn bounded(self, size: f32, side: f32) -> Self {
+        let cells = self.cells.clamp((1.0_f32 / 24.0).min(size / side), size / side);
+        let last = (size - cells * side).max(0.0);
+        Self {
+            corner: self.corner.clamp(Vec2::ZERO, Vec2::splat(last)),
+            cells,
+        }
+    }
+
+    /// Nearer by a factor, with what is at a point of the field staying there.
+    fn zoomed(self, factor: f32, at: Vec2) -> Self {
+        let cells = self.cells / factor;
+        Self {
+            corner: self.corner + at * (self.cells - cells),
+            cells,
+        }
+    }
+}
+
+/// Draws it as a square of at most `side` points. Wheel or pinch zooms, dragging moves, a double click shows all of it; the keys +, − and 0 do the
+/// same. `tile` gives the texture of a part, or none while that is not made yet.
+pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Tile) -> Option<TextureId>, ui: &mut Ui) -> MatrixResponse {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let margin = (16.0 * theme.scale()).round();
+    let side = (side.min(ui.available_width()) - margin).max(60.0).floor();
+    let (_, whole) = ui.allocate_space(Vec2::splat(side + margin));
+    let field = Rect::from_min_size(whole.min + Vec2::splat(margin), Vec2::splat(side));
+    let id = ui.make_persistent_id(matrix.label);
+    let response = ui.interact(field, id, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, matrix.label));
+
+    let size = matrix.size.max(1) as f32;
+    let kept: Option<(usize, Window)> = ui.data(|data| data.get_temp(id));
+    let mut window = kept
+        .filter(|(of, _)| *of == matrix.size)
+        .map_or(Window::whole(size, side), |(_, window)| window)
+        .bounded(size, side);
+    window = moved(window, (size, side), field, &response, ui);
+    ui.data_mut(|data| data.insert_temp::<(usize, Window)>(id, (matrix.size, window)));
+    let place = |row: f32, column: f32| field.min + (vec2(column, row) - window.corner) / window.cells;
+
+    let painter = ui.painter_at(field.expand(1.0));
+    painter.rect_filled(field, 0.0, palette.ground);
+    let pixels = ui.ctx().pixels_per_point();
+    let coarse = factor_for(size / side / pixels);
+    let fine = factor_for(window.cells / pixels);
+    // The overview lies below what is not made yet.
+    for factor in if fine < coarse { vec![coarse, fine] } else { vec![coarse] } {
+        let cells = (TILE * factor) as f32;
+        let range = |corner: f32| {
+            let first = (corner / cells).floor().max(0.0) as usize;
+            let last = ((corner + window.cells * side).min(size) / cells).ceil() as usize;
+            first..last.max(first + 1)
+        };
+        for row in range(window.corner.y) {
+            for column in range(window.corner.x) {
+                let Some(texture) = tile(Tile { factor, row, column }) else {
+                    continue;
+                };
+                let from = [row as f32 * cells, column as f32 * cells];
+                let to = [(from[0] + cells).min(size), (from[1] + cells).min(size)];
+                let texels = |from: f32, to: f32| ((to - from) / factor as f32).ceil().max(1.0) * factor as f32;
+                // A texel at the edge may stand for less than its cells.
+                let corner = place(from[0] + texels(from[0], to[0]), from[1] + texels(from[1], to[1]));
+                let rect = Rect::from_min_max(place(from[0], from[1]), corner);
+                painter.image(texture, rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
+            }
+        }
+    }
+    let line = Stroke::new(theme.hairline(), palette.line_strong);
+    for &(start, _) in matrix.parts.iter().skip(1) {
+        let at = place(start as f32, start as f32);
+        painter.vline(at.x, field.y_range(), line);
+        painter.hline(field.x_range(), at.y, line);
+    }
+    let hovered = response.hover_pos().and_then(|pos| {
+        let off = |mark: &MatrixMark| place(mark.at[0] + 0.5, mark.at[1] + 0.5).distance(pos);
+        let marks = matrix.marks.iter().take(MOST_MARKS).enumerate();
+        let nearest = marks.map(|(index, mark)| (index, off(mark))).min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
+    });
+    // Small where there are many, larger the nearer one comes.
+    let radius_of_mark = ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4)).min(6.5);
+    for (index, mark) in matrix.marks.iter().take(MOST_MARKS).enumerate().rev() {
+        let at = place(mark.at[0] + 0.5, mark.at[1] + 0.5);
+        if !field.expand(4.0).contains(at) {
+            continue;
+        }
+        let color = if mark.faint {
+            palette.muted.gamma_multiply(0.6)
+        } else {
+            palette.text
+        };
+        let (radius, stroke) = if Some(index) == matrix.lit {
+            (radius_of_mark + 3.0, Stroke::new(2.5, palette.accent))
+        } else if Some(index) == hovered {
+            (radius_of_mark + 2.0, Stroke::new(2.0, palette.text))
+        } else {
+            (radius_of_mark, Stroke::new(1.0, color))
+        };
+        painter.circle_stroke(at, radius, stroke);
+    }
+    if let Some(now) = matrix.now {
+        let at = place(now + 0.5, now + 0.5);
+        let hair = Stroke::new(theme.hairline(), palette.accent.gamma_multiply(0.8));
+        painter.vline(at.x, field.y_range(), hair);
+        painter.hline(field.x_range(), at.y, hair);
+    }
+    ui.painter().rect_stroke(field, 0.0, line, StrokeKind::Outside);
+    names_ui(matrix, (field, margin), &place, ui);
+    focus_ring(field, radius::S, &response, ui);
+    if response.hovered() {
+        let icon = if hovered.is_some() {
+            CursorIcon::PointingHand
+        } else {
+            CursorIcon::Crosshair
+        };
+        ui.ctx().set_cursor_icon(icon);
+    }
+    let at = response.hover_pos().map(|pos| {
+        let cell = (pos - field.min) * window.cells + window.corner;
+        [cell.y, cell.x]
+    });
+    MatrixResponse {
+        hovered,
+        at,
+        clicked: hovered.filter(|_| response.clicked()),
+    }
+}
+
+/// Cells per texel, a power of two, so that a texel is about as large as a pixel.
+fn factor_for(cells_per_pixel: f32) -> usize {
+    let power = cells_per_pixel.max(1.0).log2().floor() as u32;
+    1 << power.min(16)
+}
+
+fn moved(window: Window, (size, side): (f32, f32), field: Rect, response: &eframe::egui::Response, ui: &Ui) -> Window {
+    let mut window = window;
+    if response.dragged() {
+        window.corner -= response.drag_delta() * window.cells;
+    }
+    if let Some(pos) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = pinch * (scroll * 0.004).exp();
+        if (factor - 1.0).abs() > 1e-4 {
+            window = window.zoomed(factor, pos - field.min);
+            // The panel behind it stays where it is.
+            ui.ctx().input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
+        }
+    }
+    if response.has_focus() {
+        let filter = EventFilter {
+            horizontal_arrows: true,
+            vertical_arrows: true,
+            ..EventFilter::default()
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let pressed = |key: Key| ui.input(|input| input.key_pressed(key));
+        let middle = Vec2::splat(0.5 * side);
+        if pressed(Key::Plus) || pressed(Key::Equals) {
+            window = window.zoomed(1.5, middle);
+        }
+        if pressed(Key::Minus) {
+            window = window.zoomed(1.0 / 1.5, middle);
+        }
+        if pressed(Key::Num0) {
+            window = Window::whole(size, side);
+        }
+        let along = |more: Key, less: Key| f32::from(i8::from(pressed(more)) - i8::from(pressed(less)));
+        let step = vec2(along(Key::ArrowRight, Key::ArrowLeft), along(Key::ArrowDown, Key::ArrowUp));
+        window.corner += step * (0.1 * side * window.cells);
+    }
+    if response.double_clicked() {
+        window = Window::whole(size, side);
+    }
+    window.bounded(size, side)
+}
+
+/// The names of the parts: of the columns above, of the rows at the left, turned.
+fn names_ui(matrix: &Matrix<'_>, (field, margin): (Rect, f32), place: &dyn Fn(f32, f32) -> Pos2, ui: &Ui) {
+    let palette = palette_of(ui);
+    for (index, &(start, name)) in matrix.parts.iter().enumerate() {
+        let end = matrix.parts.get(index + 1).map_or(matrix.size, |next| next.0);
+        let (from, to) = (place(start as f32, start as f32), place(end as f32, end as f32));
+        for vertical in [false, true] {
+            let (low, high) = if vertical {
+                (from.y.max(field.top()), to.y.min(field.bottom()))
+            } else {
+                (from.x.max(field.left()), to.x.min(field.right()))
+            };
+            let room = high - low - 4.0;
+            if room < 18.0 {
+                continue;
+            }
+            let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], room, ui);
+            let middle = 0.5 * (low + high);
+            if vertical {
+                let at = pos2(field.left() - margin, middle + 0.5 * galley.size().x);
+                let shape = eframe::egui::epaint::TextShape::new(at, galley, palette.muted).with_angle(-std::f32::consts::FRAC_PI_2);
+                ui.painter().add(shape);
+            } else {
+                put(ui.painter(), pos2(middle, field.top() - margin), Align2::CENTER_TOP, galley);
+            }
+        }
+    }
+}
+
+/// Where a widget keeps its tiles.
+pub(crate) fn tiles_id() -> Id {
+    Id::unique("matrix tiles")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_under_the_pointer_stays_there_and_nothing_lies_outside() {
+        let window = Window::whole(1000.0, 500.0);
+        let at = vec2(100.0, 400.0);
+        let near = window.zoomed(4.0, at);
+        assert!((near.corner + at * near.cells - at * window.cells).length() < 1e-3);
+        assert_eq!(near.bounded(1000.0, 500.0), near);
+        assert_eq!(window.zoomed(0.1, at).bounded(1000.0, 500.0), window);
+        assert_eq!([0.3, 1.0, 2.1, 3.9, 4.0].map(factor_for), [1, 1, 2, 2, 4]);
+    }
+}

@@ -1,0 +1,225 @@
+//! Clips end to end, as bars, with an arc for every way from one place to another.
+
+use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::theme::{Type, palette_of, radius, theme_of};
+use eframe::egui::epaint::CubicBezierShape;
+use eframe::egui::{Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+/// What becomes of who comes here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fate {
+    /// One can go on for ever, and come back.
+    Main,
+    /// Likewise, apart from the main part.
+    Apart,
+    /// One comes to an end, or cannot come here.
+    Astray,
+    /// Here it ends.
+    End,
+}
+
+/// A part of a bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stretch {
+    /// From and to, counted through all bars.
+    pub(crate) from: usize,
+    /// One past its end.
+    pub(crate) to: usize,
+    /// What becomes of who comes here.
+    pub(crate) fate: Fate,
+}
+
+/// A way from one place to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    /// Where it leaves and where it arrives, counted through all bars.
+    pub(crate) ends: [usize; 2],
+    /// How probable it is, 0 to 1.
+    pub(crate) weight: f32,
+    /// It is not used.
+    pub(crate) faint: bool,
+}
+
+/// All that is shown.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strip<'a> {
+    /// The accessible name.
+    pub(crate) label: &'a str,
+    /// The bars: name, and how long each is.
+    pub(crate) bars: &'a [(&'a str, usize)],
+    /// Their parts.
+    pub(crate) stretches: &'a [Stretch],
+    /// The arcs.
+    pub(crate) arcs: &'a [Arc],
+    /// Where we are.
+    pub(crate) now: Option<usize>,
+    /// The part that is lit.
+    pub(crate) lit_stretch: Option<[usize; 2]>,
+    /// The arc that is lit.
+    pub(crate) lit_arc: Option<usize>,
+}
+
+/// What was asked of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct StripResponse {
+    /// The arc under the pointer.
+    pub(crate) hovered_arc: Option<usize>,
+    /// The arc that was clicked.
+    pub(crate) clicked_arc: Option<usize>,
+    /// The bar that was clicked.
+    pub(crate) clicked_bar: Option<usize>,
+}
+
+/// Between two bars, points.
+const GAP: f32 = 4.0;
+/// An arc is reached within this distance, points.
+const REACH: f32 = 5.0;
+/// More arcs than these are a thicket: the most probable are drawn.
+const MOST_ARCS: usize = 500;
+/// Straight pieces by which an arc is felt for.
+const PIECES: usize = 20;
+
+/// Draws it as high as there is room.
+pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResponse {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let scale = theme.scale();
+    let (_, whole) = ui.allocate_space(vec2(ui.available_width(), height));
+    let (bar_height, names) = ((7.0 * scale).round(), (16.0 * scale).round());
+    let bars = Rangef::new(whole.bottom() - names - bar_height, whole.bottom() - names);
+    let frames: usize = strip.bars.iter().map(|bar| bar.1).sum();
+    let per_frame = (whole.width() - GAP * strip.bars.len().saturating_sub(1) as f32) / frames.max(1) as f32;
+    let mut starts = Vec::with_capacity(strip.bars.len());
+    let mut first = 0;
+    for (index, bar) in strip.bars.iter().enumerate() {
+        starts.push((first, whole.left() + first as f32 * per_frame + index as f32 * GAP));
+        first += bar.1;
+    }
+    let x_of = |frame: f32| {
+        let bar = starts.partition_point(|start| start.0 as f32 <= frame).saturating_sub(1);
+        starts
+            .get(bar)
+            .map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
+    };
+
+    let id = ui.make_persistent_id(strip.label);
+    let response = ui.interact(whole, id, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, strip.label));
+    let top = whole.top() + 3.0;
+    let room = (bars.min - top).max(8.0);
+    let curve = |arc: &Arc| {
+        let [from, to] = arc.ends.map(|frame| x_of(frame as f32));
+        // The apex of the arc lies at three quarters of its control points.
+        let high = (room * 1.3).min(18.0 * scale + 0.34 * (to - from).abs());
+        [
+            pos2(from, bars.min),
+            pos2(from, bars.min - high),
+            pos2(to, bars.min - high),
+            pos2(to, bars.min),
+        ]
+    };
+    let mut shown: Vec<usize> = (0..strip.arcs.len()).collect();
+    if shown.len() > MOST_ARCS {
+        shown.sort_by(|&a, &b| strip.arcs[b].weight.total_cmp(&strip.arcs[a].weight));
+        shown.truncate(MOST_ARCS);
+    }
+    let pointer = response.hover_pos();
+    let hovered_arc = pointer.filter(|pos| pos.y < bars.min - 1.0).and_then(|pos| {
+        let off = |index: usize| (index, distance(&curve(&strip.arcs[index]), pos));
+        let nearest = shown.iter().map(|&index| off(index)).min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
+    });
+    let painter = ui.painter_at(whole.expand(2.0));
+    let draw = |index: usize, stroke: Stroke| {
+        let points = curve(&strip.arcs[index]);
+        painter.add(CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke));
+    };
+    for &index in &shown {
+        let arc = &strip.arcs[index];
+        let clear = if arc.faint { 0.10 } else { 0.16 + 0.7 * arc.weight.sqrt() };
+        draw(
+            index,
+            Stroke::new((0.7 + 2.6 * arc.weight) * scale, palette.muted.gamma_multiply(clear)),
+        );
+    }
+    for (index, color) in [(hovered_arc, palette.text), (strip.lit_arc, palette.accent)] {
+        if let Some(index) = index.filter(|&index| index < strip.arcs.len()) {
+            draw(index, Stroke::new(2.4 * scale, color));
+        }
+    }
+    let bar_of = |from: f32, to: f32| Rect::from_x_y_ranges(x_of(from)..=x_of(to), bars);
+    for stretch in strip.stretches {
+        let color = match stretch.fate {
+            Fate::Main => palette.b,
+            Fate::Apart => palette.a,
+            Fate::Astray | Fate::End => palette.line_strong,
+        };
+        // The end of one bar is not the beginning of the next.
+        let rect = bar_of(stretch.from as f32, stretch.to as f32 - 0.01);
+        painter.rect_filled(rect, 0.0, color.gamma_multiply(if stretch.fate == Fate::Main { 0.75 } else { 1.0 }));
+        if stretch.fate == Fate::End {
+            let end = Rect::from_min_max(pos2((rect.right() - 3.0).max(rect.left()), rect.top()), rect.max);
+            painter.rect_filled(end, 0.0, palette.bad);
+        }
+    }
+    if let Some([from, to]) = strip.lit_stretch {
+        let rect = bar_of(from as f32, to as f32 - 0.01);
+        painter.rect_filled(rect.expand2(vec2(0.0, 1.0)), 0.0, palette.accent);
+    }
+    for ((name, frames), &(_, left)) in strip.bars.iter().zip(&starts) {
+        let width = *frames as f32 * per_frame;
+        let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], (width - 2.0).max(0.0), ui);
+        if width > 14.0 {
+            put(&painter, pos2(left, bars.max + 1.0), Align2::LEFT_TOP, galley);
+        }
+    }
+    if let Some(now) = strip.now {
+        let at = pos2(x_of(now as f32), 0.5 * (bars.min + bars.max));
+        painter.circle(at, 5.5 * scale, palette.handle, Stroke::new(1.5, palette.on_handle));
+    }
+    focus_ring(whole, radius::S, &response, ui);
+    let under_bar = pointer.filter(|pos| pos.y >= bars.min - 1.0).and_then(|pos| {
+        let bar = starts.partition_point(|start| start.1 <= pos.x);
+        bar.checked_sub(1)
+    });
+    if response.hovered() && (hovered_arc.is_some() || under_bar.is_some()) {
+        ui.ctx().set_cursor_icon(CursorIcon::PointingHand);
+    }
+    StripResponse {
+        hovered_arc,
+        clicked_arc: hovered_arc.filter(|_| response.clicked()),
+        clicked_bar: under_bar.filter(|_| response.clicked()),
+    }
+}
+
+/// How far a point is from an arc.
+fn distance(points: &[Pos2; 4], pos: Pos2) -> f32 {
+    let at = |t: f32| {
+        let u = 1.0 - t;
+        let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
+        let sum = points
+            .iter()
+            .zip(weights)
+            .fold(vec2(0.0, 0.0), |sum, (point, w)| sum + point.to_vec2() * w);
+        sum.to_pos2()
+    };
+    let mut least = f32::INFINITY;
+    for piece in 0..PIECES {
+        let (from, to) = (at(piece as f32 / PIECES as f32), at((piece + 1) as f32 / PIECES as f32));
+        let along = to - from;
+        let share = ((pos - from).dot(along) / along.length_sq().max(1e-6)).clamp(0.0, 1.0);
+        least = least.min((from + along * share).distance(pos));
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_is_felt_along_its_line() {
+        let points = [pos2(0.0, 100.0), pos2(0.0, 20.0), pos2(90.0, 20.0), pos2(90.0, 100.0)];
+        assert!(distance(&points, pos2(45.0, 40.0)) < 0.5);
+        assert!(distance(&points, pos2(45.0, 90.0)) > 30.0);
+    }
+}
