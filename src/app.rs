@@ -223,7 +223,11 @@ impl Segue {
         let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
         self.clock.ticked = now_ms;
         let playing = self.session.params().is_on(Key::Play);
-        self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed })
+        let ticked = self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed });
+        if self.session.is_driven() {
+            self.session.tick_took((platform::now_ms() - now_ms) / 1e3);
+        }
+        ticked
     }
 
     /// Takes what has come in, sends what is asked for, and works on what is left over for a while. `true` while there is more to do.

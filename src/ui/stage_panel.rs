@@ -266,7 +266,7 @@ fn is_beyond(pane: &Pane) -> bool {
 fn written(metric: &segue::metrics::Metric) -> String {
     let Some(value) = metric.value else { return "–".to_owned() };
     let decimals = match metric.unit {
-        "s" | "m" | "m/s" => 2,
+        "s" | "m" | "m/s" | "ms" => 2,
         "cm" => 1,
         // What has no unit is counted.
         "%" | "frames" | "bends" | "" => 0,

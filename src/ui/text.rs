@@ -181,6 +181,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("match_skate", "skate cm"),
     ("match_seams", "jumps/min"),
     ("match_visited", "visited %"),
+    ("match_tick_ms", "ms/tick"),
     ("match_turn", "turn s"),
     ("match_worst_error", "worst cm"),
     ("loop_seam_deg", "seam"),
@@ -738,8 +739,6 @@ pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 pub(crate) const MADE_SET: &str = "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
 /// A button.
 pub(crate) const USE_MADE_SET: &str = "Use the synthesiser's set";
-/// A row.
-pub(crate) const ADD_CLIP: &str = "Add a clip";
 /// The strip's name.
 pub(crate) const CLIP_STRIP: &str = "All clips, and the frame that plays";
 /// Of the curves.

@@ -3,6 +3,7 @@
 use super::Session;
 use super::panes::{Inputs, Pane};
 use crate::matching::{Control, Database, RATE, Recording};
+use crate::metrics::Metric;
 use crate::session::command::CommandError;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::{Crowd, Live, MatchSource, Outcome, filter_of, options_of, read_ids, recording_of};
@@ -25,6 +26,10 @@ pub(super) struct Driving {
     recording: Recording,
     /// Time that is no tick yet, seconds.
     left_secs: f64,
+    /// Ticks of the last call, whose duration is not known yet.
+    unmeasured: usize,
+    /// How long a tick of all characters takes, milliseconds, smoothed; 0 while nobody measured it.
+    tick_ms: f64,
 }
 
 /// Whether these parameters let the user drive.
@@ -109,6 +114,16 @@ impl Session {
         true
     }
 
+    /// How long the last call of [`Session::tick`] took, seconds: there is no clock here.
+    pub fn tick_took(&mut self, secs: f64) {
+        let ticks = std::mem::take(&mut self.driving.unmeasured);
+        if ticks > 0 {
+            let now = secs * 1e3 / ticks as f64;
+            let known = self.driving.tick_ms;
+            self.driving.tick_ms = if known > 0.0 { known + 0.05 * (now - known) } else { now };
+        }
+    }
+
     /// So many ticks with the present input.
     pub(super) fn drive_ticks(&mut self, ticks: usize) {
         let filter = filter_of(&self.params);
@@ -117,8 +132,11 @@ impl Session {
             crowd,
             control,
             recording,
+            unmeasured,
+            tick_ms,
             ..
         } = &mut self.driving;
+        *unmeasured = ticks;
         let control = control.with_filter(filter);
         for _ in 0..ticks {
             // A recording that is full holds the first half hour.
@@ -132,7 +150,20 @@ impl Session {
         }
         if ticks > 0 {
             for (pane, live) in self.panes.iter_mut().zip(lives) {
-                show(pane, live.outcome());
+                let timed = Metric::fact(
+                    "match_tick_ms",
+                    "time per tick",
+                    (*tick_ms > 0.0).then_some(*tick_ms),
+                    "ms",
+                    "How long a sixtieth of a second of all characters takes to compute, searches included.",
+                );
+                show(
+                    pane,
+                    live.outcome().map(|mut outcome| {
+                        outcome.metrics.push(timed);
+                        outcome
+                    }),
+                );
             }
         }
     }
@@ -155,19 +186,19 @@ impl Session {
                     let options = options_of(&params);
                     let known = self.driving.lives.get_mut(index).filter(|live| live.plays(&database));
                     let live = match known {
-                        Some(live) => live.change(&database, options).map(|()| live),
+                        Some(live) => live.change(&database, options).map(|changed| (changed, live)),
                         None => Live::new(&database, options).map(|live| {
                             // Others begin together with the first.
                             self.driving.lives.truncate(index);
                             self.driving.recording = Recording::new();
                             self.driving.lives.push(live);
-                            &mut self.driving.lives[index]
+                            (true, &mut self.driving.lives[index])
                         }),
                     };
                     match live {
-                        Ok(live) => {
+                        Ok((changed, live)) => {
                             pane.problem = None;
-                            if !is_shown(pane, &database) {
+                            if changed || !is_shown(pane, &database) {
                                 show(pane, live.outcome());
                             }
                         }

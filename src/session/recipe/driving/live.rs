@@ -44,15 +44,18 @@ impl Live {
     }
 
     /// Goes on with other options, and in a database of the same clips.
-    pub(in crate::session) fn change(&mut self, database: &Arc<Database>, options: ControllerOptions) -> Result<(), String> {
+    /// Says whether that is something else.
+    pub(in crate::session) fn change(&mut self, database: &Arc<Database>, options: ControllerOptions) -> Result<bool, String> {
         let controller = &mut self.tracer.controller;
-        if !Arc::ptr_eq(controller.database(), database) {
+        let moves = !Arc::ptr_eq(controller.database(), database);
+        if moves {
             controller.set_database(Arc::clone(database));
         }
-        if *controller.options() != options {
+        let differs = *controller.options() != options;
+        if differs {
             controller.set_options(options).map_err(|error| error.to_string())?;
         }
-        Ok(())
+        Ok(moves || differs)
     }
 
     /// One tick.
