@@ -16,6 +16,7 @@ pub mod clip;
 pub mod formats;
 pub mod gait;
 pub mod graph;
+pub mod matching;
 pub mod math;
 pub mod metrics;
 pub mod path;

@@ -122,7 +122,7 @@ pub(crate) fn moving_joints(a: &Clip, b: &Clip) -> Vec<usize> {
 }
 
 /// Likewise for any number of clips.
-pub(super) fn moving_joints_of<'a>(clips: impl IntoIterator<Item = &'a Clip>) -> Vec<usize> {
+pub(crate) fn moving_joints_of<'a>(clips: impl IntoIterator<Item = &'a Clip>) -> Vec<usize> {
     let tracks = clips.into_iter().flat_map(Clip::translations);
     let mut joints: Vec<usize> = tracks.map(|track| track.joint).collect();
     joints.sort_unstable();

@@ -35,7 +35,7 @@ mod registered;
 mod weight;
 mod weight_curve;
 
-pub(crate) use assembly::{Assembly, moving_joints, standing_over, translation_of};
+pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, standing_over, translation_of};
 pub use concatenation::Concatenation;
 pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
 pub(crate) use dissolve::{check, common_carrier, laid_on};

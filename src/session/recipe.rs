@@ -29,8 +29,8 @@ pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
 pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
-pub use register::{Beat, DistanceMap, Registered, write_pins};
-pub(super) use register::{RegisterInputs, Registrar, read_pins};
+pub use register::{Beat, DistanceMap, Registered, weight_curve, write_pairs};
+pub(super) use register::{RegisterInputs, Registrar, read_pins, read_weights};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
 pub(super) use view::{FeetHolder, ViewInputs};
 

@@ -2,7 +2,7 @@ use crate::blend::MOST_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::math::{curve, quat};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Role, Roles, Side, WorldPose, two_bones};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bones};
 use glam::{Mat3, Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -173,7 +173,9 @@ impl State {
         check("blend time (s)", options.blend_secs, MOST_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         let sides = Side::BOTH.into_iter();
-        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides.filter_map(|side| Some((side, Leg::find(clip, roles, side)?))).unzip();
+        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides
+            .filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?)))
+            .unzip();
         if legs.is_empty() {
             return Err(FootLockError::NoLegs);
         }
@@ -269,8 +271,8 @@ impl State {
 }
 
 /// The joints of a leg, and their parents.
-#[derive(Debug)]
-struct Leg {
+#[derive(Clone, Debug)]
+pub(crate) struct Leg {
     joints: [usize; 3],
     parents: [usize; 3],
 }
@@ -286,8 +288,8 @@ struct Posed {
 }
 
 impl Leg {
-    fn find(clip: &Clip, roles: &Roles, side: Side) -> Option<Self> {
-        let skeleton = clip.skeleton();
+    /// `None` where thigh, shin and foot are not one below the other.
+    pub(crate) fn find(skeleton: &Skeleton, roles: &Roles, side: Side) -> Option<Self> {
         let [thigh, shin, foot, _] = Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
         let joints = [thigh?, shin?, foot?];
         let above =
@@ -302,6 +304,19 @@ impl Leg {
             joints,
             parents: [a, b, c],
         })
+    }
+
+    /// The axis about which this knee bends over some poses, in the thigh's frame.
+    pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
+        usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())
+    }
+
+    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, the hips staying where they are: writes the local rotations of thigh, shin
+    /// and foot. `world` is the pose before; it may hold these joints and their ancestors alone.
+    pub(crate) fn move_ankle(&self, world: &WorldPose, shift: Vec3, usual_axis: Vec3, local: &mut [Quat]) {
+        let posed = self.pose(world);
+        let [upper, lower] = posed.turned(shift, usual_axis);
+        self.write(&posed, upper, lower, local);
     }
 
     fn pose(&self, world: &WorldPose) -> Posed {

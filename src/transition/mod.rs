@@ -44,6 +44,7 @@ mod moving;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
+pub(crate) use foot_lock::Leg;
 pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};

@@ -1,6 +1,6 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
-use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, MapCurve};
+use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, MapCurve, WeightCurveEvent, WeightCurveRow};
 use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -8,7 +8,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
-use segue::session::{Command, DistanceMap, Key, Registered, Session, Slot, Value, write_pins};
+use segue::session::{Command, DistanceMap, Key, Registered, Session, Slot, Value, weight_curve, write_pairs};
 use segue::skeleton::Side;
 use std::sync::Arc;
 
@@ -30,8 +30,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     let modes = session.compare().filter(|compare| compare.key == Key::WarpMode);
     let shown = |mode: &str| modes.is_some() || params.text(Key::WarpMode) == mode;
     if shown("blend") {
-        param_row_ui(Key::WarpWeight, &plain, session, out, ui);
-        compare_ui(Key::WarpWeight, session, out, ui);
+        weight_ui(session, out, ui);
     }
     if shown("join") {
         let last = |slot| {
@@ -63,6 +62,42 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     }
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
+}
+
+/// One weight, or a curve of weights.
+fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let keys = session.weight_keys();
+    if keys.is_empty() {
+        param_row_ui(Key::WarpWeight, &Detail::default(), session, out, ui);
+        compare_ui(Key::WarpWeight, session, out, ui);
+    } else {
+        ui.label(RichText::new(Key::WarpCurve.param().label).font(theme_of(ui).font(Type::Label)));
+        let curve = weight_curve(&keys);
+        let points: Vec<f64> = (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
+        let duration = session.duration_secs();
+        let row = WeightCurveRow {
+            label: Key::WarpCurve.param().label,
+            keys: &keys,
+            curve: &points,
+            now: (duration > 0.0).then(|| session.now_secs() / duration),
+            ends: [text::ALL_B, text::ALL_A],
+        };
+        for event in kit::weight_curve_ui(&row, ui) {
+            match event {
+                WeightCurveEvent::Keys(keys) => out.set(Key::WarpCurve, Value::Text(write_pairs(&keys))),
+                WeightCurveEvent::Settled => out.commands.push(Command::Settle),
+            }
+        }
+        note_ui(text::WEIGHT_CURVE_HELP, palette_of(ui).muted, ui);
+    }
+    let (label, wanted) = if keys.is_empty() {
+        (text::WEIGHT_OVER_TIME, text::FIRST_WEIGHTS)
+    } else {
+        (text::ONE_WEIGHT, "")
+    };
+    if kit::button_ui(Button::new(label), ui).clicked() {
+        out.set_once(Key::WarpCurve, Value::Text(wanted.to_owned()));
+    }
 }
 
 /// The timewarp beside none, or back to one pane.
@@ -175,11 +210,11 @@ fn map_event(
         }
         HeatMapEvent::Pin { from, to } => {
             let wanted: Vec<(usize, usize)> = others(from).chain([pin(to)]).collect();
-            out.set(Key::Pins, Value::Text(write_pins(&wanted)));
+            out.set(Key::Pins, Value::Text(write_pairs(&wanted)));
         }
         HeatMapEvent::Unpin(from) => {
             let left: Vec<(usize, usize)> = others(Some(from)).collect();
-            out.set(Key::Pins, Value::Text(write_pins(&left)));
+            out.set(Key::Pins, Value::Text(write_pairs(&left)));
         }
         HeatMapEvent::Settled => out.commands.push(Command::Settle),
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::ui::theme::Theme;
-use eframe::egui::{Key as Keyboard, Rect, Shape, Vec2, vec2};
+use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Vec2, vec2};
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -493,6 +493,46 @@ fn the_register_lab_shows_the_map_and_what_follows_it() {
             picture(&format!("{name}-map"), &mut harness);
         }
     }
+}
+
+#[test]
+fn a_weight_over_time_is_drawn_by_hand() {
+    let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
+    press(text::WEIGHT_OVER_TIME, &mut harness);
+    let label = Key::WarpCurve.param().label;
+    let keys = |harness: &Harness<'_, Page>| harness.state().session.weight_keys();
+    assert_eq!(keys(&harness), [(0, 0), (100, 100)]);
+    let image = harness.get_by_role_and_label(Role::Image, label);
+    image.scroll_to_me();
+    harness.run();
+    let field = harness.get_by_role_and_label(Role::Image, label).rect().shrink(6.0);
+    let at = |x: f32, y: f32| field.left_bottom() + vec2(x * field.width(), -y * field.height());
+    harness.hover_at(at(0.5, 0.8));
+    harness.run();
+    // Both clicks in one frame: frames of tests are too long for a double click.
+    for pressed in [true, false, true, false] {
+        harness.input_mut().events.push(egui::Event::PointerButton {
+            pos: at(0.5, 0.8),
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        });
+    }
+    harness.run();
+    assert_eq!(keys(&harness).len(), 3, "{:?}", keys(&harness));
+    harness.drag_at(at(0.5, 0.8));
+    harness.run();
+    harness.hover_at(at(0.3, 0.2));
+    harness.run();
+    harness.drop_at(at(0.3, 0.2));
+    harness.run();
+    let (share, weight) = keys(&harness)[1];
+    assert!(share.abs_diff(30) <= 2 && weight.abs_diff(20) <= 2, "{share} {weight}");
+    let beats = &outcome(harness.state()).registered.as_ref().unwrap().beats;
+    assert!((beats[beats.len() * 3 / 10].weight_b - 0.2).abs() < 0.06);
+    picture("register-weights-dark", &mut harness);
+    press(text::ONE_WEIGHT, &mut harness);
+    assert_eq!(keys(&harness), []);
 }
 
 #[test]

@@ -260,6 +260,18 @@ pub(crate) const REGISTER_ABOUT: &str =
 /// The same over the stage.
 pub(crate) const REGISTER_HINT: &str =
     "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
+/// What makes the weight of a registered blend a curve.
+pub(crate) const WEIGHT_OVER_TIME: &str = "Draw over time";
+/// And a number again.
+pub(crate) const ONE_WEIGHT: &str = "One weight";
+/// What that curve begins as.
+pub(crate) const FIRST_WEIGHTS: &str = "0-0,100-100";
+/// The ends of the weight.
+pub(crate) const ALL_B: &str = "all B";
+/// See [`ALL_B`].
+pub(crate) const ALL_A: &str = "all A";
+/// How the curve is worked.
+pub(crate) const WEIGHT_CURVE_HELP: &str = "Drag a key to move it; double-click to add one, or to take one away.";
 /// Opens both beside each other.
 pub(crate) const REGISTERED_AND_PLAIN: &str = "Registered beside plain";
 /// The map's name.

@@ -41,6 +41,10 @@ cargo xtask quality [--data FOLDER]
 cargo xtask graph-quality [--data FOLDER]
     Walks for ten minutes through the motion graph of all clips of a folder, with the default options, and prints how good that is.
 
+cargo xtask match-quality
+    Drives a character by recorded input (straight on, 90° turns, a spin, starts and stops, into a run, a figure eight) with the synthesiser's
+    motions and the default options, and prints how well it follows.
+
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
@@ -56,6 +60,7 @@ fn main() -> ExitCode {
         Some((&"fuzz", rest)) => fuzz::run_targets(rest),
         Some((&"quality", rest)) => quality::run_pairs(rest),
         Some((&"graph-quality", rest)) => quality::run_walks(rest),
+        Some((&"match-quality", rest)) => quality::run_drives(rest),
         Some((&"docs", _)) => docs(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");

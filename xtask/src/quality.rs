@@ -1,6 +1,8 @@
-//! `cargo xtask quality` and `graph-quality`: transitions between all clips of a folder, and walks through their motion graph, measured.
+//! `cargo xtask quality`, `graph-quality` and `match-quality`: transitions between all clips of a folder, walks through their motion graph, and
+//! characters driven by recorded input, measured.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use crate::shell::{Result, cargo, fail, root, run};
 
@@ -10,6 +12,13 @@ pub fn run_pairs(args: &[&str]) -> Result<()> {
 
 pub fn run_walks(args: &[&str]) -> Result<()> {
     run_example("graph_quality", args)
+}
+
+pub fn run_drives(args: &[&str]) -> Result<()> {
+    if !args.is_empty() {
+        return fail("match-quality takes no arguments: it drives with the synthesiser's motions");
+    }
+    run(&mut example("match_quality"))
 }
 
 fn run_example(name: &str, args: &[&str]) -> Result<()> {
@@ -22,7 +31,11 @@ fn run_example(name: &str, args: &[&str]) -> Result<()> {
     if !folder.is_dir() {
         return fail(format!("there is no folder {}", folder.display()));
     }
-    let mut table = cargo(&[
+    run(example(name).arg("--").arg(folder))
+}
+
+fn example(name: &str) -> Command {
+    cargo(&[
         "run",
         "--quiet",
         "--release",
@@ -30,9 +43,7 @@ fn run_example(name: &str, args: &[&str]) -> Result<()> {
         "--no-default-features",
         "--example",
         name,
-        "--",
-    ]);
-    run(table.arg(folder))
+    ])
 }
 
 /// Where the tests look for captured motion, too.

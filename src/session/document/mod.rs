@@ -19,6 +19,7 @@ use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Registrar, Slot, read_pins,
+    read_weights,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
@@ -396,6 +397,12 @@ impl Session {
     #[must_use]
     pub fn pins(&self) -> Vec<(usize, usize)> {
         read_pins(self.params.text(Key::Pins)).unwrap_or_default()
+    }
+
+    /// The weight of B over the course of a registered blend, in per cent of both; empty where it stays the same, or cannot be read.
+    #[must_use]
+    pub fn weight_keys(&self) -> Vec<(usize, usize)> {
+        read_weights(self.params.text(Key::WarpCurve)).unwrap_or_default()
     }
 
     /// The frame of a slot's clip at a time, at its own rate.

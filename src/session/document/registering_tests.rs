@@ -207,3 +207,17 @@ fn long_clips_are_registered_in_slices() {
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("view"))])).unwrap();
     assert!(session.jobs().is_empty());
 }
+
+#[test]
+fn a_weight_can_change_over_the_blend() {
+    let session = opened("lab=register&warp_curve=0-0,50-100,100-20");
+    let weights: Vec<f64> = registered(&session).beats.iter().map(|beat| beat.weight_b).collect();
+    let last = weights.len() - 1;
+    assert!(
+        weights[0] < 1e-9 && weights[last / 2] > 0.99 && (weights[last] - 0.2).abs() < 0.01,
+        "{weights:?}"
+    );
+    let bad = opened("lab=register&warp_curve=0-0,50-200");
+    let problem = bad.panes()[0].problem.clone().unwrap();
+    assert!(problem.contains("`50-200`"), "{problem}");
+}

@@ -1,12 +1,12 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
 mod map;
-mod pins;
+mod pairs;
 mod registrar;
 
 pub use map::DistanceMap;
-pub(in crate::session) use pins::read_pins;
-pub use pins::write_pins;
+pub use pairs::write_pairs;
+pub(in crate::session) use pairs::{read_pins, read_weights};
 pub(in crate::session) use registrar::Registrar;
 
 use super::feet::{slide_before, with_feet};
@@ -102,12 +102,12 @@ fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
 }
 
 /// What is made of two registered clips.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Made {
     /// Both at once.
     Blend {
         /// The weight of B.
-        weight: f64,
+        weight: WeightCurve,
     },
     /// A goes over into B.
     Join {
@@ -117,17 +117,26 @@ enum Made {
 }
 
 impl Made {
-    fn of(params: &Params) -> Self {
+    fn of(params: &Params) -> Result<Self, String> {
         if params.text(Key::WarpMode) == "join" {
-            Self::Join {
+            return Ok(Self::Join {
                 part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
-            }
-        } else {
-            Self::Blend {
-                weight: params.number(Key::WarpWeight),
-            }
+            });
         }
+        let keys = read_weights(params.text(Key::WarpCurve))?;
+        let weight = if keys.is_empty() {
+            WeightCurve::constant(params.number(Key::WarpWeight))
+        } else {
+            weight_curve(&keys)
+        };
+        Ok(Self::Blend { weight })
     }
+}
+
+/// The curve through keys in per cent of the blend and per cent of B.
+#[must_use]
+pub fn weight_curve(keys: &[(usize, usize)]) -> WeightCurve {
+    WeightCurve::new(keys.iter().map(|&(at, weight)| (at as f64 / 100.0, weight as f64 / 100.0)))
 }
 
 /// What a registered result depends on. Equal inputs, equal result.
@@ -189,9 +198,8 @@ impl RegisterInputs {
         ]
     }
 
-    fn blend(&self, weight: f64) -> Result<Draft, String> {
+    fn blend(&self, weight: &WeightCurve) -> Result<Draft, String> {
         let [a, b] = self.sources();
-        let weight = WeightCurve::constant(weight);
         let partner = Partner {
             source: b,
             registration: if self.is_plain {
@@ -199,7 +207,7 @@ impl RegisterInputs {
             } else {
                 &self.found.registration
             },
-            weight: &weight,
+            weight,
         };
         let made = registered_blend(a, &[partner]).map_err(|error| sentence(&error))?;
         let contacts = made.contacts(&self.contacts());
@@ -289,10 +297,10 @@ impl RegisterInputs {
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let pair = &self.pair;
         let fps = pair.a.clip.fps();
-        let (draft, part, is_join) = match self.made {
+        let (draft, part, is_join) = match &self.made {
             Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
             Made::Join { part_secs } => {
-                let part = self.part(part_secs)?;
+                let part = self.part(*part_secs)?;
                 (self.join(part)?, part.map(|frame| frame as f64), true)
             }
         };

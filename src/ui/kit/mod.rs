@@ -36,6 +36,7 @@ mod tests;
 mod timeline;
 mod transport;
 mod tree;
+mod weight_curve;
 mod words;
 
 pub(crate) use button::{Button, button_ui, icon_button_ui};
@@ -61,4 +62,5 @@ pub(crate) use tabs::tabs_ui;
 pub(crate) use timeline::{Moment, Stripe, Timeline, TimelineEvent, Track, timeline_ui};
 pub(crate) use transport::{Transport, TransportEvent, transport_ui};
 pub(crate) use tree::{Tree, TreeRow, tree_ui};
+pub(crate) use weight_curve::{WeightCurveEvent, WeightCurveRow, weight_curve_ui};
 pub(crate) use words::ENGLISH;

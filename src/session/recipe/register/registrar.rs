@@ -63,7 +63,7 @@ impl Registrar {
                 return Ok(Some(RegisterInputs {
                     pair: Arc::clone(pair),
                     found: found.clone()?,
-                    made: Made::of(params),
+                    made: Made::of(params)?,
                     is_plain: params.text(Key::WarpWith) == "plain",
                     foot_lock: params.is_on(Key::FootLock),
                 }));

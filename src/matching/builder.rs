@@ -1,0 +1,300 @@
+use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
+use super::features::{Features, Layout, RATE};
+use super::motion::{FeatureJoints, Motion, mirrored_contacts};
+use super::search::{BoxBuilder, BoxIndex};
+use super::tags::{TagRange, suggest_tags};
+use super::{MatchError, Weights};
+use crate::blend::moving_joints_of;
+use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget};
+use crate::registration::{Progress, REFERENCE_HEIGHT_M};
+use crate::skeleton::{Roles, Skeleton};
+use std::sync::Arc;
+
+/// The most frames of a database: features of 27 dimensions take half a gigabyte then.
+const MOST_FRAMES: usize = 2_000_000;
+/// Frames that are sorted into boxes in one step.
+const SLICE: usize = 100_000;
+
+/// Builds a [`Database`] in slices: [`advance`](Self::advance) until it is complete, then [`finish`](Self::finish).
+///
+/// Each clip is moved to the first clip's skeleton and to [`RATE`] frames per second, measured, and mirrored; one of these for one clip is a
+/// slice. Then features are normalised and frames sorted into boxes. A clip that is too short to look ahead in is left out and
+/// named in [`Database::skipped`].
+#[derive(Clone, Debug)]
+pub struct DatabaseBuilder {
+    clips: Vec<MatchClip>,
+    options: DatabaseOptions,
+    layout: Layout,
+    skeleton: Arc<Skeleton>,
+    roles: Roles,
+    motions: Vec<Arc<Motion>>,
+    skipped: Vec<MatchError>,
+    longest_secs: f64,
+    /// The clip whose turn it is, and what has been done with it.
+    next: usize,
+    stage: Stage,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    Prepare,
+    Measure(Arc<Clip>),
+    Mirror,
+    MeasureMirrored(Arc<Clip>),
+    Normalise,
+    Sort(Sorting),
+}
+
+#[derive(Clone, Debug)]
+struct Sorting {
+    starts: Vec<usize>,
+    features: Arc<Features>,
+    valid: Arc<Vec<u32>>,
+    boxes: BoxBuilder,
+    progress: Progress,
+}
+
+/// Of all progress, the share that is made clip by clip; out of 1000.
+const CLIPS_SHARE: usize = 750;
+
+impl DatabaseBuilder {
+    /// Checks what can be checked beforehand.
+    ///
+    /// # Errors
+    /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`], [`MatchError::NoFeet`] for the first clip.
+    pub fn new(clips: Vec<MatchClip>, options: &DatabaseOptions) -> Result<Self, MatchError> {
+        let layout = Layout::new(&options.features)?;
+        let first = clips.first().ok_or(MatchError::NoClips)?;
+        FeatureJoints::find(&first.clip, &first.roles)?;
+        let (skeleton, roles) = (Arc::clone(first.clip.skeleton()), first.roles.clone());
+        let copies = if options.mirrored { 2.0 } else { 1.0 };
+        let frames: f64 = clips.iter().map(|clip| clip.clip.duration_secs() * RATE as f64 * copies).sum();
+        if frames > MOST_FRAMES as f64 {
+            return Err(MatchError::TooManyFrames {
+                frames: frames as usize,
+                most: MOST_FRAMES,
+            });
+        }
+        let longest_secs = clips.iter().map(|clip| clip.clip.duration_secs()).fold(0.0, f64::max);
+        Ok(Self {
+            clips,
+            options: options.clone(),
+            layout,
+            skeleton,
+            roles,
+            motions: Vec::new(),
+            skipped: Vec::new(),
+            longest_secs,
+            next: 0,
+            stage: Stage::Prepare,
+        })
+    }
+
+    /// The clips of a database with other features: nothing is measured again but where trajectories lead.
+    ///
+    /// # Errors
+    /// [`MatchError::Times`].
+    pub fn retimed(database: &Database, features: &super::FeatureOptions) -> Result<Self, MatchError> {
+        let longest = database
+            .motions
+            .iter()
+            .map(|motion| motion.clip().duration_secs())
+            .fold(0.0, f64::max);
+        Ok(Self {
+            clips: Vec::new(),
+            options: DatabaseOptions {
+                features: features.clone(),
+                mirrored: database.options.mirrored,
+            },
+            layout: Layout::new(features)?,
+            skeleton: Arc::clone(&database.skeleton),
+            roles: database.roles.clone(),
+            motions: database.motions.clone(),
+            skipped: database.skipped.clone(),
+            longest_secs: longest,
+            next: 0,
+            stage: Stage::Normalise,
+        })
+    }
+
+    /// How far it has come, out of 1000.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let of_clip = |part: usize| (4 * self.next + part) * CLIPS_SHARE / (4 * self.clips.len()).max(1);
+        let done = match &self.stage {
+            Stage::Prepare => of_clip(0),
+            Stage::Measure(_) => of_clip(1),
+            Stage::Mirror => of_clip(2),
+            Stage::MeasureMirrored(_) => of_clip(3),
+            Stage::Normalise => CLIPS_SHARE,
+            Stage::Sort(sorting) => {
+                let Progress { done, total } = sorting.progress;
+                CLIPS_SHARE + 50 + (950 - CLIPS_SHARE) * done / total.max(1)
+            }
+        };
+        Progress { done, total: 1_000 }
+    }
+
+    /// Does one slice.
+    ///
+    /// # Errors
+    /// [`MatchError`] when a clip cannot be moved to the first one's skeleton or mirrored, has no feet there or holds what is no number, or no clip
+    /// has a frame that can be searched.
+    pub fn advance(&mut self) -> Result<Progress, MatchError> {
+        match std::mem::replace(&mut self.stage, Stage::Prepare) {
+            Stage::Prepare => match self.clips.get(self.next) {
+                Some(from) => {
+                    let clip = self.prepared(from)?;
+                    if clip.frames() > self.layout.horizon() {
+                        self.stage = Stage::Measure(clip);
+                    } else {
+                        self.skipped.push(MatchError::TooShort {
+                            name: from.clip.name().to_owned(),
+                            secs: from.clip.duration_secs(),
+                            horizon_secs: self.layout.horizon() as f64 / RATE as f64,
+                        });
+                        self.next += 1;
+                    }
+                }
+                None => self.stage = Stage::Normalise,
+            },
+            Stage::Measure(clip) => {
+                let contacts = Contacts::detect(&clip, &self.roles, &ContactOptions::default());
+                let mut motion = Motion::new(clip, &self.roles, contacts, self.next, false)?;
+                motion.tags = self.tags_of(&motion);
+                self.motions.push(Arc::new(motion));
+                self.stage = if self.options.mirrored { Stage::Mirror } else { self.next_clip() };
+            }
+            Stage::Mirror => {
+                self.stage = match self.motions.last() {
+                    Some(motion) => {
+                        let clip = mirror(motion.clip(), &self.roles).map_err(|error| MatchError::Mirror {
+                            name: motion.clip().name().to_owned(),
+                            error,
+                        })?;
+                        Stage::MeasureMirrored(Arc::new(clip))
+                    }
+                    None => self.next_clip(),
+                };
+            }
+            Stage::MeasureMirrored(clip) => {
+                if let Some(original) = self.motions.last() {
+                    let contacts = mirrored_contacts(original.contacts());
+                    let mut motion = Motion::new(clip, &self.roles, contacts, self.next, true)?;
+                    motion.tags.clone_from(&original.tags);
+                    self.motions.push(Arc::new(motion));
+                }
+                self.stage = self.next_clip();
+            }
+            Stage::Normalise => self.stage = Stage::Sort(self.normalised()?),
+            Stage::Sort(mut sorting) => {
+                sorting.progress = sorting.boxes.advance(&sorting.features, SLICE);
+                self.stage = Stage::Sort(sorting);
+            }
+        }
+        Ok(self.progress())
+    }
+
+    /// Does what is left.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn finish(mut self) -> Result<Database, MatchError> {
+        loop {
+            match self.stage {
+                Stage::Sort(sorting) if sorting.progress.is_complete() => {
+                    let index: BoxIndex = sorting.boxes.finish(&sorting.features);
+                    let tags = spread_all(&self.motions);
+                    return Ok(Database {
+                        options: self.options,
+                        skeleton: self.skeleton,
+                        roles: self.roles,
+                        masks: index.masks(&tags),
+                        index: Arc::new(index),
+                        moving: moving_joints_of(self.motions.iter().map(|motion| &**motion.clip())),
+                        motions: self.motions,
+                        starts: sorting.starts,
+                        features: sorting.features,
+                        valid: sorting.valid,
+                        tags,
+                        skipped: self.skipped,
+                    });
+                }
+                _ => {
+                    self.advance()?;
+                }
+            }
+        }
+    }
+
+    fn next_clip(&mut self) -> Stage {
+        self.next += 1;
+        Stage::Prepare
+    }
+
+    /// A clip on the first clip's skeleton and at the database's rate.
+    fn prepared(&self, from: &MatchClip) -> Result<Arc<Clip>, MatchError> {
+        let mut clip = Arc::clone(&from.clip);
+        if clip.skeleton() != &self.skeleton {
+            let moved = retarget(&clip, &from.roles, &self.skeleton, &self.roles).map_err(|error| MatchError::Retarget {
+                name: clip.name().to_owned(),
+                error,
+            })?;
+            clip = Arc::new(moved);
+        }
+        if clip.fps() != RATE as f64 {
+            clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
+        }
+        Ok(clip)
+    }
+
+    fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
+        let Some(from) = self.clips.get(self.next) else { return Vec::new() };
+        if let Some(tags) = &from.tags {
+            let at = |frame: usize| (frame as f64 * RATE as f64 / from.clip.fps()).round() as usize;
+            let range = |range: &TagRange| TagRange {
+                tag: range.tag,
+                frames: at(range.frames.start)..at(range.frames.end),
+            };
+            return tags.iter().map(range).collect();
+        }
+        let scale = f64::from(self.roles.body_height(&self.skeleton)) / REFERENCE_HEIGHT_M;
+        suggest_tags(motion.roots(), RATE as f64, scale)
+    }
+
+    fn normalised(&self) -> Result<Sorting, MatchError> {
+        let (mut starts, mut valid) = (vec![0], Vec::new());
+        let dims = self.layout.dims();
+        let frames: usize = self.motions.iter().map(|motion| motion.frames()).sum();
+        let mut rows = vec![0.0; frames * dims];
+        let mut each = rows.chunks_exact_mut(dims);
+        for motion in &self.motions {
+            let start = starts.last().copied().unwrap_or(0);
+            valid.extend((start..start + motion.valid(&self.layout)).map(|frame| frame as u32));
+            for (frame, row) in (0..motion.frames()).zip(&mut each) {
+                motion.write_row(&self.layout, frame, row);
+            }
+            starts.push(start + motion.frames());
+        }
+        if valid.is_empty() {
+            return Err(MatchError::NoValidFrame {
+                clips: self.clips.len().max(self.motions.len()),
+                longest_secs: self.longest_secs,
+                horizon_secs: self.layout.horizon() as f64 / RATE as f64,
+            });
+        }
+        let mut counts = vec![false; frames];
+        for &frame in &valid {
+            counts[frame as usize] = true;
+        }
+        let features = Features::normalise(self.layout.clone(), rows, |row| counts[row]);
+        let boxes = BoxBuilder::new(&valid, &Weights::default().spread(&self.layout));
+        Ok(Sorting {
+            starts,
+            features: Arc::new(features),
+            valid: Arc::new(valid),
+            boxes,
+            progress: Progress { done: 0, total: 1 },
+        })
+    }
+}

@@ -1,0 +1,385 @@
+//! The controller: from what the player asks for to the character's pose, tick by tick.
+
+mod feet;
+mod options;
+mod record;
+mod seek;
+
+pub use options::{ControllerOptions, Following, FootPlanting, Hysteresis, SearchMethod};
+pub use record::{Candidate, Held, Reason, SearchRecord};
+
+use super::control::Control;
+use super::database::{Database, Place};
+use super::desired::Simulation;
+use super::features::RATE;
+use super::search::TreeIndex;
+use super::{MatchError, Motion, TagFilter};
+use crate::blend::translation_of;
+use crate::math::{Planar, quat, spring, wrap_angle};
+use crate::skeleton::{Pose, Side};
+use crate::transition::{Inertializer, MovingPose};
+use feet::Feet;
+use glam::{DVec2, Vec3};
+use std::sync::Arc;
+
+/// Seconds of a tick.
+const TICK_SECS: f64 = 1.0 / RATE as f64;
+/// After a pause of the page nobody wants to wait for all that was missed, ticks.
+const MOST_TICKS_AT_ONCE: usize = 30;
+
+/// A character that is driven by a database.
+///
+/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input gives the same motion, bit for bit. Features and queries are
+/// rounded to a grid, so that machines whose trigonometry differs in its last digit choose the same frames, but for ties of less than that.
+/// [`Self::step`] runs as many ticks as fit into a frame of the screen; [`Self::shown`] is the pose between the last two.
+#[derive(Debug)]
+pub struct Controller {
+    database: Arc<Database>,
+    options: ControllerOptions,
+    /// One weight per dimension.
+    weights: Vec<f32>,
+    simulation: Simulation,
+    root: Planar,
+    place: Place,
+    inertializer: Inertializer,
+    feet: Feet,
+    pose: Pose,
+    previous: Pose,
+    planted: [bool; 2],
+    /// Real time that has not been a tick yet.
+    left_secs: f64,
+    tick: u64,
+    jumps: u64,
+    last_search: Option<u64>,
+    last_jump: Option<u64>,
+    last_change: u64,
+    asked: Asked,
+    votes: u32,
+    tree: Option<TreeIndex>,
+    record: Option<SearchRecord>,
+}
+
+/// What the last search was asked with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Asked {
+    velocity: DVec2,
+    yaw: f64,
+    filter: TagFilter,
+}
+
+impl Controller {
+    /// A character that stands at `start`, in the frame of the database that looks most like standing still.
+    ///
+    /// # Errors
+    /// [`MatchError::Setting`] when an option is out of range.
+    pub fn new(database: Arc<Database>, options: ControllerOptions, start: &Planar) -> Result<Self, MatchError> {
+        options.validate()?;
+        let first = database.motion(0).map(Motion::clip);
+        let step = first.map_or(1, |clip| clip.frames().div_ceil(60).max(1));
+        let examples: Vec<_> = first
+            .into_iter()
+            .flat_map(|clip| (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame)))
+            .collect();
+        let feet = Feet::new(database.skeleton(), database.roles(), &examples);
+        let mut controller = Self {
+            weights: options.weights.spread(database.features().layout()),
+            simulation: Simulation::at_rest(start),
+            root: *start,
+            place: Place::default(),
+            inertializer: Inertializer::new(options.transition),
+            feet,
+            pose: Pose::default(),
+            previous: Pose::default(),
+            planted: [false; 2],
+            left_secs: 0.0,
+            tick: 0,
+            jumps: 0,
+            last_search: None,
+            last_jump: None,
+            last_change: 0,
+            asked: Asked::default(),
+            votes: 0,
+            tree: None,
+            record: None,
+            database,
+            options,
+        };
+        controller.begin();
+        Ok(controller)
+    }
+
+    /// The database.
+    #[must_use]
+    pub fn database(&self) -> &Arc<Database> {
+        &self.database
+    }
+
+    /// The options.
+    #[must_use]
+    pub fn options(&self) -> &ControllerOptions {
+        &self.options
+    }
+
+    /// Other options from the next tick on. A transition that is going on ends as it began.
+    ///
+    /// # Errors
+    /// [`MatchError::Setting`] when one is out of range; the old ones stay.
+    pub fn set_options(&mut self, options: ControllerOptions) -> Result<(), MatchError> {
+        options.validate()?;
+        if options.transition != self.options.transition {
+            let old = self.moving(self.place);
+            let mut next = Inertializer::new(options.transition);
+            // What is left of the running transition is handed over.
+            let mut playing = old.clone();
+            self.inertializer.apply(&mut playing.rotations, &mut playing.translations);
+            next.trigger(&playing, &old);
+            self.inertializer = next;
+        }
+        self.weights = options.weights.spread(self.database.features().layout());
+        self.options = options;
+        Ok(())
+    }
+
+    /// Goes on in another database of the same clips: with other tags, or other trajectory times.
+    pub fn set_database(&mut self, database: Arc<Database>) {
+        self.weights = self.options.weights.spread(database.features().layout());
+        let known = database
+            .motion(self.place.motion)
+            .is_some_and(|motion| self.place.frame < motion.frames());
+        let same = database.skeleton() == self.database.skeleton() && known;
+        self.database = database;
+        self.tree = None;
+        self.record = None;
+        if !same {
+            self.feet = Feet::new(self.database.skeleton(), self.database.roles(), &[]);
+            self.begin();
+        }
+    }
+
+    /// The character's pose after the last tick, in the world, feet planted.
+    #[must_use]
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// The pose between the last two ticks that belongs to the time that [`Self::step`] has been given: one tick behind it, and smooth at any rate of the screen.
+    #[must_use]
+    pub fn shown(&self) -> Pose {
+        let part = (self.left_secs / TICK_SECS).clamp(0.0, 1.0) as f32;
+        let (from, to) = (&self.previous, &self.pose);
+        Pose {
+            root_translation: from.root_translation.lerp(to.root_translation, part),
+            rotations: (from.rotations.iter().zip(&to.rotations))
+                .map(|(&a, &b)| quat::slerp(a, b, part))
+                .collect(),
+            translations: (from.translations.iter().zip(&to.translations))
+                .map(|(a, b)| (b.0, a.1.lerp(b.1, part)))
+                .collect(),
+        }
+    }
+
+    /// Where the character stands and what it faces: `world_from_character`.
+    #[must_use]
+    pub fn root(&self) -> Planar {
+        self.root
+    }
+
+    /// The simulation object.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The frame that is playing.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Which feet stand: left, right. The clip has them on the ground, and they have come down there.
+    #[must_use]
+    pub fn planted(&self) -> [bool; 2] {
+        self.planted
+    }
+
+    /// Ticks since the beginning.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.tick
+    }
+
+    /// Jumps since the beginning.
+    #[must_use]
+    pub fn jumps(&self) -> u64 {
+        self.jumps
+    }
+
+    /// What the last search came to.
+    #[must_use]
+    pub fn last_search(&self) -> Option<&SearchRecord> {
+        self.record.as_ref()
+    }
+
+    /// The trajectory that is asked for, at the trajectory times, in the world.
+    #[must_use]
+    pub fn desired(&self) -> Vec<Planar> {
+        let at = |frames: &usize| {
+            let later = self.simulation.after(*frames as f64 * TICK_SECS, &self.options.steering);
+            later.place()
+        };
+        self.database.features().layout().ahead().iter().map(at).collect()
+    }
+
+    /// The trajectory of the clip that is playing, at the trajectory times, in the world.
+    #[must_use]
+    pub fn matched(&self) -> Vec<Planar> {
+        self.database.trajectory(self.place, &self.root)
+    }
+
+    /// Real time passes: runs the ticks that fit in, all with the same input. How many they were is what a recording must hold.
+    pub fn step(&mut self, dt_secs: f64, control: &Control) -> usize {
+        if dt_secs > 0.0 && dt_secs.is_finite() {
+            self.left_secs += dt_secs;
+        }
+        let mut ticks = (self.left_secs / TICK_SECS) as usize;
+        self.left_secs -= ticks as f64 * TICK_SECS;
+        ticks = ticks.min(MOST_TICKS_AT_ONCE);
+        for _ in 0..ticks {
+            self.tick(control);
+        }
+        ticks
+    }
+
+    /// One tick of 1/60 s.
+    pub fn tick(&mut self, control: &Control) {
+        self.simulation.ask(control);
+        if let Some(reason) = self.reason(control.filter()) {
+            self.seek(reason, control.filter());
+        }
+        let travelled = self.go_on();
+        self.simulation = self.simulation.after(TICK_SECS, &self.options.steering);
+        self.follow(&travelled);
+        std::mem::swap(&mut self.pose, &mut self.previous);
+        self.write_pose();
+        self.tick += 1;
+    }
+
+    /// Plays one frame further; the step that the character made, in its own frame.
+    fn go_on(&mut self) -> Planar {
+        let mut step = Planar::IDENTITY;
+        if let Some(motion) = self.database.motion(self.place.motion)
+            && self.place.frame + 1 < motion.frames()
+        {
+            step = motion.root(self.place.frame).inverse().after(&motion.root(self.place.frame + 1));
+            self.place.frame += 1;
+        }
+        self.inertializer.advance(TICK_SECS);
+        let step = self.inertializer.step(&step, TICK_SECS);
+        self.root = self.root.after(&step);
+        step
+    }
+
+    /// Draws the character to the simulation object, and holds it near (Holden, "Code vs Data Driven Displacement", 2021).
+    fn follow(&mut self, travelled: &Planar) {
+        let Some(following) = self.options.following else { return };
+        let (off, turn) = (
+            self.simulation.position - self.root.shift,
+            wrap_angle(self.simulation.yaw - self.root.yaw),
+        );
+        // The exact share of plain exponential decay.
+        let share = 1.0 - spring::run_on(following.half_life_secs, TICK_SECS).0;
+        let most = |own: f64| own * following.most_share;
+        let drawn = (off * share).clamp_length_max(most(travelled.shift.length()));
+        let most_turn = most(travelled.yaw.abs());
+        let turned = (turn * share).clamp(-most_turn, most_turn);
+        let left = (off - drawn).clamp_length_max(following.most_m);
+        let left_turn = (turn - turned).clamp(-following.most_radians, following.most_radians);
+        self.root = Planar {
+            yaw: wrap_angle(self.simulation.yaw - left_turn),
+            shift: self.simulation.position - left,
+        };
+    }
+
+    fn write_pose(&mut self) {
+        let Some(motion) = self.database.motion(self.place.motion) else {
+            return;
+        };
+        let (clip, frame) = (motion.clip(), self.place.frame.min(motion.frames().saturating_sub(1)));
+        let here = motion.root(frame).inverse();
+        let pose = &mut self.pose;
+        pose.rotations.clear();
+        pose.rotations.extend_from_slice(clip.rotations(frame));
+        let root_translation = here.apply(clip.root_translations()[frame]);
+        let mut translations = Vec::with_capacity(1 + self.database.moving.len());
+        translations.push(root_translation);
+        translations.extend(self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)));
+        if let Some(root) = pose.rotations.first_mut() {
+            *root = here.rotation() * *root;
+        }
+        self.inertializer.apply(&mut pose.rotations, &mut translations);
+        if let Some(root) = pose.rotations.first_mut() {
+            *root = quat::renormalize(self.root.rotation() * *root);
+        }
+        pose.root_translation = self.root.apply(translations[0]);
+        pose.translations.clear();
+        pose.translations
+            .extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
+        let planted = Side::BOTH.map(|side| motion.contacts().planted(side, frame));
+        let planting = self.options.planting.as_ref();
+        self.planted = self.feet.apply(self.database.skeleton(), pose, planted, planting, TICK_SECS);
+    }
+
+    /// Stands where the simulation object is.
+    fn begin(&mut self) {
+        let query = self.query();
+        if let Some(hit) = self.find(&query, TagFilter::default(), None).best
+            && let Some(place) = self.database.place(hit.frame)
+        {
+            self.place = place;
+        }
+        self.inertializer = Inertializer::new(self.options.transition);
+        self.write_pose();
+        self.previous.clone_from(&self.pose);
+        self.record = None;
+    }
+
+    /// A frame as a pose in the character's own frame, and how it moves there.
+    fn moving(&self, place: Place) -> MovingPose {
+        let Some(motion) = self.database.motion(place.motion) else {
+            return MovingPose::default();
+        };
+        let last = motion.frames().saturating_sub(1);
+        let (clip, frame) = (motion.clip(), place.frame.min(last));
+        // The step from this frame to the next; behind the last one it is the one before.
+        let (from, to) = if frame < last {
+            (frame, frame + 1)
+        } else {
+            (last.saturating_sub(1), last)
+        };
+        let at = |frame: usize| {
+            let here = motion.root(frame).inverse();
+            let mut rotations = clip.rotations(frame).to_vec();
+            if let Some(root) = rotations.first_mut() {
+                *root = quat::renormalize(here.rotation() * *root);
+            }
+            let mut translations = vec![here.apply(clip.root_translations()[frame])];
+            translations.extend(self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)));
+            (rotations, translations)
+        };
+        let (before, after) = (at(from), at(to));
+        let rate = RATE as f32;
+        let step = motion.root(from).inverse().after(&motion.root(to));
+        let travel = Vec3::new(step.shift.x as f32, step.yaw as f32, step.shift.y as f32) * rate;
+        let angular_velocities = before.0.iter().zip(&after.0);
+        let velocities = before.1.iter().zip(&after.1);
+        MovingPose {
+            angular_velocities: angular_velocities.map(|(&a, &b)| quat::log(b * a.conjugate()) * rate).collect(),
+            velocities: velocities.map(|(&a, &b)| (b - a) * rate).collect(),
+            rotations: if frame == from { before.0 } else { after.0 },
+            translations: if frame == from { before.1 } else { after.1 },
+            // The simulation root has no sway.
+            travel,
+            steady_travel: travel,
+        }
+    }
+}

@@ -1,0 +1,213 @@
+use super::control::Recording;
+use super::database::Database;
+use super::features::RATE;
+use super::{Candidate, Controller, ControllerOptions, MatchError, Reason};
+use crate::clip::{Clip, Contacts, character_frames};
+use crate::math::{Planar, wrap_angle};
+use crate::metrics::{Better, Metric, foot_slides_cm};
+use std::sync::Arc;
+
+/// What a controller made of a recording: the motion, and what it was to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// The motion at [`RATE`], feet planted; one frame per tick.
+    pub clip: Clip,
+    /// When the feet stand, as the clips that were played have it.
+    pub contacts: Contacts,
+    /// The character's root of each frame.
+    pub roots: Vec<Planar>,
+    /// The simulation object of each frame: where the character was to be.
+    pub desired: Vec<Planar>,
+    /// The yaw that was asked for in each frame, radians.
+    pub goals: Vec<f64>,
+    /// The jumps.
+    pub jumps: Vec<Jump>,
+    /// Searches, and the frames that they looked at.
+    pub searches: usize,
+    /// Frames that the searches looked at.
+    pub visited: usize,
+}
+
+/// Where a controller went over from one place to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// The first frame of the drive that is played from the new place.
+    pub frame: usize,
+    /// Why it had searched.
+    pub reason: Reason,
+    /// Where it was, and what going on there cost.
+    pub from: Candidate,
+    /// Where it went, and what that cost.
+    pub to: Candidate,
+}
+
+/// A change of the facing that is asked for by more than this is a turn, radians.
+const TURN_RADIANS: f64 = 0.6;
+/// A turn is made when the body faces within this of what was asked for, and stays there, radians: 20°. Walking sways it by up to 10°.
+const FACES_RADIANS: f64 = 0.35;
+
+/// Numbers that tell how good a [`Drive`] is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveMetrics {
+    /// Mean distance of the character from the simulation object, centimetres.
+    pub error_cm: f64,
+    /// The largest, centimetres.
+    pub worst_error_cm: f64,
+    /// The longest time from asking for a turn until the body faces there (within 20°, and stays), seconds. Infinite where it never does; `None` without turns.
+    pub turn_secs: Option<f64>,
+    /// Mean slide of a stance, centimetres; `None` without stances.
+    pub skate_cm: Option<f64>,
+    /// That of the worst stance, centimetres.
+    pub worst_skate_cm: Option<f64>,
+    /// Jumps per minute.
+    pub seams_per_minute: f64,
+    /// The shortest time between two jumps, seconds; `None` for fewer than two.
+    pub shortest_secs: Option<f64>,
+}
+
+/// Drives a character through a recording from the origin.
+///
+/// # Errors
+/// [`MatchError`] when an option is out of range.
+pub fn drive(database: &Arc<Database>, options: ControllerOptions, recording: &Recording) -> Result<Drive, MatchError> {
+    let mut controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)?;
+    let ticks = recording.ticks();
+    let (mut poses, mut planted) = (Vec::with_capacity(ticks), [Vec::with_capacity(ticks), Vec::with_capacity(ticks)]);
+    let (mut roots, mut desired, mut goals) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks), Vec::with_capacity(ticks));
+    let (mut jumps, mut searches, mut visited) = (Vec::new(), 0, 0);
+    for (frame, control) in recording.controls().enumerate() {
+        let before = controller.jumps();
+        controller.tick(&control);
+        if let Some(search) = controller.last_search().filter(|search| search.tick + 1 == controller.ticks()) {
+            searches += 1;
+            visited += search.visited;
+            if let Some(to) = search.winner.filter(|_| controller.jumps() > before) {
+                jumps.push(Jump {
+                    frame,
+                    reason: search.reason,
+                    from: search.current,
+                    to,
+                });
+            }
+        }
+        poses.push(controller.pose().clone());
+        for (flags, stands) in planted.iter_mut().zip(controller.planted()) {
+            flags.push(stands);
+        }
+        roots.push(controller.root());
+        desired.push(controller.simulation().place());
+        goals.push(controller.simulation().goal_yaw);
+    }
+    Ok(Drive {
+        clip: Clip::from_poses("drive", Arc::clone(database.skeleton()), RATE as f64, poses)?,
+        contacts: Contacts::from_flags(planted),
+        roots,
+        desired,
+        goals,
+        jumps,
+        searches,
+        visited,
+    })
+}
+
+impl Drive {
+    /// Measures it.
+    #[must_use]
+    pub fn metrics(&self, database: &Database) -> DriveMetrics {
+        let errors: Vec<f64> = (self.roots.iter().zip(&self.desired))
+            .map(|(root, desired)| root.shift.distance(desired.shift) * 100.0)
+            .collect();
+        let frames = errors.len().max(1) as f64;
+        let slides = foot_slides_cm(&self.clip, database.roles(), &self.contacts);
+        let mean = |sum: f64, count: usize| (count > 0).then(|| sum / count as f64);
+        let gaps = self
+            .jumps
+            .windows(2)
+            .map(|pair| (pair[1].frame - pair[0].frame) as f64 / RATE as f64);
+        DriveMetrics {
+            error_cm: errors.iter().sum::<f64>() / frames,
+            worst_error_cm: errors.iter().copied().fold(0.0, f64::max),
+            turn_secs: self.turn_secs(database),
+            skate_cm: mean(slides.iter().map(|slide| slide.1).sum(), slides.len()),
+            worst_skate_cm: slides.iter().map(|slide| slide.1).reduce(f64::max),
+            seams_per_minute: self.jumps.len() as f64 * 60.0 * RATE as f64 / frames,
+            shortest_secs: gaps.reduce(f64::min),
+        }
+    }
+
+    fn turn_secs(&self, database: &Database) -> Option<f64> {
+        let faces = character_frames(&self.clip, database.roles());
+        let asked: Vec<usize> = (1..self.goals.len())
+            .filter(|&frame| wrap_angle(self.goals[frame] - self.goals[frame - 1]).abs() > TURN_RADIANS)
+            .collect();
+        let turn = |(index, &from): (usize, &usize)| {
+            let to = asked.get(index + 1).copied().unwrap_or(self.goals.len());
+            let off = |frame: usize| wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACES_RADIANS;
+            match (from..to).rev().find(|&frame| off(frame)) {
+                None => 0.0,
+                Some(last) if last + 1 == to => f64::INFINITY,
+                Some(last) => (last + 1 - from) as f64 / RATE as f64,
+            }
+        };
+        asked.iter().enumerate().map(turn).reduce(f64::max)
+    }
+}
+
+impl DriveMetrics {
+    /// The numbers for a person.
+    #[must_use]
+    pub fn list(&self) -> Vec<Metric> {
+        let metric = |id, label, value, unit, help| Metric {
+            id,
+            label,
+            value,
+            unit,
+            better: Better::Lower,
+            help,
+        };
+        vec![
+            metric(
+                "match_error",
+                "position error",
+                Some(self.error_cm),
+                "cm",
+                "Mean distance of the character from where the player steers it: the simulation object.",
+            ),
+            metric(
+                "match_worst_error",
+                "largest position error",
+                Some(self.worst_error_cm),
+                "cm",
+                "The largest distance of the character from where the player steers it.",
+            ),
+            metric(
+                "match_turn",
+                "time to turn",
+                self.turn_secs,
+                "s",
+                "The longest time from asking for a turn until the body faces within 20° of it and stays there.",
+            ),
+            metric(
+                "match_skate",
+                "foot skate",
+                self.skate_cm,
+                "cm",
+                "How far a planted foot slides in a stance, on average: the farthest that its stillest point gets.",
+            ),
+            metric(
+                "match_worst_skate",
+                "worst foot skate",
+                self.worst_skate_cm,
+                "cm",
+                "How far a planted foot slides in the worst stance.",
+            ),
+            metric(
+                "match_seams",
+                "seams per minute",
+                Some(self.seams_per_minute),
+                "/min",
+                "How often the character goes over from one place of the clips to another.",
+            ),
+        ]
+    }
+}

@@ -1,0 +1,84 @@
+use super::features::RATE;
+use super::{MatchClip, MatchError};
+use crate::clip::Clip;
+use crate::skeleton::Roles;
+use crate::synth::{Action, Params, synthesize};
+use std::sync::Arc;
+
+/// The motions of the synthesiser that are enough to steer a character by: standing, walks and runs at several speeds, straight and along curves to
+/// the left, starts, stops, and turns on the spot, some of them hasty. Curves to the right are their mirror images.
+#[must_use]
+pub fn made_params() -> Vec<Params> {
+    let of = |action, speed_mps: f32, turn_rate_dps: f32, duration_secs: f32| Params {
+        speed_mps,
+        turn_rate_dps,
+        duration_secs,
+        ..Params::new(action)
+    };
+    let mut all = vec![of(Action::Idle, 0.0, 0.0, 5.0)];
+    for speed in [0.5, 0.9, 1.4, 1.9] {
+        for turn in [0.0, 30.0, 60.0, 90.0, 120.0] {
+            all.push(of(Action::Walk, speed, turn, 6.0));
+        }
+    }
+    for speed in [2.4, 3.2, 4.2] {
+        for turn in [0.0, 45.0, 90.0] {
+            all.push(of(Action::Run, speed, turn, 5.0));
+        }
+    }
+    for speed in [0.8, 1.4, 2.0] {
+        all.push(of(Action::Start, speed, 0.0, 3.6));
+        all.push(of(Action::Stop, speed, 0.0, 4.2));
+    }
+    for turn in [40.0, 80.0] {
+        all.push(of(Action::Start, 1.4, turn, 3.6));
+        all.push(of(Action::Stop, 1.4, turn, 4.2));
+    }
+    for spin_degrees in [45.0, 90.0, 135.0, 180.0] {
+        all.push(Params {
+            spin_degrees,
+            duration_secs: 4.0,
+            ..Params::new(Action::Spin)
+        });
+    }
+    // Hasty turns: made at two thirds of the rate that they are played at.
+    for spin_degrees in [60.0, 90.0, 135.0, 180.0] {
+        all.push(Params {
+            spin_degrees,
+            duration_secs: 5.0,
+            fps: HASTE * RATE as f32,
+            ..Params::new(Action::Spin)
+        });
+    }
+    all
+}
+
+/// The share of the database's rate that hasty motions are made at.
+const HASTE: f32 = 2.0 / 3.0;
+
+/// Makes the motions of [`made_params`] for a body of this height, metres.
+///
+/// # Errors
+/// [`MatchError::Synth`] for a height that cannot be made.
+pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
+    let mut clips: Vec<MatchClip> = Vec::new();
+    for params in made_params() {
+        let made = synthesize(&Params { height_m, ..params })?;
+        let roles = match clips.first() {
+            Some(first) => first.roles.clone(),
+            None => Roles::detect(made.clip.skeleton()),
+        };
+        let name = format!("{:?} {} {}", params.action, params.speed_mps, params.turn_rate_dps);
+        clips.push(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name)), roles));
+    }
+    Ok(clips)
+}
+
+/// What was made at a lower rate than the database's is played at the database's: faster.
+fn hastened(clip: &Clip) -> Result<Clip, MatchError> {
+    if clip.fps() >= RATE as f64 {
+        return Ok(clip.clone());
+    }
+    let poses = (0..clip.frames()).map(|frame| clip.pose(frame));
+    Ok(Clip::from_poses(clip.name(), Arc::clone(clip.skeleton()), RATE as f64, poses)?)
+}

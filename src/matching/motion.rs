@@ -1,0 +1,210 @@
+use super::features::{BODY, Layout, RATE};
+use super::tags::TagRange;
+use super::{MatchError, simulation_roots};
+use crate::clip::{Clip, Contacts, character_frames};
+use crate::math::{Planar, wrap_angle};
+use crate::skeleton::{Role, Roles, Side, WorldPose};
+use glam::{DVec2, Vec3};
+use std::sync::Arc;
+
+/// A clip of a database, with what is measured on it once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    clip: Arc<Clip>,
+    roots: Vec<Planar>,
+    contacts: Contacts,
+    body: Vec<[f32; BODY]>,
+    source: usize,
+    mirrored: bool,
+    pub(super) tags: Vec<TagRange>,
+}
+
+/// The joints that features are taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FeatureJoints {
+    hips: usize,
+    feet: [usize; 2],
+}
+
+impl FeatureJoints {
+    pub(super) fn find(clip: &Clip, roles: &Roles) -> Result<Self, MatchError> {
+        let joint = |role: Role| {
+            roles.get_within(role, clip.skeleton().len()).ok_or_else(|| MatchError::NoFeet {
+                name: clip.name().to_owned(),
+                missing: role.name(),
+            })
+        };
+        Ok(Self {
+            hips: joint(Role::Hips)?,
+            feet: [joint(Role::LeftFoot)?, joint(Role::RightFoot)?],
+        })
+    }
+}
+
+impl Motion {
+    /// Measures a clip at [`RATE`].
+    pub(super) fn new(clip: Arc<Clip>, roles: &Roles, contacts: Contacts, source: usize, mirrored: bool) -> Result<Self, MatchError> {
+        let joints = FeatureJoints::find(&clip, roles)?;
+        let roots = simulation_roots(&character_frames(&clip, roles));
+        let body = body_features(&clip, joints, &roots);
+        let finite =
+            body.iter().flatten().all(|value| value.is_finite()) && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
+        if !finite {
+            let name = clip.name().to_owned();
+            return Err(MatchError::NotFinite { name });
+        }
+        Ok(Self {
+            clip,
+            roots,
+            contacts,
+            body,
+            source,
+            mirrored,
+            tags: Vec::new(),
+        })
+    }
+
+    /// The clip, on the database's skeleton and at [`RATE`].
+    #[must_use]
+    pub fn clip(&self) -> &Arc<Clip> {
+        &self.clip
+    }
+
+    /// The simulation root of each frame: `clip_from_simulation`.
+    #[must_use]
+    pub fn roots(&self) -> &[Planar] {
+        &self.roots
+    }
+
+    /// When the feet are on the ground.
+    #[must_use]
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
+    /// The number of the clip that it was made from, among those that the database was built from.
+    #[must_use]
+    pub fn source(&self) -> usize {
+        self.source
+    }
+
+    /// Whether it is a mirrored copy.
+    #[must_use]
+    pub fn is_mirrored(&self) -> bool {
+        self.mirrored
+    }
+
+    /// Its tags, at [`RATE`].
+    #[must_use]
+    pub fn tags(&self) -> &[TagRange] {
+        &self.tags
+    }
+
+    /// Frames.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.clip.frames()
+    }
+
+    /// The frames from 0 on whose trajectory lies inside the clip.
+    pub(super) fn valid(&self, layout: &Layout) -> usize {
+        self.frames().saturating_sub(layout.horizon())
+    }
+
+    /// Where the simulation root is in a frame; behind the clip's end it goes on as it did over the last half second.
+    #[must_use]
+    pub fn root(&self, frame: usize) -> Planar {
+        if let Some(root) = self.roots.get(frame) {
+            return *root;
+        }
+        let Some(last) = self.roots.last() else { return Planar::IDENTITY };
+        let behind = self.roots.len() - 1;
+        let over = (frame - behind) as f64;
+        // The steps of half a second: a single one would go on with what the smoothing made of the end.
+        let steps = behind.min(RATE / 2);
+        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.roots.get(at)) else {
+            return *last;
+        };
+        let made = before.inverse().after(last);
+        // Along the circle that these steps are an arc of; straight where they do not turn.
+        let share = over / steps as f64;
+        let (turn, whole) = (made.yaw * share, made.yaw);
+        let stretch = if whole.abs() < 1e-6 {
+            share
+        } else {
+            libm::sin(0.5 * turn) / libm::sin(0.5 * whole)
+        };
+        let middle = 0.5 * (turn - whole);
+        let (sin, cos) = (libm::sin(middle), libm::cos(middle));
+        let way = DVec2::new(made.shift.x * cos + made.shift.y * sin, made.shift.y * cos - made.shift.x * sin) * stretch;
+        last.after(&Planar {
+            yaw: wrap_angle(turn),
+            shift: way,
+        })
+    }
+
+    /// The raw features of a frame into a row of the layout's length.
+    pub(super) fn write_row(&self, layout: &Layout, frame: usize, row: &mut [f32]) {
+        let here = self.root(frame).inverse();
+        let times = layout.ahead().len();
+        for (index, ahead) in layout.ahead().iter().enumerate() {
+            let there = here.after(&self.root(frame + ahead));
+            write_trajectory(row, times, index, &there);
+        }
+        if let (Some(body), Some(to)) = (self.body.get(frame), row.get_mut(layout.body()..)) {
+            for (to, value) in to.iter_mut().zip(body) {
+                *to = *value;
+            }
+        }
+    }
+}
+
+/// Writes one place of a trajectory, in the character's frame, into a row for so many times.
+pub(super) fn write_trajectory(row: &mut [f32], times: usize, index: usize, there: &Planar) {
+    let values = [there.shift.x, there.shift.y, libm::sin(there.yaw), libm::cos(there.yaw)];
+    let places = [2 * index, 2 * index + 1, 2 * (times + index), 2 * (times + index) + 1];
+    for (place, value) in places.into_iter().zip(values) {
+        if let Some(to) = row.get_mut(place) {
+            *to = value as f32;
+        }
+    }
+}
+
+/// Feet and hips in the character's frame. Velocities are those over the world by central differences, one-sided at the clip's ends.
+fn body_features(clip: &Clip, joints: FeatureJoints, roots: &[Planar]) -> Vec<[f32; BODY]> {
+    let FeatureJoints { hips, feet } = joints;
+    let needed = clip.skeleton().with_ancestors([hips, feet[0], feet[1]]);
+    let mut world = WorldPose::default();
+    let positions: Vec<[Vec3; 3]> = (0..clip.frames())
+        .map(|frame| {
+            clip.world_pose_of(frame, &needed, &mut world);
+            [feet[0], feet[1], hips].map(|joint| world.positions[joint])
+        })
+        .collect();
+    let last = positions.len().saturating_sub(1);
+    (0..positions.len())
+        .map(|frame| {
+            let here = roots[frame].inverse();
+            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
+            let rate = RATE as f32 / (after - before).max(1) as f32;
+            let velocity = |point: usize| here.apply_vector((positions[after][point] - positions[before][point]) * rate);
+            let values = [
+                here.apply(positions[frame][0]),
+                here.apply(positions[frame][1]),
+                velocity(0),
+                velocity(1),
+                velocity(2),
+            ];
+            let mut row = [0.0; BODY];
+            for (to, value) in row.chunks_exact_mut(3).zip(values) {
+                to.copy_from_slice(&value.to_array());
+            }
+            row
+        })
+        .collect()
+}
+
+/// The contacts of the mirror image.
+pub(super) fn mirrored_contacts(contacts: &Contacts) -> Contacts {
+    Contacts::from_flags(Side::BOTH.map(|side| (0..contacts.frames()).map(|frame| contacts.planted(side.other(), frame)).collect()))
+}

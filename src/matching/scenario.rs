@@ -1,0 +1,106 @@
+use super::control::{Control, Recording};
+use super::features::RATE;
+use glam::DVec2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Recorded input that shows what a controller can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum Scenario {
+    /// Walks off and on, straight.
+    WalkStraight,
+    /// Turns left by 90° from a walk.
+    TurnLeft,
+    /// Turns right by 90° from a walk.
+    TurnRight,
+    /// Turns around by 180° from a walk.
+    Spin,
+    /// Starts and stops three times.
+    StartStop,
+    /// Goes over from a walk into a run, and back.
+    WalkToRun,
+    /// Walks a figure eight.
+    FigureEight,
+}
+
+/// The speeds of the scenarios, metres per second.
+const WALK_MPS: f64 = 1.4;
+const RUN_MPS: f64 = 3.2;
+
+impl Scenario {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::WalkStraight,
+        Self::TurnLeft,
+        Self::TurnRight,
+        Self::Spin,
+        Self::StartStop,
+        Self::WalkToRun,
+        Self::FigureEight,
+    ];
+
+    /// Short, stable, fit for a link.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::WalkStraight => "straight",
+            Self::TurnLeft => "left",
+            Self::TurnRight => "right",
+            Self::Spin => "spin",
+            Self::StartStop => "start_stop",
+            Self::WalkToRun => "run",
+            Self::FigureEight => "eight",
+        }
+    }
+
+    /// What a person calls it.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::WalkStraight => "walk straight",
+            Self::TurnLeft => "90° to the left",
+            Self::TurnRight => "90° to the right",
+            Self::Spin => "180° spin",
+            Self::StartStop => "start and stop",
+            Self::WalkToRun => "walk to run",
+            Self::FigureEight => "figure eight",
+        }
+    }
+
+    /// The scenario with this id.
+    #[must_use]
+    pub fn find(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scenario| scenario.id() == id)
+    }
+
+    /// Its input.
+    #[must_use]
+    pub fn recording(self) -> Recording {
+        let mut recording = Recording::new();
+        let mut hold = |secs: f64, speed: f64, yaw: f64| {
+            let velocity = DVec2::new(libm::sin(yaw), libm::cos(yaw)) * speed;
+            recording.hold(Control::new(velocity, None), (secs * RATE as f64).round() as u32);
+        };
+        match self {
+            Self::WalkStraight => hold(12.0, WALK_MPS, 0.0),
+            Self::TurnLeft => [0.0, FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
+            Self::TurnRight => [0.0, -FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
+            Self::Spin => [0.0, PI, 0.0].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
+            Self::StartStop => {
+                for _ in 0..3 {
+                    hold(2.0, 0.0, 0.0);
+                    hold(3.0, WALK_MPS, 0.0);
+                }
+                hold(2.0, 0.0, 0.0);
+            }
+            Self::WalkToRun => [WALK_MPS, RUN_MPS, WALK_MPS].into_iter().for_each(|speed| hold(4.0, speed, 0.0)),
+            Self::FigureEight => {
+                // A tenth of a second at a time: a whole turn to the left in 9 s, then one to the right.
+                for part in 0..180_u32 {
+                    let share = f64::from(part % 90) / 90.0;
+                    hold(0.1, WALK_MPS, if part < 90 { share * TAU } else { -share * TAU });
+                }
+            }
+        }
+        recording
+    }
+}

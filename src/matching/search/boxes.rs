@@ -1,0 +1,316 @@
+use super::super::tags::{TagFilter, TagSet};
+use super::{Found, Hit, Question};
+
+/// Numbers that are computed side by side.
+pub(super) const LANES: usize = 8;
+/// Frames in a leaf.
+pub(super) const LEAF: usize = 16;
+const GROUPS: usize = LEAF / LANES;
+
+type Lane = [f32; LANES];
+
+/// One level of boxes, eight side by side: for each pack of eight and each dimension their low ends, then their high ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Level {
+    packs: Vec<f32>,
+    boxes: usize,
+}
+
+impl Level {
+    pub(super) fn pack(dims: usize, bounds: &[(Vec<f32>, Vec<f32>)]) -> Self {
+        let mut packs = Vec::with_capacity(bounds.len().div_ceil(LANES) * dims * 2 * LANES);
+        for pack in bounds.chunks(LANES) {
+            for dim in 0..dims {
+                for end in [0, 1] {
+                    packs.extend((0..LANES).map(|lane| {
+                        // Lanes beyond the last box repeat it.
+                        let (low, high) = pack.get(lane).unwrap_or(&pack[pack.len() - 1]);
+                        if end == 0 { low[dim] } else { high[dim] }
+                    }));
+                }
+            }
+        }
+        Self {
+            packs,
+            boxes: bounds.len(),
+        }
+    }
+}
+
+/// Boxes around frames that lie near each other, eight boxes to a larger one: an exact search that looks at few frames.
+///
+/// A leaf holds 16 frames that are alike, by whatever clip; above it every box has eight children. Boxes are opened nearest first, and not at all
+/// once they are farther than the best frame so far, which the caller may already have (the frame that is playing). Distances to eight frames or
+/// eight boxes are computed side by side.
+///
+/// Boxes hold normalised features; weights come with the question. So sliders of weights need no new index. Where boxes do not help, as for a
+/// query unlike anything in the database, what is left is scanned leaf by leaf.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoxIndex {
+    dims: usize,
+    /// Frames in the order of leaves.
+    ids: Vec<u32>,
+    /// Features in that order: for each eight frames and each dimension eight numbers.
+    cells: Vec<f32>,
+    /// From the leaves up to at most eight boxes.
+    levels: Vec<Level>,
+}
+
+/// Tags of the boxes: those that any of the frames has, and those that all of them have; for each level of a [`BoxIndex`] one pair per box.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BoxMasks {
+    levels: Vec<Vec<(TagSet, TagSet)>>,
+    /// Tags of the frames in the order of leaves.
+    frames: Vec<TagSet>,
+    /// No frame of the database is excluded: without a filter there is nothing to test.
+    free: bool,
+}
+
+/// A box that waits to be opened.
+#[derive(Clone, Copy)]
+struct Open {
+    bound: f32,
+    level: u32,
+    index: u32,
+}
+
+/// After so many of all leaves, boxes have not helped.
+const HELPLESS: f32 = 0.25;
+
+impl BoxIndex {
+    pub(super) fn new(dims: usize, ids: Vec<u32>, cells: Vec<f32>, levels: Vec<Level>) -> Self {
+        Self { dims, ids, cells, levels }
+    }
+
+    /// Frames that can be found.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// What the tags of all frames come to for the boxes. O(frames): tags change without a new index.
+    #[must_use]
+    pub fn masks(&self, tags: &[TagSet]) -> BoxMasks {
+        let frames: Vec<TagSet> = (self.ids.iter())
+            .map(|&id| tags.get(id as usize).copied().unwrap_or_default())
+            .collect();
+        let joined = |parts: &mut dyn Iterator<Item = (TagSet, TagSet)>| {
+            parts.fold((TagSet::NONE, TagSet(u32::MAX)), |(any, all), (a, b)| {
+                (TagSet(any.0 | a.0), TagSet(all.0 & b.0))
+            })
+        };
+        let mut levels: Vec<Vec<(TagSet, TagSet)>> = Vec::with_capacity(self.levels.len());
+        for _ in &self.levels {
+            let level = match levels.last() {
+                None => frames
+                    .chunks(LEAF)
+                    .map(|leaf| joined(&mut leaf.iter().map(|&tags| (tags, tags))))
+                    .collect(),
+                Some(below) => below.chunks(LANES).map(|children| joined(&mut children.iter().copied())).collect(),
+            };
+            levels.push(level);
+        }
+        let free = frames.iter().all(|tags| TagFilter::default().admits(*tags));
+        BoxMasks { levels, frames, free }
+    }
+
+    /// The best admitted frame. `known` is one that the filter admits and that is in the index; it is beaten or returned.
+    #[must_use]
+    pub fn search(&self, masks: &BoxMasks, question: &Question<'_>, known: Option<Hit>) -> Found {
+        if !question.is_sound(self.dims) || self.ids.is_empty() {
+            return Found::default();
+        }
+        let mut search = Search {
+            index: self,
+            masks,
+            question,
+            filtered: !(masks.free && question.filter == TagFilter::default()),
+            best: known,
+            visited: 0,
+        };
+        search.run();
+        Found {
+            best: search.best,
+            visited: search.visited,
+        }
+    }
+}
+
+struct Search<'a> {
+    index: &'a BoxIndex,
+    masks: &'a BoxMasks,
+    question: &'a Question<'a>,
+    filtered: bool,
+    best: Option<Hit>,
+    visited: usize,
+}
+
+impl Search<'_> {
+    fn limit(&self) -> f32 {
+        self.best.map_or(f32::INFINITY, |best| best.cost)
+    }
+
+    fn run(&mut self) {
+        let top = self.index.levels.len() - 1;
+        let leaves = self.index.levels[0].boxes;
+        let most = ((leaves as f32 * HELPLESS) as usize).max(64);
+        let mut opened = 0;
+        // Nearest last, level by level: the deepest stack is seven siblings on every level.
+        let mut stack: Vec<Open> = Vec::with_capacity(LANES * (top + 1));
+        self.open(top, 0, &mut stack);
+        let mut seen: Vec<u64> = Vec::new();
+        while let Some(next) = stack.pop() {
+            if next.bound > self.limit() {
+                continue;
+            }
+            let (level, index) = (next.level as usize, next.index as usize);
+            if level > 0 {
+                self.open(level - 1, index, &mut stack);
+                continue;
+            }
+            self.leaf(index);
+            opened += 1;
+            if opened * 8 >= most && seen.is_empty() {
+                seen = vec![0; leaves.div_ceil(64)];
+            }
+            if !seen.is_empty() {
+                seen[index / 64] |= 1 << (index % 64);
+            }
+            if opened >= most {
+                // What was opened before the notes began is looked at again: an eighth of a quarter.
+                for leaf in 0..leaves {
+                    if seen[leaf / 64] >> (leaf % 64) & 1 == 0 {
+                        self.leaf(leaf);
+                    }
+                }
+                return;
+            }
+        }
+    }
+
+    /// Measures the eight children in a pack and puts those that may hold something better on the stack.
+    fn open(&mut self, level: usize, pack: usize, stack: &mut Vec<Open>) {
+        let boxes = &self.index.levels[level];
+        let size = self.index.dims * 2 * LANES;
+        let Some(cells) = boxes.packs.get(pack * size..(pack + 1) * size) else {
+            return;
+        };
+        let limit = self.limit();
+        let bounds = box_bounds(cells, self.question, limit);
+        let first = pack * LANES;
+        let count = (boxes.boxes - first).min(LANES);
+        let base = stack.len();
+        for (lane, &bound) in bounds.iter().enumerate().take(count) {
+            if bound > limit || (self.filtered && !self.may_admit(level, first + lane)) {
+                continue;
+            }
+            let open = Open {
+                bound,
+                level: level as u32,
+                index: (first + lane) as u32,
+            };
+            // Insertion keeps the nearest on top.
+            let mut at = stack.len();
+            stack.push(open);
+            while at > base && stack[at - 1].bound < bound {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = open;
+        }
+    }
+
+    fn may_admit(&self, level: usize, index: usize) -> bool {
+        let masks = self.masks.levels.get(level).and_then(|level| level.get(index));
+        masks.is_some_and(|&(any, all)| self.question.filter.may_admit(any, all))
+    }
+
+    fn leaf(&mut self, leaf: usize) {
+        let size = self.index.dims * LANES;
+        for group in leaf * GROUPS..(leaf + 1) * GROUPS {
+            let Some(cells) = self.index.cells.get(group * size..(group + 1) * size) else {
+                return;
+            };
+            let first = group * LANES;
+            let ids = &self.index.ids[first..(first + LANES).min(self.index.ids.len())];
+            self.visited += ids.len();
+            let limit = self.limit();
+            let Some(costs) = frame_costs(cells, self.question, limit) else {
+                continue;
+            };
+            for (lane, (&id, &cost)) in ids.iter().zip(&costs).enumerate() {
+                let hit = Hit { frame: id as usize, cost };
+                if self.best.is_none_or(|best| hit.beats(&best)) && self.admits(first + lane) {
+                    self.best = Some(hit);
+                }
+            }
+        }
+    }
+
+    fn admits(&self, slot: usize) -> bool {
+        !self.filtered || self.masks.frames.get(slot).is_some_and(|tags| self.question.filter.admits(*tags))
+    }
+}
+
+/// Dimensions between two looks at whether a group can be left.
+const STRIDE: usize = 9;
+
+/// The costs of eight frames; `None` as soon as all are above `limit`.
+#[inline]
+fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lane> {
+    let mut costs = [0.0; LANES];
+    let parts = cells
+        .chunks(STRIDE * LANES)
+        .zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+    for (cells, (query, weights)) in parts {
+        for (cell, (&q, &w)) in cells.as_chunks::<LANES>().0.iter().zip(query.iter().zip(weights)) {
+            for (cost, x) in costs.iter_mut().zip(cell) {
+                let difference = w * (q - x);
+                *cost += difference * difference;
+            }
+        }
+        if all_above(&costs, limit) {
+            return None;
+        }
+    }
+    Some(costs)
+}
+
+/// Lower bounds of the costs in eight boxes: exact unless all are above `limit`.
+#[inline]
+fn box_bounds(cells: &[f32], question: &Question<'_>, limit: f32) -> Lane {
+    let mut bounds = [0.0; LANES];
+    let parts = (cells.chunks(STRIDE * 2 * LANES)).zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+    for (cells, (query, weights)) in parts {
+        let ends = cells.as_chunks::<{ 2 * LANES }>().0;
+        for (ends, (&q, &w)) in ends.iter().zip(query.iter().zip(weights)) {
+            let (low, high) = ends.split_at(LANES);
+            for (bound, (low, high)) in bounds.iter_mut().zip(low.iter().zip(high)) {
+                let (below, above) = (low - q, q - high);
+                let outside = if below > above { below } else { above };
+                let outside = if outside > 0.0 { outside } else { 0.0 };
+                let difference = w * outside;
+                *bound += difference * difference;
+            }
+        }
+        if all_above(&bounds, limit) {
+            return bounds;
+        }
+    }
+    bounds
+}
+
+#[inline]
+fn all_above(values: &Lane, limit: f32) -> bool {
+    let mut least = values[0];
+    for &value in values {
+        least = if value < least { value } else { least };
+    }
+    least > limit
+}

@@ -1,0 +1,89 @@
+//! Three searches that agree: a plain scan, boxes, and a k-d tree.
+//!
+//! Each returns the frame of least cost that a filter admits; of equal costs the first frame. The cost of a frame is `Σ (w_d (q_d - x_d))²`,
+//! summed in the order of dimensions in `f32`, so that every search computes the same bits. Bounds are computed in the same order from the nearest
+//! value in a box: as rounding never turns an order round, a bound is never above the cost of a frame in its box, and no slack is needed.
+
+mod boxes;
+mod build;
+mod scan;
+mod tree;
+
+pub use boxes::{BoxIndex, BoxMasks};
+pub use build::BoxBuilder;
+pub use scan::scan;
+pub use tree::TreeIndex;
+
+use super::tags::{TagFilter, TagSet};
+
+/// A frame and what it costs.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Hit {
+    /// The frame's number in the database.
+    pub frame: usize,
+    /// The sum of squared, weighted, normalised differences.
+    pub cost: f32,
+}
+
+impl Hit {
+    /// Whether it comes before another: it costs less, or the same and is the earlier frame.
+    #[must_use]
+    pub fn beats(&self, other: &Self) -> bool {
+        self.cost < other.cost || (self.cost == other.cost && self.frame < other.frame)
+    }
+}
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// A normalised row.
+    pub query: &'a [f32],
+    /// One factor for each of its numbers.
+    pub weights: &'a [f32],
+    /// Which frames may be found.
+    pub filter: TagFilter,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Found {
+    /// The frame of least cost; `None` where no frame is admitted, or the query is no row of numbers.
+    pub best: Option<Hit>,
+    /// Frames whose cost was computed, in whole or in part.
+    pub visited: usize,
+}
+
+impl Question<'_> {
+    /// What a row of features costs.
+    #[must_use]
+    pub fn cost(&self, row: &[f32]) -> f32 {
+        let mut cost = 0.0;
+        for ((q, w), x) in self.query.iter().zip(self.weights).zip(row) {
+            let difference = w * (q - x);
+            cost += difference * difference;
+        }
+        cost
+    }
+
+    /// Whether it is a question about rows of so many numbers.
+    pub(super) fn is_sound(&self, dims: usize) -> bool {
+        self.query.len() == dims
+            && self.weights.len() == dims
+            && self.query.iter().all(|q| q.is_finite())
+            && self.weights.iter().all(|w| w.is_finite() && *w >= 0.0)
+    }
+}
+
+/// Frames that a search may look at: rows, their tags, and which of them count.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates<'a> {
+    /// Normalised rows.
+    pub features: &'a super::Features,
+    /// Tags of each row.
+    pub tags: &'a [TagSet],
+    /// The rows that may be found, in rising order: those whose trajectory is known.
+    pub valid: &'a [u32],
+}
+
+#[cfg(test)]
+mod tests;

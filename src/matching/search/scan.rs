@@ -1,0 +1,26 @@
+use super::{Candidates, Found, Hit, Question};
+
+/// Looks at every admitted frame: the slow, obvious search. O(frames × dimensions).
+#[must_use]
+pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
+    let mut found = Found::default();
+    if !question.is_sound(candidates.features.layout().dims()) {
+        return found;
+    }
+    for &frame in candidates.valid {
+        let frame = frame as usize;
+        let tags = candidates.tags.get(frame).copied().unwrap_or_default();
+        let Some(row) = candidates.features.row(frame).filter(|_| question.filter.admits(tags)) else {
+            continue;
+        };
+        found.visited += 1;
+        let hit = Hit {
+            frame,
+            cost: question.cost(row),
+        };
+        if found.best.is_none_or(|best| hit.beats(&best)) {
+            found.best = Some(hit);
+        }
+    }
+    found
+}

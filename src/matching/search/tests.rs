@@ -1,0 +1,227 @@
+use super::*;
+use crate::matching::tags::Tag;
+use crate::matching::{FeatureOptions, Features, Layout};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+/// From -1 to 1.
+fn number(random: &mut Pcg64Mcg) -> f32 {
+    (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0
+}
+
+struct Field {
+    features: Features,
+    tags: Vec<TagSet>,
+    valid: Vec<u32>,
+}
+
+/// Frames that wander through the space of features as a motion does, with clips whose ends cannot be found, and tags.
+fn field(times: usize, frames: usize, seed: u64) -> Field {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let trajectory_secs = (1..=times).map(|i| i as f64 / 3.0).collect();
+    let layout = Layout::new(&FeatureOptions { trajectory_secs }).unwrap();
+    let (mut rows, mut tags, mut valid) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut at, mut speed) = (vec![0.0f32; layout.dims()], vec![0.0f32; layout.dims()]);
+    for frame in 0..frames {
+        if frame % 97 == 0 {
+            at.fill_with(|| number(&mut random));
+        }
+        for (at, speed) in at.iter_mut().zip(&mut speed) {
+            *speed = 0.9 * *speed + 0.03 * number(&mut random);
+            *at += *speed;
+        }
+        // Some frames are there twice: equal costs.
+        if frame % 13 == 5 {
+            let twin = rows.len() - layout.dims();
+            rows.extend_from_within(twin..);
+        } else {
+            rows.extend_from_slice(&at);
+        }
+        let kind = (frame / 41) % 5;
+        tags.push(
+            TagSet::of(match kind {
+                0 => &[Tag::Walk],
+                1 => &[Tag::Run, Tag::Turn],
+                2 => &[Tag::Idle],
+                3 => &[Tag::Walk, Tag::Own(3)],
+                _ => &[],
+            })
+            .with(Tag::Exclude, frame % 211 < 9),
+        );
+        if frame % 97 < 70 {
+            valid.push(frame as u32);
+        }
+    }
+    let features = Features::normalise(layout, rows, |row| row % 97 < 70);
+    Field { features, tags, valid }
+}
+
+impl Field {
+    fn candidates(&self) -> Candidates<'_> {
+        Candidates {
+            features: &self.features,
+            tags: &self.tags,
+            valid: &self.valid,
+        }
+    }
+
+    fn index(&self) -> BoxIndex {
+        BoxBuilder::new(&self.valid, &[]).finish(&self.features)
+    }
+}
+
+fn filters() -> [TagFilter; 6] {
+    let of = |tags: &[Tag]| TagSet::of(tags);
+    let none = TagSet::NONE;
+    [
+        TagFilter::default(),
+        TagFilter {
+            ask: of(&[Tag::Walk]),
+            forbid: none,
+        },
+        TagFilter {
+            ask: none,
+            forbid: of(&[Tag::Turn, Tag::Idle]),
+        },
+        TagFilter {
+            ask: of(&[Tag::Run, Tag::Own(3)]),
+            forbid: of(&[Tag::Idle]),
+        },
+        TagFilter {
+            ask: of(&[Tag::Own(3)]),
+            forbid: none,
+        },
+        TagFilter {
+            ask: of(&[Tag::Own(9)]),
+            forbid: none,
+        },
+    ]
+}
+
+/// 10,000 random queries: noise, frames of the field with a little noise, and frames as they are; random weights, some of them 0; filters; with and
+/// without a frame that is known already.
+#[test]
+fn all_searches_agree_on_ten_thousand_queries() {
+    let mut asked = 0;
+    for (round, (times, frames)) in [(3, 3_000), (1, 700), (6, 900), (3, 20), (3, 90)].into_iter().enumerate() {
+        let field = field(times, frames, round as u64);
+        let (candidates, index) = (field.candidates(), field.index());
+        let masks = index.masks(&field.tags);
+        let dims = field.features.layout().dims();
+        let mut random = Pcg64Mcg::seed_from_u64(99 + round as u64);
+        for set in 0..20 {
+            let weights: Vec<f32> = (0..dims)
+                .map(|_| {
+                    if set % 4 == 3 && random.next_u32() % 3 == 0 {
+                        0.0
+                    } else {
+                        1.0 + number(&mut random)
+                    }
+                })
+                .collect();
+            let filter = filters()[set % 6];
+            let tree = TreeIndex::new(&candidates, &weights, filter);
+            for kind in 0..100 {
+                let near = field.features.row(random.next_u32() as usize % frames).unwrap();
+                let noise = [2.0, 0.1, 0.0, 0.01][kind % 4];
+                let query: Vec<f32> = (near.iter())
+                    .map(|x| if kind % 4 == 0 { 0.0 } else { *x } + noise * number(&mut random))
+                    .collect();
+                let question = Question {
+                    query: &query,
+                    weights: &weights,
+                    filter,
+                };
+                let oracle = scan(&candidates, &question);
+                let boxes = index.search(&masks, &question, None);
+                assert_eq!(boxes.best, oracle.best, "{round} {set} {kind}");
+                assert_eq!(
+                    tree.as_ref().and_then(|tree| tree.search(&candidates, &question).best),
+                    oracle.best,
+                    "{round} {set} {kind}"
+                );
+                let known = field.valid[random.next_u32() as usize % field.valid.len()] as usize;
+                if filter.admits(field.tags[known]) {
+                    let cost = question.cost(field.features.row(known).unwrap());
+                    let warm = index.search(&masks, &question, Some(Hit { frame: known, cost }));
+                    assert_eq!(warm.best, oracle.best);
+                    assert!(warm.visited <= index.len() + index.len() / 16 + LEAST);
+                }
+                asked += 1;
+            }
+        }
+    }
+    assert_eq!(asked, 10_000);
+}
+
+/// Frames that may be looked at twice in a small index.
+const LEAST: usize = 200;
+
+#[test]
+fn near_frames_are_found_without_looking_at_many() {
+    let field = field(3, 20_000, 5);
+    let (index, weights) = (field.index(), vec![1.0; 27]);
+    let masks = index.masks(&field.tags);
+    let mut visited = 0;
+    for frame in (0..20_000).step_by(501) {
+        let query: Vec<f32> = field.features.row(frame).unwrap().iter().map(|x| x + 0.02).collect();
+        let question = Question {
+            query: &query,
+            weights: &weights,
+            filter: TagFilter::default(),
+        };
+        visited += index.search(&masks, &question, None).visited;
+    }
+    assert!(visited / 40 < 3_000, "{}", visited / 40);
+}
+
+#[test]
+fn what_is_no_question_finds_nothing() {
+    let field = field(3, 400, 1);
+    let (candidates, index) = (field.candidates(), field.index());
+    let masks = index.masks(&field.tags);
+    let weights = vec![1.0; 27];
+    for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
+        let question = Question {
+            query: &query,
+            weights: &weights,
+            filter: TagFilter::default(),
+        };
+        assert_eq!(scan(&candidates, &question), Found::default());
+        assert_eq!(index.search(&masks, &question, None), Found::default());
+    }
+    // Costs that overflow are all the same.
+    let far = vec![1e30; 27];
+    let question = Question {
+        query: &far,
+        weights: &weights,
+        filter: TagFilter::default(),
+    };
+    assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
+    let empty = Candidates { valid: &[], ..candidates };
+    assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
+    assert_eq!(BoxBuilder::new(&[], &[]).finish(&field.features).len(), 0);
+    // Rows that are all the same make a tree of no depth, or none.
+    let layout = Layout::new(&FeatureOptions::default()).unwrap();
+    let same = Features::normalise(layout, vec![1.0; 27 * 5_000], |_| true);
+    let valid: Vec<u32> = (0..5_000).collect();
+    let candidates = Candidates {
+        features: &same,
+        tags: &[],
+        valid: &valid,
+    };
+    let query = vec![0.5; 27];
+    let question = Question {
+        query: &query,
+        weights: &weights,
+        filter: TagFilter::default(),
+    };
+    let index = BoxBuilder::new(&valid, &[]).finish(&same);
+    assert_eq!(index.search(&index.masks(&[]), &question, None).best.map(|hit| hit.frame), Some(0));
+    let tree = TreeIndex::new(&candidates, &weights, TagFilter::default());
+    assert_eq!(
+        tree.and_then(|tree| tree.search(&candidates, &question).best)
+            .map_or(0, |hit| hit.frame),
+        0
+    );
+}

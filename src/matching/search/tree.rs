@@ -1,0 +1,110 @@
+use super::{Candidates, Found, Hit, Question};
+use crate::matching::TagFilter;
+use crate::matching::features::MOST_DIMS;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+
+/// Dimensions of the default set.
+const USUAL_DIMS: usize = 27;
+
+/// The crate `kiddo`'s k-d tree over the admitted frames.
+///
+/// Its coordinates are features times weights, and it holds admitted frames only: new weights or another filter need a new tree, where
+/// [`super::BoxIndex`] needs none. The tree computes distances in an order of its own; what it finds within a hair of the nearest is
+/// costed again, so that cost and frame are those of the other searches.
+#[derive(Debug)]
+pub struct TreeIndex {
+    tree: Tree,
+    /// Frames by their number in the tree.
+    ids: Vec<u32>,
+    weights: Vec<f32>,
+    filter: TagFilter,
+}
+
+#[derive(Debug)]
+enum Tree {
+    Usual(Box<ImmutableKdTree<f32, USUAL_DIMS>>),
+    /// Rows of other lengths are filled up with zeros.
+    Any(Box<ImmutableKdTree<f32, MOST_DIMS>>),
+}
+
+/// Rounding in `f32` over at most [`MOST_DIMS`] terms, as a share.
+const HAIR: f32 = 2e-5;
+
+impl TreeIndex {
+    /// A tree for these weights and this filter; `None` where no frame is admitted, or the tree cannot be built (very many equal rows).
+    #[must_use]
+    pub fn new(candidates: &Candidates<'_>, weights: &[f32], filter: TagFilter) -> Option<Self> {
+        let admitted = |&&id: &&u32| filter.admits(candidates.tags.get(id as usize).copied().unwrap_or_default());
+        let ids: Vec<u32> = candidates.valid.iter().filter(admitted).copied().collect();
+        if ids.is_empty() {
+            return None;
+        }
+        let tree = if candidates.features.layout().dims() == USUAL_DIMS {
+            Tree::Usual(Box::new(ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?))
+        } else {
+            Tree::Any(Box::new(ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?))
+        };
+        Some(Self {
+            tree,
+            ids,
+            weights: weights.to_vec(),
+            filter,
+        })
+    }
+
+    /// Whether it answers questions with these weights and this filter.
+    #[must_use]
+    pub fn fits(&self, weights: &[f32], filter: TagFilter) -> bool {
+        self.weights == weights && self.filter == filter
+    }
+
+    /// The best admitted frame; nothing for a question that the tree was not built for. The tree does not tell what it visits: `visited` counts the
+    /// frames that were costed again.
+    #[must_use]
+    pub fn search(&self, candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
+        let mut found = Found::default();
+        if !question.is_sound(candidates.features.layout().dims()) || !self.fits(question.weights, question.filter) {
+            return found;
+        }
+        let near = match &self.tree {
+            Tree::Usual(tree) => near(tree, &point(question.query, question.weights)),
+            Tree::Any(tree) => near(tree, &point(question.query, question.weights)),
+        };
+        for item in near {
+            let Some(&id) = self.ids.get(item) else { continue };
+            let Some(row) = candidates.features.row(id as usize) else {
+                continue;
+            };
+            found.visited += 1;
+            let hit = Hit {
+                frame: id as usize,
+                cost: question.cost(row),
+            };
+            if found.best.is_none_or(|best| hit.beats(&best)) {
+                found.best = Some(hit);
+            }
+        }
+        found
+    }
+}
+
+/// All that are no farther than the nearest, but for rounding.
+fn near<const K: usize>(tree: &ImmutableKdTree<f32, K>, query: &[f32; K]) -> Vec<usize> {
+    let nearest = tree.query(query).nearest_one::<SquaredEuclidean<f32>>().execute();
+    let radius = nearest.distance * (1.0 + HAIR) + f32::MIN_POSITIVE;
+    let within = tree.query(query).within::<SquaredEuclidean<f32>>(radius).unsorted().execute();
+    within.into_iter().map(|item| item.item as usize).collect()
+}
+
+fn point<const K: usize>(row: &[f32], weights: &[f32]) -> [f32; K] {
+    let mut point = [0.0; K];
+    for (to, (value, weight)) in point.iter_mut().zip(row.iter().zip(weights)) {
+        *to = value * weight;
+    }
+    point
+}
+
+fn points<const K: usize>(candidates: &Candidates<'_>, ids: &[u32], weights: &[f32]) -> Vec<[f32; K]> {
+    let row = |id: u32| candidates.features.row(id as usize).unwrap_or(&[]);
+    ids.iter().map(|&id| point(row(id), weights)).collect()
+}

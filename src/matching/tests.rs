@@ -1,0 +1,434 @@
+use super::search::{Question, scan};
+use super::*;
+use crate::clip::{Clip, Contacts, Interpolation, resample};
+use crate::math::{Planar, wrap_angle};
+use crate::skeleton::{Joint, Roles, Skeleton};
+use crate::synth::{Action, Params, synthesize};
+use glam::{DVec2, Quat, Vec3};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::sync::{Arc, OnceLock};
+
+/// A small database of the synthesiser's motions, built once.
+fn small() -> &'static Arc<Database> {
+    static DATABASE: OnceLock<Arc<Database>> = OnceLock::new();
+    DATABASE.get_or_init(|| Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap()))
+}
+
+fn golden() -> Value {
+    serde_json::from_str(include_str!("../../tests/oracles/matching.json")).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+fn joint(name: &str, parent: Option<usize>, offset: [f32; 3]) -> Joint {
+    Joint {
+        name: name.into(),
+        parent,
+        offset: Vec3::from_array(offset),
+        end_site: None,
+        channels: vec![],
+    }
+}
+
+/// The oracle's body: hips, and on either side a thigh that swings and a foot.
+fn oracle_clip(golden: &Value) -> MatchClip {
+    let skeleton = Skeleton::new(vec![
+        joint("Hips", None, [0.0; 3]),
+        joint("LeftUpLeg", Some(0), [0.1, 0.0, 0.0]),
+        joint("LeftFoot", Some(1), [0.0, -0.8, 0.02]),
+        joint("RightUpLeg", Some(0), [-0.1, 0.0, 0.0]),
+        joint("RightFoot", Some(3), [0.0, -0.8, 0.02]),
+    ]);
+    let skeleton = Arc::new(skeleton.unwrap());
+    let (yaws, swings) = (numbers(&golden["yaw"]), numbers(&golden["swing"]));
+    let rotations = (yaws.iter().zip(&swings)).flat_map(|(&yaw, &swing)| {
+        let swung = |swing: f64| Quat::from_rotation_x(swing as f32);
+        [
+            Quat::from_rotation_y(yaw as f32),
+            swung(swing),
+            Quat::IDENTITY,
+            swung(-swing),
+            Quat::IDENTITY,
+        ]
+    });
+    let roots = golden["position"].as_array().unwrap().iter().map(|at| {
+        let at = numbers(at);
+        Vec3::new(at[0] as f32, at[1] as f32, at[2] as f32)
+    });
+    let roles = Roles::detect(&skeleton);
+    let clip = Clip::new("oracle", skeleton, RATE as f64, rotations.collect(), roots.collect()).unwrap();
+    MatchClip::new(Arc::new(clip), roles)
+}
+
+#[test]
+fn roots_features_and_scales_are_the_oracle_s() {
+    let golden = golden();
+    let options = DatabaseOptions {
+        mirrored: false,
+        ..DatabaseOptions::default()
+    };
+    let database = Database::new(vec![oracle_clip(&golden)], &options).unwrap();
+    let motion = &database.motions()[0];
+    for (root, wanted) in motion.roots().iter().zip(golden["roots"].as_array().unwrap()) {
+        let wanted = numbers(wanted);
+        assert!(wrap_angle(root.yaw - wanted[0]).abs() < 2e-6, "{root:?} {wanted:?}");
+        assert!(root.shift.distance(DVec2::new(wanted[1], wanted[2])) < 2e-6);
+    }
+    let features = database.features();
+    let (means, scales) = (numbers(&golden["means"]), numbers(&golden["scales"]));
+    for (block, scale) in Block::ALL.into_iter().zip(&scales) {
+        assert!((f64::from(features.scale(block)) - scale).abs() < 1e-4 * scale, "{block:?}");
+    }
+    for (frame, row) in golden["rows"].as_object().unwrap() {
+        let found = features.row(frame.parse().unwrap()).unwrap();
+        for (block, scale) in Block::ALL.into_iter().zip(&scales) {
+            for dim in features.layout().range(block) {
+                let wanted = (numbers(row)[dim] - means[dim]) / scale;
+                // The grid's half step, and rounding of the scale.
+                let error = (f64::from(found[dim]) - wanted).abs();
+                assert!(
+                    error < 0.5 / 4096.0 + 3e-4 * wanted.abs().max(1.0),
+                    "{frame} {dim}: {} {wanted}",
+                    found[dim]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_simulation_object_goes_the_oracle_s_way() {
+    let pair = |value: &Value| DVec2::from_slice(&numbers(value));
+    for case in golden()["simulation"].as_array().unwrap() {
+        let start = Simulation {
+            velocity: pair(&case["velocity"]),
+            acceleration: pair(&case["acceleration"]),
+            goal_velocity: pair(&case["goal"]),
+            ..Simulation::default()
+        };
+        let steering = Steering {
+            velocity_half_life_secs: case["half_life"].as_f64().unwrap(),
+            facing_half_life_secs: 0.2,
+        };
+        let end = start.after(case["secs"].as_f64().unwrap(), &steering);
+        let wanted = numbers(&case["end"]);
+        for (found, wanted) in [end.position, end.velocity, end.acceleration].into_iter().zip(wanted.chunks(2)) {
+            assert!(found.distance(DVec2::from_slice(wanted)) < 1e-7, "{found} {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_searched_is_told_in_a_sentence() {
+    let options = DatabaseOptions::default();
+    assert_eq!(Database::new(vec![], &options), Err(MatchError::NoClips));
+    let walk = MatchClip::new(Arc::new(synthesize(&Params::new(Action::Walk)).unwrap().clip), Roles::default());
+    let walk = MatchClip {
+        roles: Roles::detect(walk.clip.skeleton()),
+        ..walk
+    };
+    let short = MatchClip {
+        clip: Arc::new(walk.clip.crop(0..50).unwrap()),
+        ..walk.clone()
+    };
+    let alone = Database::new(vec![short.clone()], &options);
+    assert!(matches!(alone, Err(MatchError::NoValidFrame { clips: 1, .. })), "{alone:?}");
+    assert!(alone.unwrap_err().to_string().contains("0.82 s"));
+    // Beside a longer one it is left out.
+    let both = Database::new(vec![short, walk.clone()], &options).unwrap();
+    assert!(matches!(both.skipped(), [MatchError::TooShort { .. }]) && both.motions().len() == 2);
+    assert_eq!(both.motions()[0].source(), 1);
+    let footless = MatchClip {
+        roles: Roles::default(),
+        ..walk.clone()
+    };
+    let error = Database::new(vec![footless], &options).unwrap_err();
+    assert!(error.to_string().contains("hips"), "{error}");
+    let endless = Clip::new(
+        "endless",
+        walk.clip.skeleton().clone(),
+        1e-5,
+        vec![Quat::IDENTITY; 2 * walk.clip.skeleton().len()],
+        vec![Vec3::Y; 2],
+    );
+    let endless = MatchClip {
+        clip: Arc::new(endless.unwrap()),
+        ..walk.clone()
+    };
+    assert!(matches!(
+        Database::new(vec![endless], &options),
+        Err(MatchError::TooManyFrames { .. })
+    ));
+    let mut broken = walk.clip.root_translations().to_vec();
+    broken[7].x = f32::NAN;
+    let rotations = (0..walk.clip.frames())
+        .flat_map(|frame| walk.clip.rotations(frame).to_vec())
+        .collect();
+    let broken = MatchClip {
+        clip: Arc::new(Clip::new("broken", walk.clip.skeleton().clone(), 60.0, rotations, broken).unwrap()),
+        ..walk
+    };
+    assert!(matches!(Database::new(vec![broken], &options), Err(MatchError::NotFinite { .. })));
+}
+
+#[test]
+fn other_rates_other_times_and_other_tags_change_what_they_should() {
+    let database = small();
+    let features = FeatureOptions {
+        trajectory_secs: vec![0.25, 0.5],
+    };
+    let retimed = DatabaseBuilder::retimed(database, &features).unwrap().finish().unwrap();
+    assert_eq!((retimed.frames(), retimed.features().layout().dims()), (database.frames(), 23));
+    assert!(retimed.valid().len() > database.valid().len());
+    assert!(Arc::ptr_eq(&retimed.motions()[3], &database.motions()[3]));
+    // The same motion at another rate gives the same features.
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
+    let [usual, fine] = [clip, finer].map(|clip| {
+        let roles = Roles::detect(clip.skeleton());
+        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &DatabaseOptions::default()).unwrap()
+    });
+    assert_eq!(usual.frames(), fine.frames());
+    assert!(usual.valid().iter().all(|&frame| usual.tags(frame as usize).has(Tag::Walk)));
+    for &frame in usual.valid() {
+        let rows = [&usual, &fine].map(|database| database.features().row(frame as usize).unwrap());
+        for (a, b) in rows[0].iter().zip(rows[1]) {
+            assert!((a - b).abs() < 2e-3, "{frame}: {a} {b}");
+        }
+    }
+    let excluded = usual.retagged(
+        0,
+        &[TagRange {
+            tag: Tag::Exclude,
+            frames: 0..usual.frames(),
+        }],
+    );
+    let query = vec![0.0; 27];
+    let question = Question {
+        query: &query,
+        weights: &[1.0; 27],
+        filter: TagFilter::default(),
+    };
+    assert_eq!(excluded.index().search(excluded.masks(), &question, None).best, None);
+    assert!(scan(&usual.candidates(), &question).best.is_some());
+    for number in (0..database.frames()).step_by(997) {
+        assert_eq!(database.number(database.place(number).unwrap()), Some(number));
+    }
+    assert_eq!(
+        (
+            database.place(database.frames()),
+            database.pose(Place { motion: 999, frame: 0 }, &Planar::IDENTITY)
+        ),
+        (None, None)
+    );
+}
+
+/// A mirrored copy has the mirrored features.
+#[test]
+fn mirrored_copies_are_mirror_images() {
+    let database = small();
+    let layout = database.features().layout();
+    for motion in (0..database.motions().len()).step_by(2) {
+        for frame in [5, 70] {
+            let row = |motion| {
+                let mut row = vec![0.0; layout.dims()];
+                database.motion(motion).unwrap().write_row(layout, frame, &mut row);
+                row
+            };
+            let (row, image) = (row(motion), row(motion + 1));
+            for place in 0..6 {
+                assert!((row[2 * place] + image[2 * place]).abs() < 1e-3 && (row[2 * place + 1] - image[2 * place + 1]).abs() < 1e-3);
+            }
+            for (from, to) in [(12, 15), (15, 12), (18, 21), (21, 18), (24, 24)] {
+                assert!(
+                    (row[from] + image[to]).abs() < 5e-3 && (row[from + 2] - image[to + 2]).abs() < 5e-3,
+                    "{motion} {frame} {from}"
+                );
+            }
+        }
+    }
+}
+
+fn options() -> ControllerOptions {
+    ControllerOptions::default()
+}
+
+#[test]
+fn a_recording_replays_bit_for_bit_and_screens_do_not_matter() {
+    let recording = Scenario::Spin.recording();
+    let again = Recording::from_text(&recording.to_text()).unwrap();
+    let first = drive(small(), options(), &recording).unwrap();
+    assert_eq!(drive(small(), options(), &again).unwrap(), first);
+    for method in [SearchMethod::Scan, SearchMethod::Tree] {
+        let other = drive(small(), ControllerOptions { method, ..options() }, &recording).unwrap();
+        assert_eq!(other.clip, first.clip, "{method:?}");
+    }
+    // 144 Hz, and 25 Hz, ask for the same ticks.
+    for rate in [144.0, 25.0] {
+        let mut controller = Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+        let control = Control::new(DVec2::new(0.0, 1.4), None);
+        let ticks: usize = (0..(2.0 * rate) as usize).map(|_| controller.step(1.0 / rate, &control)).sum();
+        assert!(ticks.abs_diff(120) <= 1);
+        while controller.ticks() < 120 {
+            controller.tick(&control);
+        }
+        assert_eq!(controller.pose().root_translation, first.clip.root_translations()[119]);
+        assert!(controller.shown().root_translation.distance(controller.pose().root_translation) < 0.05);
+        assert_eq!(controller.step(f64::NAN, &control) + controller.step(-1.0, &control), 0);
+        assert!(controller.step(1e9, &control) <= 60);
+    }
+}
+
+#[test]
+fn scenarios_are_followed_without_stutter_or_skating() {
+    for scenario in Scenario::ALL {
+        assert_eq!(Scenario::find(scenario.id()), Some(scenario));
+        let driven = drive(small(), options(), &scenario.recording()).unwrap();
+        let metrics = driven.metrics(small());
+        assert!(metrics.error_cm < 10.0 && metrics.worst_error_cm < 36.0, "{scenario:?} {metrics:?}");
+        assert!(metrics.turn_secs.unwrap_or(0.0) <= 1.2, "{scenario:?} {metrics:?}");
+        assert!(metrics.skate_cm.unwrap() < 2.5, "{scenario:?} {metrics:?}");
+        assert!(metrics.seams_per_minute < 100.0, "{scenario:?} {metrics:?}");
+        assert_eq!(
+            metrics.turn_secs.is_some(),
+            matches!(scenario, Scenario::TurnLeft | Scenario::TurnRight | Scenario::Spin)
+        );
+    }
+    let straight = drive(small(), options(), &Scenario::WalkStraight.recording()).unwrap();
+    let settled = straight.jumps.iter().filter(|jump| jump.frame > 180).count();
+    assert!(settled <= 5, "{:?}", straight.jumps);
+}
+
+#[test]
+fn jumps_are_continuous() {
+    let driven = drive(
+        small(),
+        ControllerOptions {
+            planting: None,
+            following: None,
+            ..options()
+        },
+        &Scenario::FigureEight.recording(),
+    )
+    .unwrap();
+    let clip = &driven.clip;
+    let step = |frame: usize| {
+        let turned = clip.rotations(frame - 1).iter().zip(clip.rotations(frame));
+        turned.map(|(&a, &b)| crate::math::quat::angle_between(a, b)).fold(0.0, f32::max)
+    };
+    let most = (1..clip.frames()).map(step).fold(0.0, f32::max);
+    assert!(driven.jumps.len() > 3);
+    for jump in driven.jumps.iter().filter(|jump| jump.frame > 1) {
+        // It leaves with the velocity that it had; what an offset of half a radian is drawn back by in one tick is 0.03.
+        let (before, at) = (step(jump.frame.saturating_sub(1)), step(jump.frame));
+        assert!(at < before + 0.05, "{jump:?} {before} {at}");
+    }
+    assert!(most < 0.5, "{most}");
+}
+
+#[test]
+fn hysteresis_holds_back_and_tags_are_obeyed() {
+    let recording = Scenario::StartStop.recording();
+    let jumps = |hysteresis| {
+        let options = ControllerOptions {
+            hysteresis,
+            prefer_current: 0.0,
+            ..options()
+        };
+        drive(small(), options, &recording).unwrap().jumps
+    };
+    let free = jumps(Hysteresis::None).len();
+    for hysteresis in [
+        Hysteresis::ContinuingBias { share: 0.3, constant: 0.3 },
+        Hysteresis::MinimumTime { secs: 0.5 },
+        Hysteresis::ThreeVotes,
+    ] {
+        assert!(jumps(hysteresis).len() < free, "{hysteresis:?}");
+    }
+    let apart = jumps(Hysteresis::MinimumTime { secs: 0.5 });
+    let apart = apart.windows(2).filter(|pair| pair[1].reason != Reason::ClipEnd);
+    assert!(apart.map(|pair| pair[1].frame - pair[0].frame).all(|frames| frames >= 30));
+
+    let walk = TagFilter {
+        ask: TagSet::of(&[Tag::Run]),
+        forbid: TagSet::of(&[Tag::Turn]),
+    };
+    let mut controller = Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+    let control = Control::new(DVec2::new(0.0, 1.4), None).with_filter(walk);
+    let mut places = BTreeSet::new();
+    for _ in 0..180 {
+        controller.tick(&control);
+        if let Some(winner) = controller.last_search().and_then(|search| search.winner) {
+            places.insert(winner.place);
+        }
+    }
+    assert!(!places.is_empty());
+    for place in places {
+        assert!(walk.admits(small().tags(small().number(place).unwrap())), "{place:?}");
+    }
+    // Nothing has such a tag: the clip goes on, and at its end the character stands.
+    let nowhere = control.with_filter(TagFilter {
+        ask: TagSet::of(&[Tag::Own(7)]),
+        forbid: TagSet::NONE,
+    });
+    for _ in 0..600 {
+        controller.tick(&nowhere);
+    }
+    let search = controller.last_search().unwrap();
+    assert_eq!((search.winner, search.held), (None, Some(Held::Nothing)));
+}
+
+#[test]
+fn a_search_tells_why() {
+    let options = ControllerOptions {
+        candidates: 6,
+        ..options()
+    };
+    let mut controller = Controller::new(Arc::clone(small()), options, &Planar::new(0.4, 2.0, -1.0)).unwrap();
+    assert!(controller.root().shift.distance(DVec2::new(2.0, -1.0)) < 1e-9);
+    let control = Control::new(DVec2::new(1.0, 1.0), None);
+    for _ in 0..90 {
+        controller.tick(&control);
+    }
+    let search = controller.last_search().unwrap();
+    assert_eq!(search.candidates.first(), search.winner.as_ref());
+    assert!(search.candidates.len() == 6 && search.candidates.windows(2).all(|pair| pair[0].cost <= pair[1].cost));
+    for candidate in search.candidates.iter().chain([&search.current]) {
+        assert!((candidate.split.iter().sum::<f32>() - candidate.cost).abs() < 1e-4 * candidate.cost.max(1.0));
+        assert!(small().pose(candidate.place, &controller.root()).is_some());
+    }
+    assert_eq!((controller.desired().len(), controller.matched().len()), (3, 3));
+    assert!(serde_json::to_string(search).is_ok());
+    // Weights are live, options are checked.
+    let mut other = options;
+    other.weights.0[0] = -1.0;
+    assert!(matches!(controller.set_options(other), Err(MatchError::Setting { .. })));
+    other.weights.0 = [0.0, 0.0, 1.0, 1.0, 1.0];
+    controller.set_options(other).unwrap();
+    controller.tick(&control);
+    let tagged = small().retagged(0, &[]);
+    controller.set_database(Arc::new(tagged));
+    controller.tick(&control);
+    assert!(controller.pose().root_translation.is_finite());
+}
+
+#[test]
+fn planted_feet_stand() {
+    let recording = Scenario::WalkToRun.recording();
+    let slide = |planting| {
+        let driven = drive(small(), ControllerOptions { planting, ..options() }, &recording).unwrap();
+        driven.metrics(small()).skate_cm.unwrap()
+    };
+    let (with, without) = (slide(options().planting), slide(None));
+    assert!(with < 0.5 * without, "{with} {without}");
+}
+
+#[test]
+fn contacts_of_a_mirror_image_are_swapped() {
+    let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
+    let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
+    assert_eq!(motion::mirrored_contacts(&contacts), swapped);
+}
