@@ -76,8 +76,27 @@ pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
 pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<MatchClip, MatchError> {
     let made = synthesize(params)?;
     let roles = roles.unwrap_or_else(|| Roles::detect(made.clip.skeleton()));
-    let name = format!("{:?} {} {}", params.action, params.speed_mps, params.turn_rate_dps);
-    Ok(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name)), roles))
+    Ok(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name_of(params))), roles))
+}
+
+/// What a person calls it: `walk 1.4 m/s, 30°/s`.
+fn name_of(params: &Params) -> String {
+    let turn = if params.turn_rate_dps == 0.0 {
+        String::new()
+    } else {
+        format!(", {}°/s", params.turn_rate_dps)
+    };
+    let going = |word: &str| format!("{word} {} m/s{turn}", params.speed_mps);
+    match params.action {
+        Action::Idle => "stand".to_owned(),
+        Action::Spin if params.fps < RATE as f32 => format!("quick turn by {}°", params.spin_degrees),
+        Action::Spin => format!("turn by {}°", params.spin_degrees),
+        Action::Walk => going("walk"),
+        Action::Run => going("run"),
+        Action::Start => going("start to"),
+        Action::Stop => going("stop from"),
+        Action::Jump => "jump".to_owned(),
+    }
 }
 
 /// What was made at a lower rate than the database's is played at the database's: faster.

@@ -446,6 +446,7 @@ parameters! {
     MinimumTime "minimum_time" "Time between jumps" Match number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
     PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, another clip must be cheaper by this share.";
     JumpMethod "jump_method" "Transition" Match Kind::Choice(JUMPS), Start::Word("inertialize"), "", "How a jump is hidden.";
+    JumpHalfLife "jump_half_life" "Half-life" Match logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
     VelocityHalfLife "velocity_half_life" "Velocity half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";
     FacingHalfLife "facing_half_life" "Facing half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.3), "s", "How lazily the facing follows.";
     Adjust "adjust" "Adjust to the way" Match Kind::Switch, Start::Switch(true), "", "Draws the character to where it was asked to be, and holds it near.";

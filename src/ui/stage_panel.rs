@@ -62,7 +62,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         pane_switch_ui(panes.len(), stage, state, ui);
     }
     camera_buttons_ui(session, stage, state, out, ui);
-    stick_on_stage_ui(session, stage, numbers_top, layout, state, ui);
+    stick_on_stage_ui(session, stage, layout, state, ui);
     let roomy = stage.height() > 420.0 * theme_of(ui).scale();
     let hint = if is_welcome(session) {
         text::WELCOME_HINT
@@ -81,8 +81,11 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
-        let above_numbers = stage.with_max_y(numbers_top - space::S);
-        kit::caption_ui(hint, above_numbers, ui);
+        let mut free = stage.with_max_y(numbers_top - space::S);
+        if session.is_driven() {
+            free.min.x += kit::stick_size(ui) + space::L;
+        }
+        kit::caption_ui(hint, free, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
         }

@@ -180,7 +180,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("match_error", "off cm"),
     ("match_skate", "skate cm"),
     ("match_seams", "jumps/min"),
-    ("match_visited", "visited %"),
+    ("match_visited", "visited"),
     ("match_tick_ms", "ms/tick"),
     ("match_turn", "turn s"),
     ("match_worst_error", "worst cm"),

@@ -26,7 +26,7 @@ fn ask(session: &mut Session, x: f64, z: f64) {
 
 #[test]
 fn a_scenario_by_link_is_what_the_core_makes_of_it() {
-    let session = open("lab=match&scenario=spin&half_life=0.1");
+    let session = open("lab=match&scenario=spin");
     let outcome = session.main_outcome().unwrap();
     let database = Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap());
     assert_eq!(driven(&session).database.frames(), database.frames());

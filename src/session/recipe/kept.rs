@@ -25,7 +25,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "register" => group == Group::Register || key == Key::FootLock,
         "path" => group == Group::Path || key == Key::FootLock,
         "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed),
-        "match" => group == Group::Match || matches!(key, Key::HalfLife | Key::BlendTime | Key::ExtrapolationHalfLife),
+        "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
 }

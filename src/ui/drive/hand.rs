@@ -43,6 +43,8 @@ pub(crate) struct DriveHand {
 
 /// A stick that is pushed by less rests.
 const DEAD: f32 = 0.18;
+/// Height of a row of numbers below the stick, points at a desk.
+const NUMBERS: f32 = 36.0;
 /// How fast a gamepad turns the camera, degrees per second.
 const TURN_DPS: f64 = 130.0;
 
@@ -129,13 +131,15 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
 }
 
 /// The stick over the lower left of the stage, above its numbers.
-pub(crate) fn stick_on_stage_ui(session: &Session, stage: Rect, numbers_top: f32, layout: Layout, state: &mut UiState, ui: &mut Ui) {
+pub(crate) fn stick_on_stage_ui(session: &Session, stage: Rect, layout: Layout, state: &mut UiState, ui: &mut Ui) {
     state.drive.stick = None;
     if !session.is_driven() {
         return;
     }
     let size = kit::stick_size(ui);
-    let bottom = numbers_top.min(stage.bottom()) - space::M;
+    // It must not move under the thumb when a number comes or goes.
+    let numbers = if layout == Layout::Phone { 2.0 } else { 1.0 } * NUMBERS + 2.0 * space::M;
+    let bottom = stage.bottom() - numbers * theme_of(ui).scale() - space::S;
     let center = pos2(stage.left() + space::L + 0.5 * size, bottom - 0.5 * size);
     // Where there is no room for it, keys and gamepad are left.
     if center.y - 0.5 * size < stage.top() + 40.0 {

@@ -150,7 +150,7 @@ fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     label_ui(Key::JumpMethod, ui);
     row(Key::JumpMethod, session, out, ui);
     if any(Key::JumpMethod, "inertialize", session) {
-        row(Key::HalfLife, session, out, ui);
+        row(Key::JumpHalfLife, session, out, ui);
     }
     if any(Key::JumpMethod, "dead", session) {
         row(Key::BlendTime, session, out, ui);

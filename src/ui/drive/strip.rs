@@ -49,7 +49,9 @@ pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driv
     }
     let scale = theme_of(ui).scale();
     let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
-    let height = ((rows * 20.0 + 16.0) * scale).min(ui.available_height());
+    // The curves below it need room, too.
+    let most = if layout == Layout::Phone { 1.0 } else { 0.4 } * ui.available_height();
+    let height = ((rows * 20.0 + 16.0) * scale).min(most);
     strip_ui(driven, now, height, ui);
     if layout != Layout::Phone {
         ui.add_space(space::XS);

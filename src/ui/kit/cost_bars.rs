@@ -41,13 +41,15 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
     let mut found = CostResponse::default();
     let total = |row: &CostRow| row.parts.iter().sum::<f32>();
     let most = bars.rows.iter().map(total).fold(0.0, f32::max).max(1e-6);
+    // Costs of a steady walk are next to nothing, those of a turn are large.
+    let decimals = if most < 0.2 { 3 } else { 2 };
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 2.0);
     for (index, row) in bars.rows.iter().enumerate() {
         let rect = full_width((34.0 * theme.scale()).max(HIT).round(), ui);
         let response = ui
             .interact(rect, ui.make_persistent_id(("cost", index)), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, row.shown, format!("{}: {:.2}", row.name, total(row))));
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, row.shown, format!("{}: {:.decimals$}", row.name, total(row))));
         if response.clicked() {
             found.clicked = Some(index);
         }
@@ -60,7 +62,7 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         }
         let step = if row.strong { Type::SmallStrong } else { Type::Small };
         let ink = if row.strong { palette.text } else { palette.muted };
-        let number = line_of(&[Run::new(&format!("{:.2}", total(row)), step, ink)], f32::INFINITY, ui);
+        let number = line_of(&[Run::new(&format!("{:.decimals$}", total(row)), step, ink)], f32::INFINITY, ui);
         let first = rect.top() + 0.28 * rect.height();
         let number = put(ui.painter(), pos2(rect.right(), first), Align2::RIGHT_CENTER, number);
         let name = line_of(&[Run::new(&row.name, step, ink)], number.left() - rect.left() - space::S, ui);

@@ -49,7 +49,7 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     play(60, &mut harness);
     assert!(driven(&harness).moments.last().expect("a tick").root.shift.y > 0.5);
     harness.key_down(Keyboard::D);
-    play(1, &mut harness);
+    play(2, &mut harness);
     let velocity = control(&harness).velocity();
     assert!(
         velocity.x < -0.9 && velocity.y > 0.9,
@@ -57,15 +57,18 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     );
     harness.key_up(Keyboard::W);
     harness.key_up(Keyboard::D);
-    play(1, &mut harness);
+    play(2, &mut harness);
     assert_eq!(control(&harness), Control::default());
     // Arrows drive, too, and Shift runs; the playhead has nothing to step.
-    harness.key_down_modifiers(Modifiers::SHIFT, Keyboard::ArrowUp);
+    harness.key_down(Keyboard::ArrowUp);
+    play(1, &mut harness);
+    step(vec![Event::ModifiersChanged(Modifiers::SHIFT)], &mut harness);
     play(1, &mut harness);
     let velocity = control(&harness).velocity();
     assert!((velocity.length() - 3.2).abs() < 0.05, "{velocity}");
-    harness.key_up_modifiers(Modifiers::NONE, Keyboard::ArrowUp);
-    play(1, &mut harness);
+    step(vec![Event::ModifiersChanged(Modifiers::NONE)], &mut harness);
+    harness.key_up(Keyboard::ArrowUp);
+    play(2, &mut harness);
     let stepped = |command: &Command| matches!(command, Command::Step(_));
     assert!(!harness.state().out.commands.iter().any(stepped));
     // Q strafes: it faces where the camera looks, wherever it goes.
@@ -112,17 +115,17 @@ fn a_gamepad_pushes_by_as_much_as_it_is_pushed() {
         ..Pad::default()
     };
     harness.state_mut().state.drive.pad = Some(pad);
-    play(1, &mut harness);
+    play(2, &mut harness);
     assert_eq!(control(&harness), Control::default(), "it trembles");
     pad.walk = [0.0, 0.59];
     harness.state_mut().state.drive.pad = Some(pad);
-    play(1, &mut harness);
+    play(2, &mut harness);
     let half = control(&harness).velocity().y;
     assert!((half - 0.7).abs() < 0.05, "{half}");
     pad.run = true;
     pad.look = [1.0, 0.0];
     harness.state_mut().state.drive.pad = Some(pad);
-    play(1, &mut harness);
+    play(2, &mut harness);
     assert!(control(&harness).velocity().y > 1.5);
     assert!(harness.state().session.params().number(Key::CameraYaw) < 180.0);
 }

@@ -87,6 +87,8 @@ impl Live {
         let ticks = self.tracer.controller.ticks();
         if ticks % MEASURED == 0 || self.metrics.is_empty() {
             self.metrics = self.tracer.metrics(&outcome.motion);
+            // Of what was seen last most turns have no beginning or no end.
+            self.metrics.retain(|metric| metric.id != "match_turn");
             let over_secs = ticks.min(COUNTED) as f64 / RATE as f64;
             for metric in self.metrics.iter_mut().filter(|metric| metric.id == "match_seams") {
                 metric.value = (over_secs > 1.0).then(|| self.jumps.len() as f64 * 60.0 / over_secs);

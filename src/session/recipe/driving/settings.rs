@@ -44,7 +44,7 @@ pub(in crate::session) fn options_of(params: &Params) -> ControllerOptions {
                 extrapolation_half_life_secs: number(Key::ExtrapolationHalfLife),
             },
             _ => Inertialization::Offset(Decay::Spring {
-                half_life_secs: number(Key::HalfLife),
+                half_life_secs: number(Key::JumpHalfLife),
             }),
         },
         steering: Steering {

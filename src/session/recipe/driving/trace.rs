@@ -200,13 +200,17 @@ impl Tracer {
             visited,
         };
         let mut metrics = drive.metrics(database).list();
-        let share = 100.0 * visited as f64 / (searches.max(1) * database.valid().len().max(1)) as f64;
+        // A turn that was never made has no time.
+        for metric in &mut metrics {
+            metric.value = metric.value.filter(|value| value.is_finite());
+        }
+        let mean = visited as f64 / searches.max(1) as f64;
         metrics.push(Metric::fact(
             "match_visited",
             "frames visited",
-            (searches > 0).then_some(share),
-            "%",
-            "Of all frames, how many a search looked at, on average.",
+            (searches > 0).then_some(mean),
+            "frames",
+            "How many frames a search looked at, on average.",
         ));
         metrics
     }
