@@ -36,8 +36,17 @@ fn is_ingredient(key: Key, lab: &str) -> bool {
         Key::A => !matches!(lab, "graph" | "match"),
         Key::B => !matches!(lab, "view" | "loop" | "path" | "graph" | "match"),
         // Looked at or worked with, and not made from.
-        Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
-        Key::WalkSpeed | Key::RunSpeed | Key::Strafe | Key::ShownCandidates | Key::SearchBy | Key::Crowd => false,
+        Key::MaskColors
+        | Key::PathGrid
+        | Key::PinStart
+        | Key::PinEnd
+        | Key::Others
+        | Key::WalkSpeed
+        | Key::RunSpeed
+        | Key::Strafe
+        | Key::ShownCandidates
+        | Key::SearchBy
+        | Key::Crowd => false,
         _ => belongs_to(key, lab),
     }
 }

@@ -218,25 +218,21 @@ impl Driver {
 
     fn build(&mut self, source: &Source) -> Result<Option<Database>, MatchError> {
         let under_way = self.building.take().filter(|(of, _)| of == source);
-        let mut builder = match under_way {
-            Some((_, builder)) => builder,
-            None => {
-                let alike = self.databases.iter().find(|(known, _)| known.has_clips_of(source));
-                if let Some((_, Ok(database))) = alike {
-                    Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
-                } else if !source.clips.is_empty() {
-                    let clips = source
-                        .clips
-                        .iter()
-                        .map(|motion| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone()));
-                    Box::new(DatabaseBuilder::new(clips.collect(), &source.options)?)
-                } else if let Some(params) = made_params().get(self.made.len()) {
-                    let roles = self.made.first().map(|first| first.roles.clone());
-                    self.made.push(made_clip(params, roles)?);
-                    return Ok(None);
-                } else {
-                    Box::new(DatabaseBuilder::new(self.made.clone(), &source.options)?)
-                }
+        let mut builder = if let Some((_, builder)) = under_way {
+            builder
+        } else {
+            let alike = self.databases.iter().find(|(known, _)| known.has_clips_of(source));
+            if let Some((_, Ok(database))) = alike {
+                Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
+            } else if !source.clips.is_empty() {
+                let clip = |motion: &Arc<Motion>| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone());
+                Box::new(DatabaseBuilder::new(source.clips.iter().map(clip).collect(), &source.options)?)
+            } else if let Some(params) = made_params().get(self.made.len()) {
+                let roles = self.made.first().map(|first| first.roles.clone());
+                self.made.push(made_clip(params, roles)?);
+                return Ok(None);
+            } else {
+                Box::new(DatabaseBuilder::new(self.made.clone(), &source.options)?)
             }
         };
         if builder.advance()?.is_complete() {
@@ -248,20 +244,19 @@ impl Driver {
 
     fn play(&mut self, script: &Script) -> Result<Option<Outcome>, String> {
         let under_way = self.playing.take().filter(|(of, _)| of == script);
-        let mut playing = match under_way {
-            Some((_, playing)) => playing,
-            None => {
-                let controller = Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
-                Box::new(Playing {
-                    tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
-                    controls: script
-                        .recording
-                        .controls()
-                        .map(|control| filtered(control, script.filter))
-                        .collect(),
-                    next: 0,
-                })
-            }
+        let mut playing = if let Some((_, playing)) = under_way {
+            playing
+        } else {
+            let controller = Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
+            Box::new(Playing {
+                tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
+                controls: script
+                    .recording
+                    .controls()
+                    .map(|control| filtered(control, script.filter))
+                    .collect(),
+                next: 0,
+            })
         };
         let end = (playing.next + TICKS).min(playing.controls.len());
         for control in playing.controls.get(playing.next..end).unwrap_or(&[]) {
@@ -279,7 +274,7 @@ impl Driver {
 }
 
 /// Input under the filter that is set; what was recorded under another one keeps it where none is set.
-pub(super) fn filtered(control: Control, filter: TagFilter) -> Control {
+fn filtered(control: Control, filter: TagFilter) -> Control {
     if filter == TagFilter::default() {
         control
     } else {

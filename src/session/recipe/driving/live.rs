@@ -85,7 +85,7 @@ impl Live {
     pub(in crate::session) fn outcome(&mut self) -> Result<Outcome, String> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
-        if ticks % MEASURED == 0 || self.metrics.is_empty() {
+        if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {
             self.metrics = self.tracer.metrics(&outcome.motion);
             // Of what was seen last most turns have no beginning or no end.
             self.metrics.retain(|metric| metric.id != "match_turn");
