@@ -223,7 +223,11 @@ impl Segue {
         let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
         self.clock.ticked = now_ms;
         let playing = self.session.params().is_on(Key::Play);
-        self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed })
+        let ticked = self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed });
+        if self.session.is_driven() {
+            self.session.tick_took((platform::now_ms() - now_ms) / 1e3);
+        }
+        ticked
     }
 
     /// Takes what has come in, sends what is asked for, and works on what is left over for a while. `true` while there is more to do.
@@ -423,6 +427,14 @@ impl Segue {
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.fetching = self.downloads.under_way().collect();
+        if self.session.is_driven() {
+            self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {
+                walk: pad.left,
+                look: pad.right,
+                run: pad.run,
+                strafe: pad.strafe,
+            });
+        }
         self.panels.filming = Filming {
             pictures: platform::can_take_pictures(),
             films: platform::can_film(),
@@ -442,6 +454,7 @@ impl Segue {
         self.picture.show_pair(self.panels.hovered_pair);
         self.picture.mark_path(self.panels.path_marks(&self.session));
         self.picture.show_jump(self.panels.hovered_jump);
+        self.picture.show_candidate(self.panels.drive.ghost(&self.session));
         self.picture.finish(frame, &self.session, theme.palette(), look, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();

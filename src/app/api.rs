@@ -391,6 +391,7 @@ impl Segue {
             "loop" => format!("{} loop", params.text(Key::A)),
             "path" => format!("{} on a path", params.text(Key::A)),
             "graph" => "walk".to_owned(),
+            "match" => "drive".to_owned(),
             _ => params.text(Key::A).to_owned(),
         }
     }

@@ -64,6 +64,11 @@ impl Picture {
         self.director.mark_path(marks);
     }
 
+    /// The frame that is shown as a ghost beside the driven character, in what is drawn from now on.
+    pub(crate) fn show_candidate(&mut self, place: Option<segue::matching::Place>) {
+        self.director.show_candidate(place);
+    }
+
     /// The cameras of so many panes, as they were drawn last.
     pub(crate) fn cameras(&self, panes: usize) -> Vec<Option<Camera>> {
         (0..panes).map(|pane| self.director.camera(pane).copied()).collect()

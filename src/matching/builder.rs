@@ -12,6 +12,8 @@ use std::sync::Arc;
 
 /// The most frames of a database: features of 27 dimensions take half a gigabyte then.
 const MOST_FRAMES: usize = 2_000_000;
+/// Frames whose features are gathered in one step.
+const GATHERED: usize = 3_000;
 /// Frames that are sorted into boxes in one step.
 const SLICE: usize = 100_000;
 
@@ -41,8 +43,43 @@ enum Stage {
     Measure(Arc<Clip>),
     Mirror,
     MeasureMirrored(Arc<Clip>),
-    Normalise,
+    Gather(Gathering),
+    Normalise(Gathering),
     Sort(Sorting),
+}
+
+/// The features of all motions, one after the other.
+#[derive(Clone, Debug)]
+struct Gathering {
+    starts: Vec<usize>,
+    valid: Vec<u32>,
+    rows: Vec<f32>,
+}
+
+impl Gathering {
+    fn new() -> Self {
+        Self {
+            starts: vec![0],
+            valid: Vec::new(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Motions that are through.
+    fn motions(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn push(&mut self, motion: &Motion, layout: &Layout) {
+        let start = self.starts.last().copied().unwrap_or(0);
+        self.valid.extend((start..start + motion.valid(layout)).map(|frame| frame as u32));
+        let begin = self.rows.len();
+        self.rows.resize(begin + motion.frames() * layout.dims(), 0.0);
+        for (frame, row) in self.rows[begin..].chunks_exact_mut(layout.dims()).enumerate() {
+            motion.write_row(layout, frame, row);
+        }
+        self.starts.push(start + motion.frames());
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -55,7 +92,9 @@ struct Sorting {
 }
 
 /// Of all progress, the share that is made clip by clip; out of 1000.
-const CLIPS_SHARE: usize = 750;
+const CLIPS_SHARE: usize = 700;
+/// And the share of gathering their features.
+const GATHER_SHARE: usize = 100;
 
 impl DatabaseBuilder {
     /// Checks what can be checked beforehand.
@@ -113,7 +152,7 @@ impl DatabaseBuilder {
             skipped: database.skipped.clone(),
             longest_secs: longest,
             next: 0,
-            stage: Stage::Normalise,
+            stage: Stage::Gather(Gathering::new()),
         })
     }
 
@@ -126,10 +165,11 @@ impl DatabaseBuilder {
             Stage::Measure(_) => of_clip(1),
             Stage::Mirror => of_clip(2),
             Stage::MeasureMirrored(_) => of_clip(3),
-            Stage::Normalise => CLIPS_SHARE,
+            Stage::Gather(gathering) => CLIPS_SHARE + GATHER_SHARE * gathering.motions() / self.motions.len().max(1),
+            Stage::Normalise(_) => CLIPS_SHARE + GATHER_SHARE,
             Stage::Sort(sorting) => {
                 let Progress { done, total } = sorting.progress;
-                CLIPS_SHARE + 50 + (950 - CLIPS_SHARE) * done / total.max(1)
+                CLIPS_SHARE + GATHER_SHARE + 50 + (950 - CLIPS_SHARE - GATHER_SHARE) * done / total.max(1)
             }
         };
         Progress { done, total: 1_000 }
@@ -156,7 +196,7 @@ impl DatabaseBuilder {
                         self.next += 1;
                     }
                 }
-                None => self.stage = Stage::Normalise,
+                None => self.stage = Stage::Gather(Gathering::new()),
             },
             Stage::Measure(clip) => {
                 let contacts = Contacts::detect(&clip, &self.roles, &ContactOptions::default());
@@ -186,7 +226,20 @@ impl DatabaseBuilder {
                 }
                 self.stage = self.next_clip();
             }
-            Stage::Normalise => self.stage = Stage::Sort(self.normalised()?),
+            Stage::Gather(mut gathering) => {
+                let until = gathering.rows.len() + GATHERED * self.layout.dims();
+                while gathering.rows.len() < until
+                    && let Some(motion) = self.motions.get(gathering.motions())
+                {
+                    gathering.push(motion, &self.layout);
+                }
+                self.stage = if gathering.motions() < self.motions.len() {
+                    Stage::Gather(gathering)
+                } else {
+                    Stage::Normalise(gathering)
+                };
+            }
+            Stage::Normalise(gathering) => self.stage = Stage::Sort(self.normalised(gathering)?),
             Stage::Sort(mut sorting) => {
                 sorting.progress = sorting.boxes.advance(&sorting.features, SLICE);
                 self.stage = Stage::Sort(sorting);
@@ -262,20 +315,9 @@ impl DatabaseBuilder {
         suggest_tags(motion.roots(), RATE as f64, scale)
     }
 
-    fn normalised(&self) -> Result<Sorting, MatchError> {
-        let (mut starts, mut valid) = (vec![0], Vec::new());
-        let dims = self.layout.dims();
-        let frames: usize = self.motions.iter().map(|motion| motion.frames()).sum();
-        let mut rows = vec![0.0; frames * dims];
-        let mut each = rows.chunks_exact_mut(dims);
-        for motion in &self.motions {
-            let start = starts.last().copied().unwrap_or(0);
-            valid.extend((start..start + motion.valid(&self.layout)).map(|frame| frame as u32));
-            for (frame, row) in (0..motion.frames()).zip(&mut each) {
-                motion.write_row(&self.layout, frame, row);
-            }
-            starts.push(start + motion.frames());
-        }
+    fn normalised(&self, gathering: Gathering) -> Result<Sorting, MatchError> {
+        let Gathering { starts, valid, rows } = gathering;
+        let frames = starts.last().copied().unwrap_or(0);
         if valid.is_empty() {
             return Err(MatchError::NoValidFrame {
                 clips: self.clips.len().max(self.motions.len()),

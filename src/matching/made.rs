@@ -63,15 +63,40 @@ const HASTE: f32 = 2.0 / 3.0;
 pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
     let mut clips: Vec<MatchClip> = Vec::new();
     for params in made_params() {
-        let made = synthesize(&Params { height_m, ..params })?;
-        let roles = match clips.first() {
-            Some(first) => first.roles.clone(),
-            None => Roles::detect(made.clip.skeleton()),
-        };
-        let name = format!("{:?} {} {}", params.action, params.speed_mps, params.turn_rate_dps);
-        clips.push(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name)), roles));
+        let roles = clips.first().map(|first| first.roles.clone());
+        clips.push(made_clip(&Params { height_m, ..params }, roles)?);
     }
     Ok(clips)
+}
+
+/// Makes one of them; `roles` are those of another one, which has the same joints, so that they need not be found again.
+///
+/// # Errors
+/// [`MatchError::Synth`] for what cannot be made.
+pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<MatchClip, MatchError> {
+    let made = synthesize(params)?;
+    let roles = roles.unwrap_or_else(|| Roles::detect(made.clip.skeleton()));
+    Ok(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name_of(params))), roles))
+}
+
+/// What a person calls it: `walk 1.4 m/s, 30°/s`.
+fn name_of(params: &Params) -> String {
+    let turn = if params.turn_rate_dps == 0.0 {
+        String::new()
+    } else {
+        format!(", {}°/s", params.turn_rate_dps)
+    };
+    let going = |word: &str| format!("{word} {} m/s{turn}", params.speed_mps);
+    match params.action {
+        Action::Idle => "stand".to_owned(),
+        Action::Spin if params.fps < RATE as f32 => format!("quick turn by {}°", params.spin_degrees),
+        Action::Spin => format!("turn by {}°", params.spin_degrees),
+        Action::Walk => going("walk"),
+        Action::Run => going("run"),
+        Action::Start => going("start to"),
+        Action::Stop => going("stop from"),
+        Action::Jump => "jump".to_owned(),
+    }
 }
 
 /// What was made at a lower rate than the database's is played at the database's: faster.

@@ -61,7 +61,7 @@ pub use desired::{Simulation, Steering};
 pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;
 pub use features::{Block, FeatureOptions, Features, Layout, RATE, Weights};
-pub use made::{made_clips, made_params};
+pub use made::{made_clip, made_clips, made_params};
 pub use motion::Motion;
 pub use scenario::Scenario;
 pub use search::{Found, Hit};

@@ -67,6 +67,19 @@ pub(crate) struct Work {
     pub(crate) files: StoredFiles,
 }
 
+/// What a gamepad says. Sticks from -1 to 1, to the right and up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Gamepad {
+    /// The left stick.
+    pub(crate) left: [f32; 2],
+    /// The right stick.
+    pub(crate) right: [f32; 2],
+    /// A right shoulder button, or the first face button.
+    pub(crate) run: bool,
+    /// A left shoulder button.
+    pub(crate) strafe: bool,
+}
+
 /// Why a file of that size is not read; `None` when it is.
 fn too_large(name: &str, bytes: u64) -> Option<String> {
     (bytes > MAX_FILE_BYTES).then(|| {

@@ -903,3 +903,47 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
         }
     }
 }
+
+#[test]
+fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1000, 640];
+    for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
+        let colors = Colors {
+            a: rgb(A[theme]),
+            b: rgb(B[theme]),
+            result: rgb(RESULT[theme]),
+            bad: rgb(0xff_7a_6b),
+            warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
+            others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
+            ghost_alpha: 0.4,
+        };
+        for (name, link, bodies) in [
+            ("drive-spin", "lab=match&scenario=spin&play=off&t=2.3", 2),
+            ("drive-crowd", "lab=match&crowd=40&camera_distance=12&camera_pitch=20", 41),
+        ] {
+            let mut session = Session::new();
+            session.apply(Command::OpenLink(link.into())).unwrap();
+            while session.work() {}
+            for _ in 0..200 {
+                session.tick(1.0 / 60.0);
+            }
+            let outcome = Arc::clone(session.main_outcome().unwrap());
+            let driven = outcome.driven.as_ref().unwrap();
+            let moment = driven.at(session.now_secs()).unwrap();
+            let mut director = Director::default();
+            director.show_candidate(moment.search.as_ref().map(|search| search.candidates[1].place));
+            let viewport = Viewport {
+                x: 0,
+                y: 0,
+                width: size[0],
+                height: size[1],
+            };
+            let stage = director.stage(&session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
+            let ring = stage.panes[0].rings.iter().any(|ring| ring.color[..3] == colors.a[..3]);
+            assert!(ring, "the simulation object");
+            gpu.draw(&format!("{name}-{theme}"), &stage, size);
+        }
+    }
+}

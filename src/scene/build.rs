@@ -1,7 +1,9 @@
+use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::graph::Place;
+use crate::matching;
 use crate::math::Planar;
 use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
@@ -36,6 +38,7 @@ pub struct Director {
     pair: Option<[f64; 2]>,
     marks: PathMarks,
     jump: Option<[Place; 2]>,
+    candidate: Option<matching::Place>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
@@ -53,6 +56,8 @@ const BESIDE_METRES: f64 = 0.8;
 const PAIR_ALPHA: f32 = 1.8;
 /// How much of a companion's colour is on its clay.
 const COMPANY_SHARE: f32 = 0.55;
+/// And how much on that of one in a crowd.
+const CROWD_SHARE: f32 = 0.3;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
 /// So much of a walk's path is drawn, behind and before it, seconds.
@@ -104,6 +109,9 @@ impl Director {
                 self.draw_company(session, &look, colors, pane);
                 add_walk_path(session, colors, pane);
                 add_drawn(&self.marks, colors, pane);
+                if index == 0 {
+                    self.draw_crowd(session, &shown, &look, colors, pane);
+                }
                 self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
@@ -125,6 +133,11 @@ impl Director {
     /// The pair of frames of A and B (at A's rate) that is shown in place of the result from now on, aligned; `None` for the result itself.
     pub fn show_pair(&mut self, frames: Option<[f64; 2]>) {
         self.pair = frames;
+    }
+
+    /// The frame that is shown as a ghost where the driven character stands, from now on.
+    pub fn show_candidate(&mut self, place: Option<matching::Place>) {
+        self.candidate = place;
     }
 
     /// What the hand does with a path, from now on.
@@ -208,6 +221,17 @@ impl Director {
         } else if params.is_on(Key::Trail) {
             add_ground_path(outcome, place, now, colors, pane);
         }
+        if let Some(driven) = &outcome.driven {
+            if params.is_on(Key::Trail) {
+                add_drive(driven, now, colors, pane);
+            }
+            if let (Some(candidate), Some(moment)) = (self.candidate, driven.at(now))
+                && let Some(pose) = driven.database.pose(candidate, &moment.root)
+            {
+                let ghost = world_pose(driven.database.skeleton(), &pose);
+                pane.add_ghost(&body, &ghost, with_alpha(colors.b, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)));
+            }
+        }
         if params.is_on(Key::JointTrail)
             && let Some(joint) = joint_of(motion, params.text(Key::Joint))
         {
@@ -239,6 +263,25 @@ impl Director {
                     .iter()
                     .step_by(motion.ground_frames.len().div_ceil(PATH_POINTS).max(1));
                 pane.add_path(ways.map(|place| (place.origin().with_y(0.004), color)), 2.0, Layer::Ground);
+            }
+        }
+    }
+
+    /// Those who walk about the one that is driven.
+    fn draw_crowd(&mut self, session: &Session, shown: &Shown<'_>, look: &Look, colors: &Colors, pane: &mut Pane) {
+        let Some((database, poses)) = session.crowd() else { return };
+        let skeleton = database.skeleton();
+        if shown.outcome.motion.clip.skeleton() != skeleton {
+            return;
+        }
+        let body = self.body(&shown.outcome.motion);
+        for (index, pose) in poses.into_iter().enumerate() {
+            let color = colors.others[index % colors.others.len()];
+            let world = world_pose(skeleton, pose);
+            if session.params().text(Key::Look) == "bones" {
+                add_bones(skeleton, &world, color, pane);
+            } else {
+                pane.add_body(&body, &world, mixed(look.clay, color, CROWD_SHARE));
             }
         }
     }

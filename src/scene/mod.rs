@@ -9,6 +9,7 @@ mod body;
 mod bounds;
 mod build;
 mod camera;
+mod drive;
 mod path;
 mod rig;
 mod stage;

@@ -3,6 +3,7 @@ use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::recipe::Slot;
 use crate::formats::{ImportError, ImportOptions};
+use crate::matching::Control;
 use crate::skeleton::Role;
 
 /// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all end here.
@@ -30,6 +31,12 @@ pub enum Command {
     Keep(usize),
     /// Changes who plays along in the Path lab.
     Company(CompanyChange),
+    /// What the character of the Match lab is asked for from now on.
+    Steer(Control),
+    /// The character of the Match lab stands at the origin again, and nothing of what it was asked for is remembered.
+    RestartDrive,
+    /// Plays what the character was asked for again: it becomes the parameter `drive`.
+    ReplayDrive,
     /// Moves the playhead, seconds.
     Seek(f64),
     /// Moves the playhead by whole frames and pauses.

@@ -25,7 +25,8 @@ pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, fi
 pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
+pub use recipe::write_ids;
 pub use recipe::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
-pub use recipe::{Beat, DistanceMap, FittedMotion, OnPath, Registered, weight_curve, write_pairs};
+pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, weight_curve, write_pairs};
 pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use saved::{Saved, SavedEntry};

@@ -22,6 +22,7 @@ pub enum Group {
     Register,
     Path,
     Graph,
+    Match,
 }
 
 impl Group {
@@ -43,6 +44,7 @@ impl Group {
             Self::Register => "register",
             Self::Path => "path",
             Self::Graph => "graph",
+            Self::Match => "match",
         }
     }
 
@@ -218,6 +220,7 @@ const LABS: &[Choice] = &[
     choice("register", "Register"),
     choice("path", "Path"),
     choice("graph", "Graph"),
+    choice("match", "Match"),
 ];
 const WEIGHT_LAWS: &[Choice] = &[
     choice("smooth", "smooth"),
@@ -284,6 +287,38 @@ const EDGE_WEIGHTS: &[Choice] = &[
 const WALK_METHODS: &[Choice] = &[choice("dissolve", "dissolve"), choice("inertialize", "inertialize")];
 const TRANSFORMS: &[Choice] = &[choice("whole", "whole clip"), choice("first", "first frame only")];
 const ATANS: &[Choice] = &[choice("atan2", "atan2"), choice("atan", "atan, wrong")];
+const SCENARIOS: &[Choice] = &[
+    choice("own", "my own"),
+    choice("straight", "walk straight"),
+    choice("left", "90° to the left"),
+    choice("right", "90° to the right"),
+    choice("spin", "180° spin"),
+    choice("start_stop", "start and stop"),
+    choice("run", "walk to run"),
+    choice("eight", "figure eight"),
+];
+const HYSTERESES: &[Choice] = &[
+    choice("none", "none"),
+    choice("bias", "bias"),
+    choice("time", "time"),
+    choice("votes", "votes"),
+];
+const SEARCHES: &[Choice] = &[choice("boxes", "boxes"), choice("tree", "k-d tree"), choice("scan", "scan")];
+const JUMPS: &[Choice] = &[choice("inertialize", "inertialize"), choice("dead", "dead blend")];
+const ASKED_TAGS: &[Choice] = &[
+    choice("any", "anything"),
+    choice("walk", "walk"),
+    choice("run", "run"),
+    choice("idle", "idle"),
+    choice("turn", "turn"),
+];
+const FORBIDDEN_TAGS: &[Choice] = &[
+    choice("nothing", "nothing"),
+    choice("walk", "walk"),
+    choice("run", "run"),
+    choice("idle", "idle"),
+    choice("turn", "turn"),
+];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -387,6 +422,43 @@ parameters! {
     GoTo "go_to" "Go to" Graph Kind::Text, Start::Word(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
     WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Word(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
     Jump "jump" "Transition" Graph Kind::Text, Start::Word(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
+
+    Scenario "scenario" "Input" Match Kind::Choice(SCENARIOS), Start::Word("own"), "", "Who drives: you, or input that was written down, the same for everybody.";
+    Drive "drive" "Recorded input" Match Kind::Text, Start::Word(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
+    MatchClips "match_clips" "Clips" Match Kind::Text, Start::Word(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
+    Mirrored "mirrored" "Mirrored copies" Match Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
+    WalkSpeed "walk_speed" "Walking speed" Match number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
+    RunSpeed "run_speed" "Running speed" Match number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift.";
+    Strafe "strafe" "Strafe" Match Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes.";
+    WeightPath "weight_path" "Path ahead" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts where the next second leads.";
+    WeightFacing "weight_facing" "Facing ahead" Match number(0.0, 4.0, 0.05), Start::Number(1.25), "×", "How much it counts what the body will face.";
+    WeightFeet "weight_feet" "Feet, where" Match number(0.0, 4.0, 0.05), Start::Number(0.75), "×", "How much it counts where the feet are.";
+    WeightFootSpeed "weight_foot_speed" "Feet, how fast" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the feet move.";
+    WeightHipSpeed "weight_hip_speed" "Hips, how fast" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the hips move.";
+    AheadNear "ahead_near" "Look ahead, near" Match number(0.05, 1.0, 0.01), Start::Number(0.33), "s", "The first time at which path and facing are compared.";
+    AheadMiddle "ahead_middle" "Look ahead, middle" Match number(0.1, 2.0, 0.01), Start::Number(0.67), "s", "The second.";
+    AheadFar "ahead_far" "Look ahead, far" Match number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen.";
+    SearchInterval "search_interval" "Search every" Match logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
+    SearchBy "search_by" "Search by" Match Kind::Choice(SEARCHES), Start::Word("boxes"), "", "Three searches that find the same frame: how many frames they look at differs.";
+    Hysteresis "hysteresis" "Hysteresis" Match Kind::Choice(HYSTERESES), Start::Word("bias"), "", "What keeps it from jumping for next to nothing.";
+    BiasShare "bias_share" "Bias, share" Match number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
+    BiasConstant "bias_constant" "Bias, constant" Match number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
+    MinimumTime "minimum_time" "Time between jumps" Match number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
+    PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, another clip must be cheaper by this share.";
+    JumpMethod "jump_method" "Transition" Match Kind::Choice(JUMPS), Start::Word("inertialize"), "", "How a jump is hidden.";
+    JumpHalfLife "jump_half_life" "Half-life" Match logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
+    VelocityHalfLife "velocity_half_life" "Velocity half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";
+    FacingHalfLife "facing_half_life" "Facing half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.3), "s", "How lazily the facing follows.";
+    Adjust "adjust" "Adjust to the way" Match Kind::Switch, Start::Switch(true), "", "Draws the character to where it was asked to be, and holds it near.";
+    AdjustHalfLife "adjust_half_life" "Adjustment half-life" Match number(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How fast it is drawn there.";
+    AdjustShare "adjust_share" "Adjustment at most" Match number(0.0, 2.0, 0.05), Start::Number(0.5), "of speed", "It is drawn by no more than this share of its own speed, so that feet slide little.";
+    ClampDistance "clamp_distance" "Never farther than" Match number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
+    ClampTurn "clamp_turn" "Never turned more than" Match number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
+    PlantFeet "plant_feet" "Foot lock" Match Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
+    AskTag "ask_tag" "Only frames of" Match Kind::Choice(ASKED_TAGS), Start::Word("any"), "", "Frames must have this tag.";
+    ForbidTag "forbid_tag" "No frames of" Match Kind::Choice(FORBIDDEN_TAGS), Start::Word("nothing"), "", "Frames must not have this tag.";
+    ShownCandidates "shown_candidates" "Candidates shown" Match number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
+    Crowd "crowd" "Characters" Match number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
 
     Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

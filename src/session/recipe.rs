@@ -7,6 +7,7 @@ use crate::metrics::Metric;
 use std::sync::Arc;
 
 mod blend;
+mod driving;
 mod feet;
 mod graph;
 mod kept;
@@ -22,9 +23,12 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
+pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, recording_of};
+pub use driving::{DriveMoment, Driven};
 pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
-pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
+pub use kept::write_ids;
+pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
@@ -159,6 +163,8 @@ pub struct Outcome {
     pub path: Option<Arc<OnPath>>,
     /// The walk that it is; `None` where it is none.
     pub walk: Option<Arc<Walk>>,
+    /// How it was driven; `None` where it was not.
+    pub driven: Option<Arc<Driven>>,
     /// The artefacts, as numbers.
     pub metrics: Vec<Metric>,
 }
@@ -176,6 +182,7 @@ impl Outcome {
             registered: None,
             path: None,
             walk: None,
+            driven: None,
             metrics: Vec::new(),
         }
     }

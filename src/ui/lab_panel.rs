@@ -3,6 +3,7 @@
 use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::cycle_panels::{loop_ui, speed_ui};
+use super::drive::drive_ui;
 use super::graph::graph_ui;
 use super::kit::{self, Button, Icon};
 use super::layers_rows::layers_ui;
@@ -31,6 +32,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "register" => register_ui(session, state, out, ui),
         "path" => path_ui(session, state, out, ui),
         "graph" => graph_ui(session, state, out, ui),
+        "match" => drive_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
     ui.add_space(space::L);
@@ -152,7 +154,7 @@ pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
     save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
 }
 
-fn keep_ui(pane: usize, out: &mut Out, ui: &mut Ui) {
+pub(super) fn keep_ui(pane: usize, out: &mut Out, ui: &mut Ui) {
     if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).outlined(), ui).clicked() {
         out.commands.push(Command::Keep(pane));
     }

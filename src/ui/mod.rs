@@ -3,6 +3,7 @@
 mod break_it;
 mod clip_panel;
 mod cycle_panels;
+mod drive;
 mod graph;
 mod ground_line;
 pub(crate) mod kit;
@@ -27,6 +28,7 @@ pub(crate) mod theme;
 mod timeline_panel;
 mod top_bar;
 
+pub(crate) use drive::Pad;
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};
@@ -71,6 +73,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
             Layout::Desk | Layout::Tablet => desk_ui(session, layout, state, curves, &mut out, paint, ui),
         }
     }
+    drive::steer(session, state, &mut out, ui.ctx());
     overlays::overlays_ui(session, state, &mut out, ui);
     out
 }
@@ -176,7 +179,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
     // The stripes of the feet need more room than the bars of the clips.
-    let timeline = if matches!(session.params().text(Key::Lab), "register" | "graph") {
+    let timeline = if matches!(session.params().text(Key::Lab), "register" | "graph" | "match") {
         144.0
     } else {
         104.0

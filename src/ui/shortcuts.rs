@@ -51,7 +51,13 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         if pressed(none, Keyboard::Space) {
             out.commands.push(Command::TogglePlay);
         }
-        for (key, step) in [(Keyboard::ArrowLeft, -1), (Keyboard::ArrowRight, 1)] {
+        // Where a character is driven, the arrows drive it.
+        let steps: &[(Keyboard, i64)] = if session.is_driven() {
+            &[]
+        } else {
+            &[(Keyboard::ArrowLeft, -1), (Keyboard::ArrowRight, 1)]
+        };
+        for &(key, step) in steps {
             if pressed(shift, key) {
                 out.commands.push(Command::Step(10 * step));
             }
@@ -88,6 +94,9 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
                 out.set_once(Key::Lab, Value::Choice(lab.key));
             }
         }
+    }
+    if session.is_driven() && pressed(none, Keyboard::Q) {
+        out.toggle(Key::Strafe, params.is_on(Key::Strafe));
     }
     if pressed(none, Keyboard::T) {
         out.set_once(

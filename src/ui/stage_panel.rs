@@ -1,5 +1,6 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
+use super::drive::stick_on_stage_ui;
 use super::ground_line::{GroundLine, ground_line};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::out::{Action, Out};
@@ -30,7 +31,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
     let line = ground_line(&shown, &response, state, ui);
-    let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some();
+    let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
     if let GroundLine::Done(points) = line {
         if session.params().text(Key::Lab) == "path" {
             state.path.take_drawn(&points, session, out);
@@ -61,6 +62,7 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         pane_switch_ui(panes.len(), stage, state, ui);
     }
     camera_buttons_ui(session, stage, state, out, ui);
+    stick_on_stage_ui(session, stage, layout, state, ui);
     let roomy = stage.height() > 420.0 * theme_of(ui).scale();
     let hint = if is_welcome(session) {
         text::WELCOME_HINT
@@ -70,6 +72,8 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
         text::PATH_HINT
     } else if session.params().text(Key::Lab) == "graph" {
         text::GRAPH_HINT
+    } else if session.is_driven() {
+        text::MATCH_HINT
     } else {
         ""
     };
@@ -77,8 +81,11 @@ pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiSt
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
-        let above_numbers = stage.with_max_y(numbers_top - space::S);
-        kit::caption_ui(hint, above_numbers, ui);
+        let mut free = stage.with_max_y(numbers_top - space::S);
+        if session.is_driven() {
+            free.min.x += kit::stick_size(ui) + space::L;
+        }
+        kit::caption_ui(hint, free, ui);
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
         }
@@ -260,7 +267,7 @@ fn is_beyond(pane: &Pane) -> bool {
 fn written(metric: &segue::metrics::Metric) -> String {
     let Some(value) = metric.value else { return "–".to_owned() };
     let decimals = match metric.unit {
-        "s" | "m" | "m/s" => 2,
+        "s" | "m" | "m/s" | "ms" => 2,
         "cm" => 1,
         // What has no unit is counted.
         "%" | "frames" | "bends" | "" => 0,
@@ -361,6 +368,15 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 secondary: format!("seed {}", session.params().number(Key::Seed)),
             }
         }
+        "match" => Words {
+            strong: if session.is_driven() {
+                text::LIVE.to_owned()
+            } else {
+                Key::Scenario.param().spoken(session.params().get(Key::Scenario))
+            },
+            text: String::new(),
+            secondary: Key::Hysteresis.param().spoken(session.params().get(Key::Hysteresis)),
+        },
         "make" => Words {
             strong: session.params().text(Key::Gait).to_owned(),
             text: String::new(),

@@ -1,5 +1,6 @@
 //! What the interface remembers that is nobody else's business.
 
+use super::drive::DriveHand;
 use super::path_hand::PathHand;
 use eframe::egui::Rect;
 use glam::DVec2;
@@ -77,6 +78,8 @@ pub(crate) struct UiState {
     pub(crate) hovered_pair: Option<[f64; 2]>,
     /// The hand on the path of the Path lab.
     pub(crate) path: PathHand,
+    /// The hand that drives in the Match lab.
+    pub(crate) drive: DriveHand,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
     /// The transition that the pointer is at, on the map of distances or on an arc.
@@ -116,6 +119,7 @@ impl Default for UiState {
             joints_open: false,
             hovered_pair: None,
             path: PathHand::default(),
+            drive: DriveHand::default(),
             cameras: Vec::new(),
             hovered_jump: None,
             last_jump: None,

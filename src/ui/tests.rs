@@ -15,6 +15,7 @@ use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+mod drive;
 mod path;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);

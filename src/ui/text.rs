@@ -1,6 +1,7 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
 use segue::gait::GaitFacts;
+use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
 use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace};
@@ -158,6 +159,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("F", "frame everything"),
     ("G", "camera follows or stands"),
     ("B", "body, bones, both"),
+    ("W A S D, arrows", "drive the character of the Match lab; Shift runs, Q strafes"),
     ("Ctrl Z", "undo"),
     ("Ctrl Shift Z", "redo"),
     ("Ctrl C", "copy the link, when nothing else is selected"),
@@ -180,6 +182,13 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("stride_m", "stride m"),
     ("cadence_spm", "steps/min"),
     ("weight_percent", "B %"),
+    ("match_error", "off cm"),
+    ("match_skate", "skate cm"),
+    ("match_seams", "jumps/min"),
+    ("match_visited", "visited"),
+    ("match_tick_ms", "ms/tick"),
+    ("match_turn", "turn s"),
+    ("match_worst_error", "worst cm"),
     ("loop_seam_deg", "seam"),
     ("loop_seam_dps", "seam °/s"),
     ("apart_cm", "apart cm"),
@@ -684,6 +693,153 @@ pub(crate) fn followed(trace: &Trace) -> String {
 /// That a walk has an end.
 pub(crate) fn dead_end(secs: f64) -> String {
     format!("The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does.")
+}
+
+/// What the Match lab does.
+pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Ten times a second the frame of all clips that fits best is looked for.";
+/// The same over the stage.
+pub(crate) const MATCH_HINT: &str =
+    "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: where you ask it to go. Blue: where the frame that plays leads.";
+/// Over a pane whose character the user drives.
+pub(crate) const LIVE: &str = "Yours";
+/// The stick on the screen.
+pub(crate) const STICK: &str = "Stick: drive the character";
+/// Beside it.
+pub(crate) const RUN: &str = "Run";
+/// Likewise.
+pub(crate) const RUN_HELP: &str = "The stick runs instead of walking";
+/// A section.
+pub(crate) const WHY: &str = "Why this frame";
+/// Before there was a search.
+pub(crate) const NO_SEARCH: &str = "Nothing was searched yet.";
+/// How candidates are looked at.
+pub(crate) const GHOST_HELP: &str = "Point at a frame to see it as a ghost; press to keep it there.";
+/// A section.
+pub(crate) const WEIGHTS: &str = "What counts";
+/// A section.
+pub(crate) const HYSTERESIS: &str = "Hysteresis";
+/// A section.
+pub(crate) const SEARCHING: &str = "Search and tags";
+/// A section.
+pub(crate) const GOING_OVER: &str = "Transition and way";
+/// A section.
+pub(crate) const MATCH_CLIPS: &str = "Clips and characters";
+/// A button.
+pub(crate) const REPLAY: &str = "Play it again";
+/// What it does.
+pub(crate) const REPLAY_HELP: &str = "Plays the same input from the start, exactly; the link then holds it";
+/// A button.
+pub(crate) const START_OVER: &str = "Start over";
+/// What it does.
+pub(crate) const START_OVER_HELP: &str = "Back to the origin; nothing is remembered";
+/// A button.
+pub(crate) const DRIVE_YOURSELF: &str = "Drive yourself";
+/// While written input plays.
+pub(crate) const RECORDED: &str = "Recorded input: the same for everybody. Change what counts and see what becomes of it.";
+/// A button.
+pub(crate) const HYSTERESES: &str = "None beside bias and votes";
+/// What it opens.
+pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
+/// Of the clips.
+pub(crate) const MADE_SET: &str = "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
+/// A button.
+pub(crate) const USE_MADE_SET: &str = "Use the synthesiser's set";
+/// The strip's name.
+pub(crate) const CLIP_STRIP: &str = "All clips, and the frame that plays";
+/// Of the curves.
+pub(crate) const COST: &str = "cost";
+/// Likewise.
+pub(crate) const COST_GOING_ON: &str = "going on";
+/// Likewise.
+pub(crate) const COST_BEST: &str = "best frame";
+/// A mark on the timeline.
+pub(crate) const JUMP: &str = "Goes over to another frame";
+
+/// What a block of features is called below the bars.
+pub(crate) const fn block(block: Block) -> &'static str {
+    match block {
+        Block::TrajectoryPosition => "path ahead",
+        Block::TrajectoryDirection => "facing ahead",
+        Block::FootPosition => "feet, where",
+        Block::FootVelocity => "feet, how fast",
+        Block::HipVelocity => "hips, how fast",
+    }
+}
+
+/// A frame by its clip and time.
+pub(crate) fn frame_of_clip(name: &str, mirrored: bool, secs: f64) -> String {
+    let mirrored = if mirrored { ", mirrored" } else { "" };
+    format!("{name}{mirrored} · {secs:.2} s")
+}
+
+/// The frame that played when the search was made.
+pub(crate) fn going_on(place: &str) -> String {
+    format!("Going on: {place}")
+}
+
+/// How long was driven.
+pub(crate) fn driven_for(secs: f64) -> String {
+    let whole = secs.max(0.0) as u64;
+    format!("Recorded so far: {}:{:02}.", whole / 60, whole % 60)
+}
+
+/// What a way to hold on does.
+pub(crate) fn hysteresis(word: &str) -> &'static str {
+    match word {
+        "none" => "The best frame is taken, however little better it is: many jumps.",
+        "time" => "After a jump it stays for a while, whatever comes.",
+        "votes" => "Three searches in a row must want to go.",
+        _ => "Going on counts as better than it is.",
+    }
+}
+
+/// Whether a search led anywhere.
+fn held(held: Option<Held>) -> &'static str {
+    match held {
+        None => "went over to the best frame",
+        Some(Held::Same) => "stayed: it plays the best frame already",
+        Some(Held::Bias) => "stayed: not better by the bias",
+        Some(Held::MinimumTime) => "stayed: the last jump is too recent",
+        Some(Held::Votes) => "stayed: not three votes yet",
+        Some(Held::CurrentClip) => "stayed in its clip: the input is still",
+        Some(Held::Nothing) => "stayed: no frame has the tags that are asked for",
+    }
+}
+
+/// What a search came to, in a few words.
+pub(crate) fn outcome_of_search(search: &SearchRecord, is_live: bool) -> String {
+    let live = if is_live { "live · " } else { "" };
+    format!("{live}{}", held(search.held))
+}
+
+/// What a search came to, and what it took.
+pub(crate) fn searched(search: &SearchRecord, frames: usize) -> String {
+    let why = match search.reason {
+        Reason::Interval => "It was time to search",
+        Reason::ClipEnd => "The clip came to its end",
+        Reason::InputChange => "The input changed",
+    };
+    format!(
+        "{why}; {}. {} of {frames} frames were looked at.",
+        held(search.held),
+        search.visited
+    )
+}
+
+/// How large a database is.
+pub(crate) fn database(database: &Database) -> String {
+    let minutes = database.frames() as f64 / (60 * RATE) as f64;
+    format!(
+        "{} motions, {} frames ({minutes:.1} min), {} of them can be gone to.",
+        database.motions().len(),
+        database.frames(),
+        database.valid().len()
+    )
+}
+
+/// The name of a button.
+pub(crate) fn leave_clip_out(name: &str) -> String {
+    format!("Leave {name} out")
 }
 
 #[cfg(test)]

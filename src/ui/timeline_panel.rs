@@ -1,5 +1,6 @@
 //! The bottom panel: what happens in time.
 
+use super::drive::drive_panel_ui;
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track, Transport, TransportEvent};
 use super::lab_panel::value_in_words;
 use super::out::Out;
@@ -43,6 +44,9 @@ const CURVE_POINTS: usize = 900;
 pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let Some(outcome) = session.main_outcome() else { return };
+    if let Some(driven) = &outcome.driven {
+        return drive_panel_ui(session, outcome, driven, layout, out, ui);
+    }
     let clip = &outcome.motion.clip;
     let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));
     let unit = unit_of(quantity);

@@ -1,6 +1,7 @@
 //! The bar at the top: which lab, and what concerns the whole page.
 
 use super::cycle_panels::{compare_loops, compare_speeds};
+use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::out::{Action, Out};
@@ -145,6 +146,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "register" => return compare_warps(session, out),
         "path" => return compare_points(session, out),
         "graph" => return compare_windows(out),
+        "match" => return compare_hysteresis(session, out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,

@@ -86,6 +86,19 @@ onBothBackends("the graph lab walks by its seed, and the mistake spins", async (
   await until("the walk is longer than what is measured", async () => (await segue("time")) === 45);
 });
 
+// Fails when a scenario does not turn the character, when weights need a reload, and when what was driven is not in the link.
+onBothBackends("a character is driven through a scenario", async ({ open }) => {
+  const { segue } = await open("lab=match&scenario=spin&play=off", DESK);
+  await segue("set", {});
+  const [turn] = await panes(segue, "match_turn");
+  assert.ok(turn > 0.2 && turn < 2, `turned in ${turn} s`);
+  const before = await segue("pose", "result", 3);
+  await segue("set", { weight_feet: 3, weight_path: 0.2 });
+  assert.ok(apart(await segue("pose", "result", 3), before) > 0.01, "other weights, other frames");
+  const id = await segue("keep", "result");
+  assert.match(id, /^match\(scenario:spin,weight_path:0.2,weight_feet:3\)$/);
+});
+
 // Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
 onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);

@@ -2,12 +2,14 @@
 
 mod files;
 mod film;
+mod gamepad;
 mod pace;
 mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
+pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;

@@ -1,6 +1,7 @@
 //! The document itself: what it holds, and what commands do to it.
 
 mod company;
+mod driving;
 mod going_round;
 mod graphing;
 mod loading;
@@ -20,7 +21,7 @@ use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrar, Slot,
+    Blender, CycleFinder, CycleMade, DistanceMap, Driver, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrar, Slot,
     read_pins, read_weights,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
@@ -100,6 +101,8 @@ pub struct Session {
     company: Vec<Companion>,
     grapher: Grapher,
     feet: FeetHolder,
+    driver: Driver,
+    driving: driving::Driving,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -133,6 +136,8 @@ impl Session {
             company: Vec::new(),
             grapher: Grapher::default(),
             feet: FeetHolder::default(),
+            driver: Driver::default(),
+            driving: driving::Driving::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -235,7 +240,8 @@ impl Session {
     /// The playhead, seconds.
     #[must_use]
     pub fn now_secs(&self) -> f64 {
-        self.params.number(Key::Time).min(self.duration_secs())
+        self.driven_secs()
+            .unwrap_or_else(|| self.params.number(Key::Time).min(self.duration_secs()))
     }
 
     /// The part that plays.
@@ -259,7 +265,9 @@ impl Session {
     /// Lets time pass: moves the playhead while playing. Says whether anything moved.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut changed = self.notices.tick(dt_secs);
-        if self.params.is_on(Key::Play) {
+        if self.params.is_on(Key::Play) && self.drive_on(dt_secs * self.params.number(Key::Rate)) {
+            changed = true;
+        } else if self.params.is_on(Key::Play) && !self.is_own_drive() {
             let (span, before, rate) = (self.span(), self.now_secs(), self.params.number(Key::Rate));
             let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
             let rounds = span.rounds(before, dt_secs, rate);
@@ -288,6 +296,11 @@ impl Session {
     /// # Errors
     /// [`CommandError`] says what does not fit; the document is then as it was.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        if let Command::Steer(control) = command {
+            // Nothing that is shown depends on it until time passes.
+            self.steer(control);
+            return Ok(());
+        }
         let mut held = Some(self.held());
         match command {
             Command::Set(values) => self.set(values)?,
@@ -318,6 +331,10 @@ impl Session {
             Command::Reimport(id, options) => self.reimport(&id, &options)?,
             Command::Keep(pane) => self.keep(pane)?,
             Command::Company(change) => self.change_company(change)?,
+            Command::Steer(control) => self.steer(control),
+            Command::RestartDrive => self.restart_driving(),
+            Command::ReplayDrive => self.replay_driving()?,
+            Command::Seek(_) if self.is_driven() => {}
             Command::Seek(secs) => {
                 let to = if secs.is_finite() {
                     secs.clamp(0.0, self.duration_secs())
@@ -593,13 +610,14 @@ impl Session {
     fn keep(&mut self, pane: usize) -> Result<(), CommandError> {
         let nothing = CommandError::NotPossible("there is no result to keep");
         let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
-        let params = self.params_of(pane);
+        let params = self.with_recording(self.params_of(pane));
         let outcome = pane.outcome.clone().ok_or(nothing)?;
         if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
             return Err(CommandError::NotPossible(
                 "this walk goes like the one in the first pane: open it alone to keep it",
             ));
         }
+        let is_whole = !outcome.awaits_feet() && !self.is_driven();
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
             motion.map_or(1.0, |motion| motion.clip.fps())
@@ -613,7 +631,7 @@ impl Session {
         self.remember(None);
         let said = format!("{name} is in the library now: choose it as A or B.");
         self.library.put(Entry {
-            motion: (!outcome.awaits_feet()).then(|| Arc::clone(&outcome.motion)),
+            motion: is_whole.then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)
         });
         self.library_revision += 1;
@@ -625,8 +643,13 @@ impl Session {
         let Some(fps) = self.main_outcome().map(|outcome| outcome.motion.clip.fps()) else {
             return;
         };
-        let frame = (self.now_secs() * fps).round() + frames as f64;
         self.set_unchecked(Key::Play, Value::Switch(false));
+        if self.is_driven() {
+            // What was not yet asked for cannot be stepped back to.
+            self.drive_ticks(frames.clamp(0, 60) as usize);
+            return;
+        }
+        let frame = (self.now_secs() * fps).round() + frames as f64;
         let to = (frame / fps).clamp(0.0, self.duration_secs());
         self.set_unchecked(Key::Time, Value::Number(to));
     }
@@ -681,6 +704,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
     }
 }
 
+#[cfg(test)]
+mod driving_tests;
 #[cfg(test)]
 mod going_round_tests;
 #[cfg(test)]

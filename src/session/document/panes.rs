@@ -9,7 +9,8 @@ use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::{
-    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, Slot, SpeedInputs, ViewInputs,
+    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs,
+    ViewInputs,
 };
 use crate::session::recipe::{belongs_to, clips_of, made_id, make, preset_motion, recipe_name, recipe_params};
 use std::sync::Arc;
@@ -88,6 +89,7 @@ pub(super) enum Inputs {
     Register(RegisterInputs),
     Path(PathInputs),
     Graph(GraphInputs),
+    Match(ReplayInputs),
 }
 
 impl PartialEq for Inputs {
@@ -102,6 +104,7 @@ impl PartialEq for Inputs {
             (Self::Register(a), Self::Register(b)) => a == b,
             (Self::Path(a), Self::Path(b)) => a == b,
             (Self::Graph(a), Self::Graph(b)) => a == b,
+            (Self::Match(a), Self::Match(b)) => a == b,
             _ => false,
         }
     }
@@ -116,14 +119,14 @@ impl Session {
             }
             return true;
         }
-        if self.registrar.work() || self.feet.work() || self.paths.work() {
+        if self.registrar.work() || self.feet.work() || self.paths.work() || self.driver.work() {
             return true;
         }
         let now_secs = self.params.number(Key::Time);
         if self.grapher.work(now_secs) {
             return true;
         }
-        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.grapher.is_ready() {
+        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.grapher.is_ready() || self.driver.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -166,13 +169,24 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
+        let driving = self.driver.progress().map(|(name, progress)| Job {
+            task: None,
+            name: name.into(),
+            progress,
+            size: None,
+        });
         let graphing = self.grapher.progress().map(|progress| Job {
             task: None,
             name: "graphing".into(),
             progress,
             size: None,
         });
-        let computed = matching.into_iter().chain(registering).chain(graphing).chain(holding);
+        let computed = matching
+            .into_iter()
+            .chain(registering)
+            .chain(graphing)
+            .chain(holding)
+            .chain(driving);
         self.reading_jobs().chain(computed).collect()
     }
 
@@ -180,7 +194,7 @@ impl Session {
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
         match (self.params.text(Key::Lab), slot) {
-            ("make" | "graph", _) => false,
+            ("make" | "graph" | "match", _) => false,
             (_, Slot::A) => true,
             (lab, Slot::B) => !matches!(lab, "view" | "loop" | "path"),
         }
@@ -276,6 +290,7 @@ impl Session {
         self.registrar.ask_anew();
         self.paths.ask_anew();
         self.grapher.ask_anew();
+        self.driver.ask_anew();
         self.feet.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         self.grapher.guide_by(None);
@@ -283,12 +298,15 @@ impl Session {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
             let params = self.params_of(&pane);
-            self.refresh_pane(&mut pane, &params, match_window);
+            if !self.is_own_drive() {
+                self.refresh_pane(&mut pane, &params, match_window);
+            }
             if self.panes.is_empty() {
                 self.grapher.guide_by(Some(&params));
             }
             self.panes.push(pane);
         }
+        self.refresh_driving();
         self.refresh_company();
     }
 
@@ -322,6 +340,7 @@ impl Session {
                 let clips = self.graph_clips(params)?;
                 return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
             }
+            "match" => return self.match_inputs(params),
             "view" => {
                 let motion = self.motion_of(params.text(Key::A))?;
                 if params.is_on(Key::FootLock) {
@@ -368,6 +387,7 @@ impl Session {
                     Inputs::Register(register) => register.run(),
                     Inputs::Path(path) => path.run(),
                     Inputs::Graph(graph) => Ok(graph.run()),
+                    Inputs::Match(replay) => Ok(replay.run()),
                 };
                 match outcome {
                     Ok(outcome) => {

@@ -355,6 +355,7 @@ impl BlendInputs {
             registered: None,
             path: None,
             walk: None,
+            driven: None,
             metrics,
         })
     }

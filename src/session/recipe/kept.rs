@@ -25,6 +25,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "register" => group == Group::Register || key == Key::FootLock,
         "path" => group == Group::Path || key == Key::FootLock,
         "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed),
+        "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
 }
@@ -32,10 +33,11 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: &str) -> bool {
     match key {
-        Key::A => lab != "graph",
-        Key::B => !matches!(lab, "view" | "loop" | "path" | "graph"),
+        Key::A => !matches!(lab, "graph" | "match"),
+        Key::B => !matches!(lab, "view" | "loop" | "path" | "graph" | "match"),
         // Looked at or worked with, and not made from.
         Key::MaskColors | Key::PathGrid | Key::PinStart | Key::PinEnd | Key::Others => false,
+        Key::WalkSpeed | Key::RunSpeed | Key::Strafe | Key::ShownCandidates | Key::SearchBy | Key::Crowd => false,
         _ => belongs_to(key, lab),
     }
 }
@@ -116,12 +118,17 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
         "layers" => format!("{a} with {b}"),
         "path" => format!("{a} on a path"),
         "graph" => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
+        "match" => match params.text(Key::Scenario) {
+            "own" => "a drive".to_owned(),
+            _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
+        },
         _ => format!("{a} to {b}"),
     }
 }
 
 /// Several ids in one text: separated by commas.
-pub(in crate::session) fn write_ids(ids: &[String]) -> String {
+#[must_use]
+pub fn write_ids(ids: &[String]) -> String {
     let written = |id: &String| match recipe_params(id) {
         Some(_) => id.clone(),
         None => utf8_percent_encode(id, RESERVED).to_string(),

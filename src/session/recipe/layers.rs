@@ -297,6 +297,7 @@ impl LayerInputs {
             registered: None,
             path: None,
             walk: None,
+            driven: None,
             metrics,
         })
     }

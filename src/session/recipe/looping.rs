@@ -171,6 +171,7 @@ impl LoopInputs {
             registered: None,
             path: None,
             walk: None,
+            driven: None,
             metrics,
         })
     }

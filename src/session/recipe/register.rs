@@ -361,6 +361,7 @@ impl RegisterInputs {
             retargeted: pair.retargeted.clone(),
             layer: None,
             path: None,
+            driven: None,
             metrics,
         })
     }

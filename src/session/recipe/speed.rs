@@ -148,6 +148,7 @@ impl SpeedInputs {
             registered: None,
             path: None,
             walk: None,
+            driven: None,
             metrics,
         })
     }

@@ -1,0 +1,33 @@
+//! The Match lab: the hand that drives, what is set, why a frame was chosen, and all clips in a strip.
+
+mod hand;
+mod rows;
+mod strip;
+mod why;
+
+pub(crate) use hand::{DriveHand, Pad};
+pub(super) use hand::{steer, stick_on_stage_ui};
+pub(super) use rows::{compare_hysteresis, drive_ui};
+pub(super) use strip::drive_panel_ui;
+
+use super::theme::{Type, theme_of};
+use eframe::egui::{Color32, RichText, Ui};
+use segue::session::Session;
+use segue::session::{DriveMoment, Driven, Key};
+use std::sync::Arc;
+
+/// Whether the lab is open.
+pub(super) fn is_open(session: &Session) -> bool {
+    session.params().text(Key::Lab) == "match"
+}
+
+/// What the first pane shows now, where it was driven.
+fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
+    let driven = session.main_outcome()?.driven.as_ref()?;
+    Some((driven, driven.at(session.now_secs())?))
+}
+
+/// A sentence in small type.
+fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+}

@@ -1,0 +1,214 @@
+//! What is set in the Match lab.
+
+use super::note_ui;
+use super::why::why_ui;
+use crate::ui::kit::{self, Button, Icon};
+use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
+use crate::ui::out::Out;
+use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{RichText, Ui, vec2};
+use segue::matching::RATE;
+use segue::session::{Command, Key, Session, Value, write_ids};
+
+/// All rows of the lab.
+pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    kit::section_header_ui(&lab_label(session), ui);
+    note_ui(text::MATCH_ABOUT, palette.muted, ui);
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
+        note_ui(problem, palette.warning, ui);
+    }
+    ui.add_space(space::XS);
+    row(Key::Scenario, session, out, ui);
+    input_ui(session, out, ui);
+    if session.is_driven() {
+        row(Key::WalkSpeed, session, out, ui);
+        row(Key::RunSpeed, session, out, ui);
+        row(Key::Strafe, session, out, ui);
+    }
+    ui.add_space(space::S);
+    why_ui(session, state, out, ui);
+    ui.add_space(space::S);
+    heading_ui(text::WEIGHTS, ui);
+    for key in [
+        Key::WeightPath,
+        Key::WeightFacing,
+        Key::WeightFeet,
+        Key::WeightFootSpeed,
+        Key::WeightHipSpeed,
+    ] {
+        row(key, session, out, ui);
+    }
+    ui.add_space(space::S);
+    heading_ui(text::HYSTERESIS, ui);
+    hysteresis_ui(session, out, ui);
+    ui.add_space(space::S);
+    kit::folded_ui(text::SEARCHING, ui, |ui| {
+        for key in [
+            Key::SearchInterval,
+            Key::SearchBy,
+            Key::AheadNear,
+            Key::AheadMiddle,
+            Key::AheadFar,
+            Key::AskTag,
+            Key::ForbidTag,
+        ] {
+            if key == Key::SearchBy {
+                label_ui(key, ui);
+            }
+            row(key, session, out, ui);
+        }
+    });
+    kit::folded_ui(text::GOING_OVER, ui, |ui| going_over_ui(session, out, ui));
+    kit::folded_ui(text::MATCH_CLIPS, ui, |ui| clips_ui(session, out, ui));
+    ui.add_space(space::S);
+    if session.is_driven() {
+        keep_ui(state.saved_pane, out, ui);
+    } else {
+        save_result_ui(session, state, out, ui);
+    }
+}
+
+fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+    param_row_ui(key, &Detail::default(), session, out, ui);
+}
+
+fn heading_ui(words: &str, ui: &mut Ui) {
+    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Strong)));
+}
+
+fn label_ui(key: Key, ui: &mut Ui) {
+    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+}
+
+/// What is done with the input: from the start, again, or by hand.
+fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let muted = palette_of(ui).muted;
+    if session.is_driven() {
+        let secs = session.recording().ticks() as f64 / RATE as f64;
+        note_ui(&text::driven_for(secs), muted, ui);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+            let replay = Button::new(text::REPLAY).icon(Icon::Loop).hint(text::REPLAY_HELP);
+            if kit::button_ui(replay, ui).clicked() {
+                out.commands.push(Command::ReplayDrive);
+            }
+            if kit::button_ui(Button::new(text::START_OVER).hint(text::START_OVER_HELP), ui).clicked() {
+                out.commands.push(Command::RestartDrive);
+            }
+        });
+    } else if session.params().text(Key::Scenario) != "own" || !session.params().text(Key::Drive).is_empty() {
+        note_ui(text::RECORDED, muted, ui);
+        if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui).clicked() {
+            out.commands.push(Command::Set(vec![
+                (Key::Scenario, Value::Choice("own")),
+                (Key::Drive, Value::Text(String::new())),
+                (Key::Play, Value::Switch(true)),
+            ]));
+            out.commands.push(Command::Settle);
+        }
+    }
+}
+
+/// Whether one of several panes, or the only one, has this word.
+fn any(key: Key, word: &str, session: &Session) -> bool {
+    match session.compare().filter(|compare| compare.key == key) {
+        Some(compare) => compare.values.iter().any(|value| key.param().format(value) == word),
+        None => session.params().text(key) == word,
+    }
+}
+
+fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    row(Key::Hysteresis, session, out, ui);
+    note_ui(text::hysteresis(session.params().text(Key::Hysteresis)), palette_of(ui).muted, ui);
+    if any(Key::Hysteresis, "bias", session) {
+        row(Key::BiasShare, session, out, ui);
+        row(Key::BiasConstant, session, out, ui);
+    }
+    if any(Key::Hysteresis, "time", session) {
+        row(Key::MinimumTime, session, out, ui);
+    }
+    row(Key::PreferCurrent, session, out, ui);
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
+    let label = if on { text::COMPARE_OFF } else { text::HYSTERESES };
+    if kit::button_ui(Button::new(label).selected(on), ui).clicked() {
+        compare_hysteresis(session, out);
+    }
+}
+
+/// Ways to hold on side by side, or back to one pane.
+pub(in crate::ui) fn compare_hysteresis(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
+    let query = if on { "" } else { text::HYSTERESES_QUERY };
+    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+}
+
+fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    label_ui(Key::JumpMethod, ui);
+    row(Key::JumpMethod, session, out, ui);
+    if any(Key::JumpMethod, "inertialize", session) {
+        row(Key::JumpHalfLife, session, out, ui);
+    }
+    if any(Key::JumpMethod, "dead", session) {
+        row(Key::BlendTime, session, out, ui);
+        row(Key::ExtrapolationHalfLife, session, out, ui);
+    }
+    row(Key::VelocityHalfLife, session, out, ui);
+    row(Key::FacingHalfLife, session, out, ui);
+    row(Key::Adjust, session, out, ui);
+    if session.params().is_on(Key::Adjust) {
+        for key in [Key::AdjustHalfLife, Key::AdjustShare, Key::ClampDistance, Key::ClampTurn] {
+            row(key, session, out, ui);
+        }
+    }
+    row(Key::PlantFeet, session, out, ui);
+}
+
+/// The clips that frames are chosen from, and how many characters choose.
+fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let ids = session.match_clip_ids();
+    if ids.is_empty() {
+        note_ui(text::MADE_SET, palette.muted, ui);
+    }
+    let set = |ids: &[String], out: &mut Out| out.set_once(Key::MatchClips, Value::Text(write_ids(ids)));
+    for (index, id) in ids.iter().enumerate() {
+        ui.push_id(("clip", index), |ui| {
+            ui.horizontal(|ui| {
+                let name = session.library().find(id).map_or(id.as_str(), |entry| entry.name.as_str());
+                if kit::icon_button_ui(Icon::Close, &text::leave_clip_out(name), ui).clicked() {
+                    let mut rest = ids.clone();
+                    rest.remove(index);
+                    set(&rest, out);
+                }
+                ui.label(RichText::new(name).font(theme.font(Type::Body)));
+            });
+        });
+    }
+    let entries = session.library().entries();
+    let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
+    let options: Vec<(usize, &str)> = std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
+    let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
+    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
+        let mut more = ids.clone();
+        more.push(entry.id.clone());
+        set(&more, out);
+    }
+    if !ids.is_empty() && kit::button_ui(Button::new(text::USE_MADE_SET), ui).clicked() {
+        set(&[], out);
+    }
+    if let Some((driven, _)) = super::shown(session) {
+        let skipped = driven.database.skipped();
+        note_ui(&text::database(&driven.database), palette.muted, ui);
+        for error in skipped.iter().take(3) {
+            note_ui(&text::sentence(&error.to_string()), palette.warning, ui);
+        }
+    }
+    row(Key::Mirrored, session, out, ui);
+    if session.is_driven() {
+        row(Key::Crowd, session, out, ui);
+    }
+}

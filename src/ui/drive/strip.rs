@@ -1,0 +1,218 @@
+//! Below the stage: the clips with the place that plays jumping on them, and the costs over time.
+
+use super::shown;
+use crate::ui::kit::{self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent, Transport, TransportEvent};
+use crate::ui::out::Out;
+use crate::ui::state::Layout;
+use crate::ui::text;
+use crate::ui::theme::{Palette, palette_of, space, theme_of};
+use eframe::egui::{Color32, Ui};
+use segue::matching::{Database, Place, RATE, Tag};
+use segue::session::{Command, Driven, Key, Outcome, Session, Value};
+
+/// A jump is seen for so long, seconds.
+const JUMP_SECS: f64 = 0.8;
+/// More jumps than these are no marks any more.
+const MOST_MARKS: usize = 160;
+/// Clips in the strip, at most: more would have no width.
+const MOST_BARS: usize = 300;
+
+/// The whole panel.
+pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driven, layout: Layout, out: &mut Out, ui: &mut Ui) {
+    let params = session.params();
+    let now = session.now_secs();
+    let frames = if driven.is_live {
+        session.recording().ticks()
+    } else {
+        driven.moments.len()
+    };
+    let caption = caption(session, driven);
+    let transport = Transport {
+        playing: params.is_on(Key::Play),
+        repeat: params.is_on(Key::Loop),
+        speed: params.number(Key::Rate),
+        now: if driven.is_live { frames as f64 / RATE as f64 } else { now },
+        frame: if driven.is_live {
+            frames
+        } else {
+            (now * RATE as f64).round() as usize
+        },
+        frames,
+        caption: if layout == Layout::Phone { "" } else { &caption },
+    };
+    match kit::transport_ui(&transport, ui) {
+        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
+        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
+        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
+        None => {}
+    }
+    let scale = theme_of(ui).scale();
+    let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
+    // The curves below it need room, too.
+    let most = if layout == Layout::Phone { 1.0 } else { 0.4 } * ui.available_height();
+    let height = ((rows * 20.0 + 16.0) * scale).min(most);
+    strip_ui(driven, now, height, ui);
+    if layout != Layout::Phone {
+        ui.add_space(space::XS);
+        time_ui(session, outcome, driven, out, ui);
+    }
+}
+
+/// What the last search came to, in a few words.
+fn caption(session: &Session, driven: &Driven) -> String {
+    let search = shown(session).and_then(|(_, moment)| moment.search.as_ref());
+    search.map_or_else(String::new, |search| text::outcome_of_search(search, driven.is_live))
+}
+
+/// The costs of going on and of the best frame; a mark where it jumped.
+fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let (mut current, mut best, mut last) = (Vec::new(), Vec::new(), None);
+    for (frame, moment) in driven.moments.iter().enumerate() {
+        let Some(search) = moment.search.as_ref().filter(|search| last != Some(search.tick)) else {
+            continue;
+        };
+        last = Some(search.tick);
+        let secs = frame as f64 / RATE as f64;
+        current.push([secs, f64::from(search.current.cost)]);
+        if let Some(winner) = &search.winner {
+            best.push([secs, f64::from(winner.cost)]);
+        }
+    }
+    let series = [
+        Series {
+            name: text::COST_GOING_ON,
+            color: palette.muted,
+            ink: palette.muted,
+            strong: false,
+            points: &current,
+        },
+        Series {
+            name: text::COST_BEST,
+            color: palette.b,
+            ink: palette.b_ink,
+            strong: true,
+            points: &best,
+        },
+    ];
+    let mut jumps: Vec<Moment<'_>> = driven
+        .jumps_secs()
+        .map(|time| Moment {
+            time,
+            color: palette.accent,
+            name: text::JUMP,
+        })
+        .collect();
+    if jumps.len() > MOST_MARKS {
+        jumps.clear();
+    }
+    let timeline = Timeline {
+        duration: if driven.is_live {
+            outcome.duration_secs()
+        } else {
+            session.duration_secs()
+        },
+        now: session.now_secs(),
+        fps: RATE as f64,
+        in_point: session.params().optional(Key::In).filter(|_| !driven.is_live),
+        out_point: session.params().optional(Key::Out).filter(|_| !driven.is_live),
+        moments: &jumps,
+        curves: Some(Curves {
+            title: text::COST,
+            unit: "",
+            decimals: 2,
+            include: Some(0.0),
+            series: &series,
+        }),
+        ..Timeline::default()
+    };
+    for event in kit::timeline_ui(&timeline, ui) {
+        match event {
+            _ if driven.is_live => {}
+            TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+            TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
+            TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
+            TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
+            TimelineEvent::EditEnded => out.commands.push(Command::Settle),
+            _ => {}
+        }
+    }
+}
+
+/// The colour of a tag.
+fn tag_color(tag: Tag, palette: &Palette) -> Option<Color32> {
+    match tag {
+        Tag::Walk => Some(palette.b),
+        Tag::Run => Some(palette.a),
+        Tag::Idle => Some(palette.line_strong),
+        Tag::Turn => Some(palette.others[1]),
+        Tag::Exclude => Some(palette.bad),
+        Tag::Own(_) => None,
+    }
+}
+
+fn strip_ui(driven: &Driven, now_secs: f64, height: f32, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let database = &driven.database;
+    let mirrored = database.options().mirrored;
+    let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
+    let bars: Vec<PlaceBar<'_>> = originals
+        .take(MOST_BARS)
+        .map(|motion| PlaceBar {
+            name: motion.clip().name(),
+            frames: motion.frames(),
+            stretches: (motion.tags().iter())
+                .filter_map(|range| Some((range.frames.clone(), tag_color(range.tag, palette)?)))
+                .collect(),
+        })
+        .collect();
+    let at = |place: Place| strip_place(database, place);
+    let frame = (now_secs * RATE as f64).round().max(0.0) as usize;
+    let moment = driven.at(now_secs);
+    let reach = (JUMP_SECS * RATE as f64) as usize;
+    let moments = driven
+        .moments
+        .get(frame.saturating_sub(reach)..(frame + 1).min(driven.moments.len()));
+    let mut jumps = Vec::new();
+    for (index, moment) in moments.unwrap_or(&[]).iter().rev().enumerate() {
+        if let (true, Some(search)) = (moment.jumped, &moment.search)
+            && let (Some(from), Some(to)) = (at(search.current.place), search.winner.and_then(|winner| at(winner.place)))
+        {
+            jumps.push((from, to, 1.0 - index as f32 / reach as f32));
+        }
+    }
+    let marks: Vec<StripPlace> = moment
+        .and_then(|moment| moment.search.as_ref())
+        .map(|search| search.candidates.iter().filter_map(|candidate| at(candidate.place)).collect())
+        .unwrap_or_default();
+    let legend: Vec<(&str, Color32)> = [Tag::Idle, Tag::Walk, Tag::Run, Tag::Turn]
+        .into_iter()
+        .filter_map(|tag| Some((tag.name(), tag_color(tag, palette)?)))
+        .collect();
+    let places = Places {
+        label: text::CLIP_STRIP,
+        bars: &bars,
+        rows: if mirrored { 2 } else { 1 },
+        now: moment.and_then(|moment| at(moment.place)),
+        jumps: &jumps,
+        marks: &marks,
+        legend: &legend,
+    };
+    kit::places_ui(&places, height, ui);
+}
+
+/// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of a motion is the number of its clip.
+fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
+    let motion = database.motion(place.motion)?;
+    let bar = if database.options().mirrored {
+        place.motion / 2
+    } else {
+        place.motion
+    };
+    (bar < MOST_BARS).then_some(StripPlace {
+        bar,
+        row: usize::from(motion.is_mirrored()),
+        frame: place.frame,
+    })
+}

@@ -1,0 +1,74 @@
+//! Why this frame: what the last search found, with its cost by feature block.
+
+use super::{note_ui, shown};
+use crate::ui::kit::{self, CostBars, CostRow};
+use crate::ui::out::Out;
+use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
+use eframe::egui::{Color32, RichText, Ui};
+use segue::matching::{Block, Candidate, Database};
+use segue::session::{Key, Session};
+
+/// The colours of the blocks, in their order.
+pub(super) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
+    [palette.a, palette.warning, palette.others[0], palette.others[1], palette.others[2]]
+}
+
+/// A frame in words: its clip and its time.
+pub(super) fn place_name(database: &Database, candidate: &Candidate) -> String {
+    let place = candidate.place;
+    let Some(motion) = database.motion(place.motion) else {
+        return String::new();
+    };
+    text::frame_of_clip(motion.clip().name(), motion.is_mirrored(), motion.clip().time_of(place.frame))
+}
+
+/// The rows.
+pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    state.drive.hovered = None;
+    let palette = palette_of(ui);
+    ui.label(RichText::new(text::WHY).font(theme_of(ui).font(Type::Strong)));
+    let search = shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
+    let Some((driven, search)) = search else {
+        note_ui(text::NO_SEARCH, palette.muted, ui);
+        return;
+    };
+    let database = &driven.database;
+    let row = |name: String, candidate: &Candidate, strong: bool, shown: bool| CostRow {
+        name,
+        parts: candidate.split.to_vec(),
+        strong,
+        shown,
+    };
+    let current = row(text::going_on(&place_name(database, &search.current)), &search.current, true, false);
+    let found = search.candidates.iter().enumerate().map(|(index, candidate)| {
+        row(
+            place_name(database, candidate),
+            candidate,
+            index == 0 && search.held.is_none(),
+            state.drive.chosen == Some(index),
+        )
+    });
+    let rows: Vec<CostRow> = std::iter::once(current).chain(found).collect();
+    let colors = block_colors(palette);
+    let parts: Vec<(&str, Color32)> = Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
+    let response = kit::cost_bars_ui(
+        &CostBars {
+            rows: &rows,
+            parts: &parts,
+        },
+        ui,
+    );
+    // The first row is what was left: it has no ghost.
+    state.drive.hovered = response.hovered.and_then(|row| row.checked_sub(1));
+    if let Some(clicked) = response.clicked {
+        let clicked = clicked.checked_sub(1);
+        state.drive.chosen = clicked.filter(|index| state.drive.chosen != Some(*index));
+    }
+    ui.add_space(space::XS);
+    note_ui(&text::searched(search, database.valid().len()), palette.muted, ui);
+    note_ui(text::GHOST_HELP, palette.muted, ui);
+    param_row_ui(Key::ShownCandidates, &Detail::default(), session, out, ui);
+}
