@@ -210,11 +210,9 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
             ui.vertical_centered(|ui| ui.label(egui::RichText::new(problem).font(theme.font(Type::Body)).color(palette.warning)));
         });
     } else if pane.outcome.is_none() {
-        let galley = kit::paint::line_of(
-            &[kit::paint::Run::new(text::EMPTY_PANE, Type::Body, palette.muted)],
-            rect.width(),
-            ui,
-        );
+        let jobs = session.jobs();
+        let words = jobs.first().map_or(text::EMPTY_PANE.to_owned(), text::under_way);
+        let galley = kit::paint::line_of(&[kit::paint::Run::new(&words, Type::Body, palette.muted)], rect.width(), ui);
         kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
     let Some(outcome) = pane.outcome.as_deref() else {

@@ -4,7 +4,7 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Built, Cast, Entry, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace};
+use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -81,6 +81,11 @@ pub(crate) const ROUGHEST: &str = "roughest";
 pub(crate) const WELCOME_HINT: &str =
     "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
+
+/// What is being worked on, and how much of it is done.
+pub(crate) fn under_way(job: &Job) -> String {
+    format!("{} {:.0} %", sentence(&job.name).trim_end_matches('.'), 100.0 * job.progress)
+}
 pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";
 

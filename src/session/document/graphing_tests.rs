@@ -42,6 +42,18 @@ fn way(walk: &Walk) -> Vec<(usize, usize)> {
 }
 
 #[test]
+fn the_result_of_another_lab_does_not_stand_in_for_a_walk() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(SMALL.into())).unwrap();
+    assert!(session.panes()[0].outcome.is_none());
+    while session.work() {}
+    let first = walk(&session).clone();
+    // A walk stays until there is a newer one.
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(12.0))])).unwrap();
+    assert!(Arc::ptr_eq(walk(&session), &first));
+}
+
+#[test]
 fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
     let session = opened("lab=graph");
     let walk = walk(&session);

@@ -25,6 +25,8 @@ pub struct Pane {
     /// Why there is no newer one: what is missing and what to do.
     pub problem: Option<String>,
     pub(super) inputs: Option<Inputs>,
+    /// The lab that the result is of.
+    lab: Option<Value>,
     /// Where a result that goes round has got to: it lies there in the world that is shown.
     pub(super) place: Planar,
     /// A gait that has not yet the speed of the result.
@@ -365,8 +367,14 @@ impl Session {
 
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
         match self.inputs(params, match_window) {
-            // The last good result stays until there is a newer one.
-            Ok(None) => pane.problem = None,
+            Ok(None) => {
+                pane.problem = None;
+                // The last good result stays until there is a newer one, but for that of another lab.
+                if pane.lab.as_ref() != Some(params.get(Key::Lab)) {
+                    pane.outcome = None;
+                    pane.inputs = None;
+                }
+            }
             Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
             Ok(Some(inputs)) => {
                 let outcome = match &inputs {
@@ -384,6 +392,7 @@ impl Session {
                 match outcome {
                     Ok(outcome) => {
                         pane.outcome = Some(Arc::new(outcome));
+                        pane.lab = Some(params.get(Key::Lab).clone());
                         pane.problem = None;
                         pane.inputs = Some(inputs);
                     }
