@@ -30,6 +30,10 @@ use std::time::Duration;
 
 /// How much of a frame may go into work that is left over, milliseconds.
 const WORK_MS: f64 = 5.0;
+/// Where frames take long, as without a graphics card, work may take this share of them, up to so many milliseconds: it would hardly go on otherwise.
+const WORK_SHARE: f64 = 0.25;
+/// See [`WORK_SHARE`].
+const MOST_WORK_MS: f64 = 60.0;
 /// Time that the playhead skips over when a frame took longer than that, seconds: a page that was in the background does not leap on.
 const LONGEST_STEP_SECS: f64 = 0.25;
 
@@ -115,6 +119,8 @@ struct Told {
 #[derive(Debug)]
 struct Clock {
     ticked: f64,
+    /// When a frame last left work over; none where the last one did not.
+    left_work: Option<f64>,
     frame_began: f64,
     /// How long the input, the panels and the scene of the last frame took.
     frame_took: f64,
@@ -167,6 +173,7 @@ impl Segue {
             told: Told::default(),
             clock: Clock {
                 ticked: now_ms,
+                left_work: None,
                 frame_took: 0.0,
                 frame_began: now_ms,
             },
@@ -243,12 +250,15 @@ impl Segue {
             return true;
         }
         self.send_requests();
+        let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
+        let most_ms = (WORK_SHARE * passed_ms).clamp(WORK_MS, MOST_WORK_MS);
         let mut more = true;
-        while more && platform::now_ms() - now_ms < WORK_MS {
+        while more && platform::now_ms() - now_ms < most_ms {
             let began_ms = platform::now_ms();
             more = self.session.work();
             self.session.work_took((platform::now_ms() - began_ms) / 1e3);
         }
+        self.clock.left_work = more.then_some(now_ms);
         // A piece of work may have found out that it needs something.
         self.send_requests();
         more
