@@ -115,6 +115,8 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
   await ready();
   await segue("set", {});
+  // A storage that is slow comes after the first frame.
+  await until("the library is back", async () => (await segue("clips")).length === library.length);
   assert.deepEqual(await segue("clips"), library);
   assert.deepEqual(await segue("params"), params);
   await until("the result is back", () => segue("pose", "result", 0.4).then(() => true, () => false));
