@@ -46,6 +46,19 @@ fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::Mo
     }
 }
 
+/// The colours of the dark theme, or of the light one.
+fn colors(theme: usize) -> Colors {
+    Colors {
+        a: rgb(A[theme]),
+        b: rgb(B[theme]),
+        result: rgb(RESULT[theme]),
+        bad: rgb(0xff_7a_6b),
+        warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
+        others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
+        ghost_alpha: 0.4,
+    }
+}
+
 #[test]
 fn every_shader_is_valid() {
     for (name, source) in [
@@ -228,15 +241,6 @@ fn three_panes_in_both_themes_and_on_a_phone() {
 #[test]
 fn the_chosen_joint_is_marked_over_the_body() {
     let Some(mut gpu) = gpu() else { return };
-    let colors = |theme: usize| Colors {
-        a: rgb(A[theme]),
-        b: rgb(B[theme]),
-        result: rgb(RESULT[theme]),
-        bad: rgb(0xff_7a_6b),
-        warning: rgb(0xf0_c0_5a),
-        others: [rgb(0x5f_a8_f5); 4],
-        ghost_alpha: 0.4,
-    };
     let size = [700, 600];
     let shown = [(
         0,
@@ -270,15 +274,7 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 620];
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
-        let colors = Colors {
-            a: rgb(A[theme]),
-            b: rgb(B[theme]),
-            result: rgb(RESULT[theme]),
-            bad: rgb(0xff_7a_6b),
-            warning: rgb(0xf0_c0_5a),
-            others: [rgb(0x5f_a8_f5); 4],
-            ghost_alpha: 0.4,
-        };
+        let colors = colors(theme);
         let mut blue = Vec::new();
         for (name, link) in [
             ("layers", "lab=layers&t=1.2&compare=mask:upper,arms,head,legs"),
@@ -313,13 +309,8 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
     let Some(mut gpu) = gpu() else { return };
     let (size, look) = ([1400, 560], Look::DARK);
     let colors = Colors {
-        a: rgb(0xf2_a3_5e),
-        b: rgb(0x5f_a8_f5),
-        result: rgb(0x58_d6_a9),
-        bad: rgb(0xff_7a_6b),
-        warning: rgb(0xf0_c0_5a),
-        others: [rgb(0x5f_a8_f5); 4],
         ghost_alpha: 0.42,
+        ..colors(0)
     };
     for (name, link, pair) in [
         ("registered", "lab=register&t=1.1&compare=warp_with:registered,plain", None),
@@ -856,15 +847,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
     let size = [1000, 640];
     let camera = "follow=off&camera_pitch=34&camera_distance=11&pan_z=2.5";
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
-        let colors = Colors {
-            a: rgb(A[theme]),
-            b: rgb(B[theme]),
-            result: rgb(RESULT[theme]),
-            bad: rgb(0xff_7a_6b),
-            warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
-            others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
-            ghost_alpha: 0.4,
-        };
+        let colors = colors(theme);
         for (name, link) in [
             ("path-fitted", "lab=path&a=walk_left&t=1.5"),
             ("path-edited", "lab=path&a=walk&t=2&others=run,walk_left"),
@@ -909,15 +892,7 @@ fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1000, 640];
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
-        let colors = Colors {
-            a: rgb(A[theme]),
-            b: rgb(B[theme]),
-            result: rgb(RESULT[theme]),
-            bad: rgb(0xff_7a_6b),
-            warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
-            others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
-            ghost_alpha: 0.4,
-        };
+        let colors = colors(theme);
         for (name, link, bodies) in [
             ("drive-spin", "lab=match&scenario=spin&play=off&t=2.3", 2),
             ("drive-crowd", "lab=match&crowd=40&camera_distance=12&camera_pitch=20", 41),

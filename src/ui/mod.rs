@@ -27,6 +27,7 @@ mod text;
 pub(crate) mod theme;
 mod timeline_panel;
 mod top_bar;
+mod transport_row;
 
 pub(crate) use drive::Pad;
 pub(crate) use out::{Action, Out};

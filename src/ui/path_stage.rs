@@ -44,108 +44,121 @@ pub(super) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Res
         let response = ui.interact(hit, id, Sense::click_and_drag());
         let chosen = state.path.chosen == Some(index);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, text::control_point(index, shown, point)));
-        handle_input(index, pane, point, &view, path, &response, session, state, out, ui);
+        let handle = Handle {
+            index,
+            pane,
+            point,
+            view: &view,
+            path,
+            response: &response,
+        };
+        handle.input(session, state, out, ui);
     }
     if state.path.held.is_none() && state.path.hovered.is_none() {
         place_input(spline, &view, stage, session, state, out, ui);
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "a widget, what it shows, and who is asked")]
-fn handle_input(
+/// A control point on the page.
+struct Handle<'a> {
     index: usize,
     pane: usize,
     point: DVec2,
-    view: &View<'_>,
-    path: &OnPath,
-    response: &Response,
-    session: &Session,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &Ui,
-) {
-    let hand = &mut state.path;
-    if response.hovered() || response.dragged() {
-        hand.hovered = Some(index);
-        let icon = if response.dragged() {
-            CursorIcon::Grabbing
-        } else {
-            CursorIcon::Grab
-        };
-        ui.ctx().set_cursor_icon(icon);
-    }
-    if response.clicked() || response.drag_started() {
-        hand.chosen = Some(index);
-        response.request_focus();
-    }
-    if response.drag_started() {
-        let pressed = ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
-        hand.held = Some(Held {
-            index,
-            pane,
-            start: path.road.spline().clone(),
-            grip: pressed.map_or(DVec2::ZERO, |pressed| point - pressed),
-        });
-    }
-    let held = hand.held.clone().filter(|held| held.index == index && held.pane == pane);
-    if let Some(held) = held {
-        let to = response.interact_pointer_pos().and_then(|pos| view.on_ground(pos));
-        if let Some(to) = to.filter(|_| response.dragged() && response.drag_delta() != Vec2::ZERO) {
-            let to = snapped(to + held.grip, session);
-            hand.edit(&held.start, &PathEdit::Move { index, to }, session, out);
-        }
-        if response.drag_stopped() {
-            hand.held = None;
-            out.commands.push(Command::Settle);
-        }
-    }
-    if response.has_focus() {
-        hand.chosen = Some(index);
-        keys(index, point, view, path, response, session, state, out, ui);
-    }
+    view: &'a View<'a>,
+    path: &'a OnPath,
+    response: &'a Response,
 }
 
-/// Arrows move the point as it is seen, Delete takes it away.
-#[expect(clippy::too_many_arguments, reason = "a widget, what it shows, and who is asked")]
-fn keys(
-    index: usize,
-    point: DVec2,
-    view: &View<'_>,
-    path: &OnPath,
-    response: &Response,
-    session: &Session,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &Ui,
-) {
-    let filter = EventFilter {
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        ..EventFilter::default()
-    };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-    let pressed = |modifiers: Modifiers, key: Keyboard| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
-    let moved = |modifiers: Modifiers| {
-        let across = pressed(modifiers, Keyboard::ArrowRight) - pressed(modifiers, Keyboard::ArrowLeft);
-        let ahead = pressed(modifiers, Keyboard::ArrowUp) - pressed(modifiers, Keyboard::ArrowDown);
-        DVec2::new(across, ahead)
-    };
-    let steps = moved(Modifiers::SHIFT) * 5.0 + moved(Modifiers::NONE);
-    if steps != DVec2::ZERO {
-        let grid = session.params().number(Key::PathGrid);
-        let step = if grid > 0.0 { grid } else { KEY_STEP_M };
-        // On the axis of the ground that is nearest to where it is seen to go, so that a key and its opposite undo each other.
-        let quarter = std::f64::consts::FRAC_PI_2;
-        let yaw = (f64::from(view.camera.yaw) / quarter).round() * quarter;
-        let (sin, cos) = yaw.sin_cos();
-        let by = DVec2::new(cos, -sin) * steps.x - DVec2::new(sin, cos) * steps.y;
-        let to = snapped(point + by * step, session);
-        let spline = path.road.spline();
-        state.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
+impl Handle<'_> {
+    fn input(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
+        let Self {
+            index,
+            pane,
+            point,
+            view,
+            path,
+            response,
+        } = *self;
+        let hand = &mut state.path;
+        if response.hovered() || response.dragged() {
+            hand.hovered = Some(index);
+            let icon = if response.dragged() {
+                CursorIcon::Grabbing
+            } else {
+                CursorIcon::Grab
+            };
+            ui.ctx().set_cursor_icon(icon);
+        }
+        if response.clicked() || response.drag_started() {
+            hand.chosen = Some(index);
+            response.request_focus();
+        }
+        if response.drag_started() {
+            let pressed = ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
+            hand.held = Some(Held {
+                index,
+                pane,
+                start: path.road.spline().clone(),
+                grip: pressed.map_or(DVec2::ZERO, |pressed| point - pressed),
+            });
+        }
+        let held = hand.held.clone().filter(|held| held.index == index && held.pane == pane);
+        if let Some(held) = held {
+            let to = response.interact_pointer_pos().and_then(|pos| view.on_ground(pos));
+            if let Some(to) = to.filter(|_| response.dragged() && response.drag_delta() != Vec2::ZERO) {
+                let to = snapped(to + held.grip, session);
+                hand.edit(&held.start, &PathEdit::Move { index, to }, session, out);
+            }
+            if response.drag_stopped() {
+                hand.held = None;
+                out.commands.push(Command::Settle);
+            }
+        }
+        if response.has_focus() {
+            hand.chosen = Some(index);
+            self.keys(session, state, out, ui);
+        }
     }
-    if pressed(Modifiers::NONE, Keyboard::Delete) + pressed(Modifiers::NONE, Keyboard::Backspace) > 0.0 {
-        state.path.chosen = Some(index);
-        state.path.remove_point(path, session, out);
+
+    /// Arrows move the point as it is seen, Delete takes it away.
+    fn keys(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
+        let Self {
+            index,
+            point,
+            view,
+            path,
+            response,
+            ..
+        } = *self;
+        let filter = EventFilter {
+            horizontal_arrows: true,
+            vertical_arrows: true,
+            ..EventFilter::default()
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let pressed = |modifiers: Modifiers, key: Keyboard| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
+        let moved = |modifiers: Modifiers| {
+            let across = pressed(modifiers, Keyboard::ArrowRight) - pressed(modifiers, Keyboard::ArrowLeft);
+            let ahead = pressed(modifiers, Keyboard::ArrowUp) - pressed(modifiers, Keyboard::ArrowDown);
+            DVec2::new(across, ahead)
+        };
+        let steps = moved(Modifiers::SHIFT) * 5.0 + moved(Modifiers::NONE);
+        if steps != DVec2::ZERO {
+            let grid = session.params().number(Key::PathGrid);
+            let step = if grid > 0.0 { grid } else { KEY_STEP_M };
+            // On the axis of the ground that is nearest to where it is seen to go, so that a key and its opposite undo each other.
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let yaw = (f64::from(view.camera.yaw) / quarter).round() * quarter;
+            let (sin, cos) = yaw.sin_cos();
+            let by = DVec2::new(cos, -sin) * steps.x - DVec2::new(sin, cos) * steps.y;
+            let to = snapped(point + by * step, session);
+            let spline = path.road.spline();
+            state.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
+        }
+        if pressed(Modifiers::NONE, Keyboard::Delete) + pressed(Modifiers::NONE, Keyboard::Backspace) > 0.0 {
+            state.path.chosen = Some(index);
+            state.path.remove_point(path, session, out);
+        }
     }
 }
 

@@ -123,6 +123,22 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     harness
 }
 
+/// One frame with these events.
+fn step(events: Vec<egui::Event>, harness: &mut Harness<'_, Page>) {
+    harness.input_mut().events.extend(events);
+    harness.step();
+}
+
+/// A press or a release of the first button.
+fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
+    egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    }
+}
+
 /// Brings something into sight and presses it.
 fn press(label: &str, harness: &mut Harness<'_, Page>) {
     harness.get_by_label(label).scroll_to_me();
@@ -546,14 +562,10 @@ fn a_weight_over_time_is_drawn_by_hand() {
     harness.hover_at(at(0.5, 0.8));
     harness.run();
     // Both clicks in one frame: frames of tests are too long for a double click.
-    for pressed in [true, false, true, false] {
-        harness.input_mut().events.push(egui::Event::PointerButton {
-            pos: at(0.5, 0.8),
-            button: egui::PointerButton::Primary,
-            pressed,
-            modifiers: egui::Modifiers::NONE,
-        });
-    }
+    step(
+        [true, false, true, false].map(|pressed| button(at(0.5, 0.8), pressed)).to_vec(),
+        &mut harness,
+    );
     harness.run();
     assert_eq!(keys(&harness).len(), 3, "{:?}", keys(&harness));
     harness.drag_at(at(0.5, 0.8));

@@ -1,12 +1,13 @@
 //! The bottom panel: what happens in time.
 
 use super::drive::drive_panel_ui;
-use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track, Transport, TransportEvent};
+use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
 use super::lab_panel::value_in_words;
 use super::out::Out;
 use super::state::Layout;
 use super::text;
 use super::theme::palette_of;
+use super::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, RectAlign, Ui};
 use segue::clip::joint_curve;
 use segue::session::{
@@ -51,25 +52,14 @@ pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut C
     let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));
     let unit = unit_of(quantity);
     let caption = format!("{joint} · {} {unit}", label_of(quantity));
-    let transport = Transport {
-        playing: params.is_on(Key::Play),
-        repeat: params.is_on(Key::Loop),
-        speed: params.number(Key::Rate),
-        now: session.now_secs(),
+    let playhead = Playhead {
+        secs: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
         frames: clip.frames(),
-        caption: if layout == Layout::Phone { "" } else { &caption },
     };
-    let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
+    let row = transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
-        curve_menu_ui(outcome, &row.response, out, ui);
-    }
-    match row.inner {
-        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
-        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
-        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
-        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
-        None => {}
+        curve_menu_ui(outcome, &row, out, ui);
     }
 
     let panes = named_outcomes(session);

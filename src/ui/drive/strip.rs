@@ -1,11 +1,12 @@
 //! Below the stage: the clips with the place that plays jumping on them, and the costs over time.
 
 use super::shown;
-use crate::ui::kit::{self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent, Transport, TransportEvent};
+use crate::ui::kit::{self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent};
 use crate::ui::out::Out;
 use crate::ui::state::Layout;
 use crate::ui::text;
 use crate::ui::theme::{Palette, palette_of, space, theme_of};
+use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, Ui};
 use segue::matching::{Database, Place, RATE, Tag};
 use segue::session::{Command, Driven, Key, Outcome, Session, Value};
@@ -19,7 +20,6 @@ const MOST_BARS: usize = 300;
 
 /// The whole panel.
 pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driven, layout: Layout, out: &mut Out, ui: &mut Ui) {
-    let params = session.params();
     let now = session.now_secs();
     let frames = if driven.is_live {
         session.recording().ticks()
@@ -27,26 +27,20 @@ pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driv
         driven.moments.len()
     };
     let caption = caption(session, driven);
-    let transport = Transport {
-        playing: params.is_on(Key::Play),
-        repeat: params.is_on(Key::Loop),
-        speed: params.number(Key::Rate),
-        now: if driven.is_live { frames as f64 / RATE as f64 } else { now },
-        frame: if driven.is_live {
-            frames
-        } else {
-            (now * RATE as f64).round() as usize
-        },
-        frames,
-        caption: if layout == Layout::Phone { "" } else { &caption },
+    let playhead = if driven.is_live {
+        Playhead {
+            secs: frames as f64 / RATE as f64,
+            frame: frames,
+            frames,
+        }
+    } else {
+        Playhead {
+            secs: now,
+            frame: (now * RATE as f64).round() as usize,
+            frames,
+        }
     };
-    match kit::transport_ui(&transport, ui) {
-        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
-        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
-        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
-        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
-        None => {}
-    }
+    transport_row_ui(playhead, &caption, layout, session, out, ui);
     let scale = theme_of(ui).scale();
     let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
     // The curves below it need room, too.

@@ -2,11 +2,12 @@
 
 use super::map::Drawn;
 use super::{jump_words, named, open_jump, rows};
-use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent, Transport, TransportEvent};
+use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
+use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
 use segue::graph::Place;
 use segue::session::{Command, Key, Session, Value, Walk, frame_at};
@@ -17,24 +18,13 @@ const MOST_SEAMS: usize = 160;
 
 /// The whole panel of a walk.
 pub(in crate::ui) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let params = session.params();
     let caption = caption(session, walk, state);
-    let transport = Transport {
-        playing: params.is_on(Key::Play),
-        repeat: params.is_on(Key::Loop),
-        speed: params.number(Key::Rate),
-        now: session.now_secs(),
+    let playhead = Playhead {
+        secs: session.now_secs(),
         frame: frame_at(&walk.motion, session.now_secs()),
         frames: walk.motion.clip.frames(),
-        caption: if layout == Layout::Phone { "" } else { &caption },
     };
-    match kit::transport_ui(&transport, ui) {
-        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
-        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
-        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
-        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
-        None => {}
-    }
+    transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
         time_ui(session, walk, out, ui);
     }

@@ -1,7 +1,7 @@
 //! The Match lab with keys, stick and pointer.
 
 use super::*;
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2};
+use eframe::egui::{Event, Modifiers};
 use segue::matching::Control;
 use segue::session::Driven;
 
@@ -22,20 +22,6 @@ fn play(frames: usize, harness: &mut Harness<'_, Page>) {
 
 fn control(harness: &Harness<'_, Page>) -> Control {
     harness.state().session.control()
-}
-
-fn step(events: Vec<Event>, harness: &mut Harness<'_, Page>) {
-    harness.input_mut().events.extend(events);
-    harness.step();
-}
-
-fn button(pos: Pos2, pressed: bool) -> Event {
-    Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The Path lab with mouse, finger and keys.
 
 use super::*;
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
+use eframe::egui::{Event, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use glam::DVec2;
 use segue::session::OnPath;
 
@@ -22,20 +22,6 @@ fn lab(size: Vec2, theme: Theme, link: &str) -> Harness<'static, Page> {
 
 fn handle(number: usize, harness: &Harness<'_, Page>) -> Pos2 {
     harness.get_by_label_contains(&format!("Control point {number} of")).rect().center()
-}
-
-fn step(events: Vec<Event>, harness: &mut Harness<'_, Page>) {
-    harness.input_mut().events.extend(events);
-    harness.step();
-}
-
-fn button(pos: Pos2, pressed: bool) -> Event {
-    Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    }
 }
 
 fn is_handle(node: &egui_kittest::Node<'_>) -> bool {

@@ -1,0 +1,46 @@
+//! Play, step, speed and time: the row that every bottom panel begins with.
+
+use super::kit::{self, Transport, TransportEvent};
+use super::out::Out;
+use super::state::Layout;
+use eframe::egui::{Response, Ui};
+use segue::session::{Command, Key, Session, Value};
+
+/// Where the playhead is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Playhead {
+    pub(super) secs: f64,
+    pub(super) frame: usize,
+    /// Frames in all.
+    pub(super) frames: usize,
+}
+
+/// The row, with a caption at its end where there is room.
+pub(super) fn transport_row_ui(
+    playhead: Playhead,
+    caption: &str,
+    layout: Layout,
+    session: &Session,
+    out: &mut Out,
+    ui: &mut Ui,
+) -> Response {
+    let params = session.params();
+    let transport = Transport {
+        playing: params.is_on(Key::Play),
+        repeat: params.is_on(Key::Loop),
+        speed: params.number(Key::Rate),
+        now: playhead.secs,
+        frame: playhead.frame,
+        frames: playhead.frames,
+        caption: if layout == Layout::Phone { "" } else { caption },
+    };
+    let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
+    match row.inner {
+        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
+        Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
+        Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
+        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
+        None => {}
+    }
+    row.response
+}
