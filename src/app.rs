@@ -104,6 +104,8 @@ pub(crate) struct Segue {
     picture: Picture,
     /// What is said when the clipboard has taken what it was given.
     copied: &'static str,
+    /// Whether the work and the link were here once.
+    has_begun: bool,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
 }
@@ -183,6 +185,7 @@ impl Segue {
             picture: Picture::default(),
             film: None,
             copied: ui::LINK_COPIED,
+            has_begun: false,
         }
     }
 
@@ -225,6 +228,13 @@ impl Segue {
         self.session.apply(command)
     }
 
+    /// What happens once, when the work and the link are here: who wants little motion starts it by hand.
+    fn begin(&mut self) {
+        if platform::prefers_stillness() && self.session.params().is_on(Key::Play) {
+            self.obey(Command::TogglePlay);
+        }
+    }
+
     fn tick(&mut self) -> bool {
         let now_ms = platform::now_ms();
         let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
@@ -248,6 +258,9 @@ impl Segue {
         }
         if self.keeper.is_waiting() {
             return true;
+        }
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.begin();
         }
         self.send_requests();
         let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
@@ -283,6 +296,12 @@ impl Segue {
                 self.begin_reading(&name, file);
             }
             Incoming::Reading { task, news } => self.hear_of_reading(task, news),
+            Incoming::Picture(picture) => {
+                self.copied = ui::REPORT_COPIED;
+                if let Some(ctx) = self.inbox.ctx() {
+                    platform::copy_text(self.report(picture.as_deref()), &ctx, &self.inbox);
+                }
+            }
             Incoming::Copied => self.session.say(Level::Info, self.copied),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
@@ -482,6 +501,9 @@ impl Segue {
         let theme = ui::theme(&self.session, system_dark);
         if self.window.theme != Some(theme) {
             theme.install(ctx);
+            if platform::prefers_stillness() {
+                ctx.all_styles_mut(|style| style.animation_time = 0.0);
+            }
             ui::kit::ENGLISH.install(ctx);
             self.window.theme = Some(theme);
         }
@@ -499,6 +521,11 @@ impl Segue {
             Action::CopyText(text) => {
                 self.copied = ui::TABLE_COPIED;
                 platform::copy_text(text.clone(), ctx, &self.inbox);
+            }
+            Action::CopyReport => {
+                if let Some(stage) = self.picture.place() {
+                    platform::take_picture(stage, &self.inbox);
+                }
             }
             Action::SaveText { name, mime, text } => platform::download(name, mime, text.as_bytes(), &self.inbox),
             Action::Save { which, how } => match self.export_as(which, how) {

@@ -386,6 +386,7 @@ parameters! {
     WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
     WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
+    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Word(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
     WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Word(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
     WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
     WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
@@ -707,10 +708,14 @@ impl Param {
         }
     }
 
-    /// Whether compare can make panes of it: a number that changes the result.
+    /// Whether compare can make panes of it: a clip, or a number or choice that changes the result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_)) && self.group.is_of_lab()
+        match self.kind {
+            Kind::Clip => true,
+            Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab(),
+            _ => false,
+        }
     }
 }
 

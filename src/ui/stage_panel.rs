@@ -12,7 +12,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point};
-use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value, Walk, write_path};
+use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -132,14 +132,12 @@ fn verdicts(panes: &[Pane]) -> Verdicts {
     if walk.best.is_some() {
         return walk;
     }
-    let (registered, transition, cycle) = (of("skate_mean_cm"), of("seam_dps"), of("loop_seam_dps"));
-    if registered.best.is_some() {
-        registered
-    } else if transition.best.is_some() {
-        transition
-    } else {
-        cycle
-    }
+    let looked_at = ["skate_mean_cm", "seam_dps", "loop_seam_dps", "clip_seam_dps"];
+    looked_at
+        .map(of)
+        .into_iter()
+        .find(|verdicts| verdicts.best.is_some())
+        .unwrap_or_default()
 }
 
 /// Differences below this are nobody's verdict.
@@ -292,6 +290,13 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
     if let Some((key, value)) = &pane.variant {
         let param = key.param();
+        if matches!(param.kind, Kind::Clip) {
+            return Words {
+                strong: session.variant_name(pane).unwrap_or_default(),
+                text: String::new(),
+                secondary: String::new(),
+            };
+        }
         let secondary = match value {
             Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
             // A bare number says nothing of itself.
@@ -423,7 +428,7 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
         }
     });
     if !params.is_on(Key::Embed) {
-        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 2.0 * side + space::XS));
+        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 3.0 * side + 2.0 * space::XS));
         filming_ui(state.filming, below, out, ui);
     }
 }
@@ -435,6 +440,9 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
         ui.spacing_mut().item_spacing.y = space::XS;
         if filming.pictures && kit::button_ui(Button::icon_only(Icon::Picture, text::SAVE_PICTURE).quiet(), ui).clicked() {
             out.actions.push(Action::SavePicture);
+        }
+        if kit::button_ui(Button::icon_only(Icon::Report, text::COPY_REPORT).quiet(), ui).clicked() {
+            out.actions.push(Action::CopyReport);
         }
         if !filming.films {
             return None;

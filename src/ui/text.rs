@@ -19,6 +19,14 @@ pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";
 pub(crate) const LINK: &str = "Link";
 pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
+pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
+pub(crate) const REPORT: &str = "Copy a report";
+pub(crate) const REPORT_COPIED: &str = "The report is in the clipboard: Markdown, with the picture in it.";
+pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
+pub(crate) const CLIP: &str = "Clip";
+pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
+pub(crate) const COMPARE_CLIPS_HELP: &str = "A and B as they are, side by side, with the same numbers for both";
+pub(crate) const BLEND_MORE: &str = "Blend in another clip";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
@@ -194,6 +202,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("apart_cm", "apart cm"),
     ("skate_mean_cm", "skate cm"),
     ("seam_dps", "seam °/s"),
+    ("clip_seam_dps", "worst jerk °/s"),
     ("skate_cm", "skate cm"),
     ("skate_before_cm", "unlocked cm"),
     ("skate_original_cm", "original cm"),
@@ -208,8 +217,12 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("off_spine_deg", "spine"),
     ("off_head_deg", "head"),
     ("off_legs_deg", "legs"),
+    ("clip_spin_deg", "turn in 0.2 s"),
     ("seam_deg", "jump"),
+    ("clip_seam_deg", "worst jump"),
     ("penetration_cm", "sunk cm"),
+    ("clip_penetration_cm", "sunk cm"),
+    ("clip_jump_cm", "leap cm"),
     ("loop_before_deg", "bare seam"),
     ("cycle_s", "cycle s"),
     ("cycle_frames", "frames"),
@@ -585,7 +598,6 @@ pub(crate) const COPY_CSV: &str = "Copy as CSV";
 /// What is said then.
 pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
 /// A row of it.
-pub(crate) const BUILD_TIME: &str = "Build time";
 /// A mark of the walk.
 pub(crate) const SEAM: &str = "Into another clip";
 
@@ -840,6 +852,21 @@ pub(crate) fn database(database: &Database) -> String {
 /// The name of a button.
 pub(crate) fn leave_clip_out(name: &str) -> String {
     format!("Leave {name} out")
+}
+
+/// The letter of a further clip in a blend: those behind A and B.
+fn letter(index: usize) -> char {
+    char::from_u32('C' as u32 + index as u32).unwrap_or('…')
+}
+
+/// What a further clip of a blend is called.
+pub(crate) fn blended_clip(index: usize) -> String {
+    letter(index).to_string()
+}
+
+/// Its weight.
+pub(crate) fn weight_of(index: usize) -> String {
+    format!("Weight of {}", letter(index))
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ impl Theme {
             ]
             .into(),
             visuals: self.visuals(),
-            animation_time: 0.12,
+            animation_time: 0.13,
             ..Style::default()
         };
         let spacing = &mut style.spacing;

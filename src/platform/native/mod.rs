@@ -8,7 +8,7 @@ mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
-pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
+pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use reader::{LargeFile, Reader};
@@ -34,6 +34,11 @@ pub(crate) fn location_query() -> String {
         .skip(1)
         .find(|argument| files::is_query(argument))
         .map_or_else(String::new, |query| address::state_of(&query))
+}
+
+/// Desktops tell a window nothing of the kind.
+pub(crate) fn prefers_stillness() -> bool {
+    false
 }
 
 /// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there.

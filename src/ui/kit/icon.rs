@@ -52,6 +52,8 @@ pub(crate) enum Icon {
     ChevronRight,
     /// A picture of what is seen.
     Picture,
+    /// A page with lines: what is seen, written down.
+    Report,
     /// A film of what is seen.
     Record,
     /// To a file.
@@ -195,6 +197,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 (2.0, 12.8),
             ]);
             pen.circle(8.0, 8.8, 2.3);
+        }
+        Icon::Report => {
+            pen.closed(&[(3.4, 2.2), (12.6, 2.2), (12.6, 13.8), (3.4, 13.8)]);
+            for y in [5.4, 8.0, 10.6] {
+                pen.stroke(&[(5.8, y), (10.2, y)]);
+            }
         }
         Icon::Record => {
             pen.circle(8.0, 8.0, 6.0);
