@@ -1,8 +1,9 @@
 //! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
 
+use super::light::{self, LightBox, MAP_SIZE};
 use super::renderer::Quality;
-use glam::{Vec3, Vec4};
-use segue::scene::{Color, Figure, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
+use glam::Vec4;
+use segue::scene::{Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Stage, Stroke, Viewport};
 use std::ops::Range;
 
 /// Limbs of one body that melt into the others and shade them.
@@ -60,6 +61,11 @@ pub(super) struct ViewUniform {
     grid: Color,
     edge: Color,
     style: [f32; 4],
+    light_center: [f32; 4],
+    light_right: [f32; 4],
+    light_up: [f32; 4],
+    light_tile: [f32; 4],
+    light_tile_metres: [f32; 4],
 }
 
 impl ViewUniform {
@@ -67,7 +73,28 @@ impl ViewUniform {
     pub(super) fn has_edges(&self) -> bool {
         self.edge[3] > 0.0 && self.style[0] > 0.0
     }
+
+    /// Fits the light map's part to the bodies of a pane; `false` where none casts a shadow.
+    fn add_light(&mut self, pane: &Pane, look: &Look, tile: Viewport) -> bool {
+        let key = Vec4::from(self.key).truncate();
+        let Some(fit) = LightBox::about(pane, key, tile.width) else {
+            return false;
+        };
+        let texel = 2.0 * fit.half_width / tile.width as f32;
+        self.light_center = fit.center.extend(fit.half_width).to_array();
+        self.light_right = fit.right.extend(fit.half_depth).to_array();
+        self.light_up = fit.up.extend(1.0).to_array();
+        self.light_tile = [tile.x, tile.y, tile.width, tile.height].map(|texels| texels as f32 / MAP_SIZE as f32);
+        let [spread, widest] = if look.flat { [0.0, 0.0] } else { [SPREAD, WIDEST_M] };
+        self.light_tile_metres = [texel, spread, widest, look.key_shadow];
+        true
+    }
 }
+
+/// The main light's radius over its distance: how much wider the edge of a shadow gets with every metre.
+const SPREAD: f32 = 0.055;
+/// The widest that the edge of a shadow gets to either side, metres.
+const WIDEST_M: f32 = 0.13;
 
 /// `Figure` of limb.wgsl and shadow.wgsl.
 #[repr(C)]
@@ -88,6 +115,13 @@ pub(super) struct FigureDraw {
     depth: f32,
 }
 
+impl FigureDraw {
+    /// All of its limbs, where the main light's shadow is asked of it.
+    pub(super) fn in_light(&self) -> Option<Range<u32>> {
+        (!self.ghost && !self.casting.is_empty()).then_some(self.fine.start..self.coarse.end)
+    }
+}
+
 /// One pane in the instance buffers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PaneDraw {
@@ -97,6 +131,8 @@ pub(super) struct PaneDraw {
     /// Strokes on the ground, in space, and over everything.
     pub(super) strokes: [Range<u32>; 3],
     pub(super) rings: Range<u32>,
+    /// The pane's part of the light map, where it has bodies that cast shadows.
+    pub(super) lit: Option<Viewport>,
 }
 
 /// A stage, ready for the GPU.
@@ -164,13 +200,16 @@ impl Frame {
             });
             let rings = self.rings.len() as u32;
             self.rings.extend(pane.rings.iter().filter_map(ring_instance));
-            self.views
-                .push(view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32));
+            let mut view = view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32);
+            let tile = light::tile(self.panes.len(), stage.panes.len());
+            let lit = quality == Quality::Full && view.add_light(pane, &stage.look, tile);
+            self.views.push(view);
             self.panes.push(PaneDraw {
                 viewport,
                 figures,
                 strokes,
                 rings: rings..self.rings.len() as u32,
+                lit: lit.then_some(tile),
             });
         }
     }
@@ -356,9 +395,7 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
         } else {
             1.0
         };
-    // The main light stands over the camera's left shoulder, so that the body is modelled from all sides.
-    let level_back = Vec3::new(camera.yaw.sin(), 0.0, camera.yaw.cos());
-    let key = (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y);
+    let key = light::key_direction(right, camera.yaw);
     ViewUniform {
         clip_from_world: (camera.projection(aspect) * camera.view()).to_cols_array(),
         eye: camera.eye().extend(if orthographic { 1.0 } else { 0.0 }).to_array(),
@@ -373,6 +410,11 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
         focus: pane.focus.extend(look.shadow).to_array(),
         grid: look.grid,
         edge: look.edge,
-        style: [look.edge_width * scale, look.rim, 0.0, 0.0],
+        style: [look.edge_width * scale, look.rim, f32::from(u8::from(look.flat)), look.rim_light],
+        light_center: [0.0, 0.0, 0.0, 1.0],
+        light_right: [1.0, 0.0, 0.0, 1.0],
+        light_up: [0.0, 1.0, 0.0, 0.0],
+        light_tile: [0.0, 0.0, 1.0, 1.0],
+        light_tile_metres: [0.0; 4],
     }
 }

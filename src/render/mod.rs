@@ -8,6 +8,7 @@ mod callback;
 mod frame;
 #[cfg(test)]
 mod image;
+mod light;
 mod mesh;
 mod pipelines;
 mod renderer;

@@ -1,4 +1,5 @@
 use super::frame::{FigureUniform, Frame, PaneDraw, ViewUniform};
+use super::light::{LightMap, MAP_SIZE};
 use super::mesh::ConeMesh;
 use super::pipelines::{Brush, Pipelines};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
@@ -25,6 +26,9 @@ pub(crate) struct StageRenderer {
     alignment: usize,
     largest_side: u32,
     quality: Quality,
+    unlit: LightMap,
+    /// Made for the first body that casts a shadow.
+    light: Option<LightMap>,
     views: Vec<(u64, View)>,
     /// The frame in the making; it takes turns with the one last drawn.
     scratch: Frame,
@@ -202,11 +206,10 @@ impl StageRenderer {
         };
         let limits = device.limits();
         let pipelines = Pipelines::new(device, output_format, if smooth { 4 } else { 1 });
-        // Only a browser takes so long that it shows.
-        if cfg!(not(target_arch = "wasm32")) {
-            while pipelines.make_next() {}
-        }
         Self {
+            // Where there is no light map, one texel takes its place.
+            unlit: LightMap::new(device, &pipelines, 1),
+            light: None,
             pipelines,
             fine: mesh(40, 8),
             coarse: mesh(16, 4),
@@ -341,6 +344,9 @@ impl StageRenderer {
 
     fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, view: &mut View) {
         let (view_stride, figure_stride) = (self.view_stride(), self.figure_stride());
+        if view.drawn.panes.iter().any(|pane| pane.lit.is_some()) && self.light.is_none() {
+            self.light = Some(LightMap::new(device, &self.pipelines, MAP_SIZE));
+        }
         let View {
             drawn,
             limbs,
@@ -365,8 +371,44 @@ impl StageRenderer {
         }
     }
 
+    /// Draws what the main light sees. `false` where its pipeline is yet to be made.
+    fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("light map"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &light.depths,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        let (Some(pipeline), Some(limbs)) = (self.pipelines.get(Brush::Cast), &view.limbs.buffer) else {
+            return false;
+        };
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, self.coarse.vertices.slice(..));
+        pass.set_vertex_buffer(1, limbs.slice(..));
+        pass.set_index_buffer(self.coarse.indices.slice(..), wgpu::IndexFormat::Uint16);
+        for (index, pane) in view.drawn.panes.iter().enumerate() {
+            let Some(tile) = pane.lit else { continue };
+            pass.set_viewport(tile.x as f32, tile.y as f32, tile.width as f32, tile.height as f32, 0.0, 1.0);
+            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
+            let figures = view.drawn.figures.get(pane.figures.clone()).unwrap_or_default();
+            for limbs in figures.iter().filter_map(super::frame::FigureDraw::in_light) {
+                pass.draw_indexed(0..self.coarse.index_count, 0, limbs);
+            }
+        }
+        true
+    }
+
     /// Draws all panes. `false` where something is left out because its pipeline is yet to be made.
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
+        let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
+        let light = self.light.as_ref().filter(|_| is_lit);
+        let mut complete = light.is_none_or(|light| self.encode_light(light, encoder, view));
         let targets = view.current();
         let clear = view.drawn.clear.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -403,7 +445,7 @@ impl StageRenderer {
             }),
             ..Default::default()
         });
-        let mut complete = true;
+        pass.set_bind_group(1, &light.unwrap_or(&self.unlit).bound, &[]);
         for (index, pane) in view.drawn.panes.iter().enumerate() {
             let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
@@ -435,22 +477,26 @@ impl StageRenderer {
         };
         let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
-            pass.set_bind_group(1, view.figures_bound.as_ref(), &[(index * self.figure_stride()) as u32]);
+            pass.set_bind_group(2, view.figures_bound.as_ref(), &[(index * self.figure_stride()) as u32]);
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
         if take(pass, Brush::Ground) {
             pass.draw(0..3, 0..1);
         }
-        if figures().any(|(_, figure)| !figure.casting.is_empty()) && take(pass, Brush::Shadow) {
+        let casts = figures().any(|(_, figure)| !figure.casting.is_empty());
+        if casts && take(pass, Brush::Shadow) {
             pass.set_vertex_buffer(0, limbs.slice(..));
             for (index, figure) in figures().filter(|(_, figure)| !figure.casting.is_empty()) {
                 set_figure(pass, index);
                 pass.draw(0..4, figure.casting.clone());
             }
-            if take(pass, Brush::Shade) {
-                pass.draw(0..3, 0..1);
-            }
+        }
+        if pane.lit.is_some() && take(pass, Brush::KeyShadow) {
+            pass.draw(0..4, 0..1);
+        }
+        if casts && take(pass, Brush::Shade) {
+            pass.draw(0..3, 0..1);
         }
         let quads = |pass: &mut wgpu::RenderPass<'_>, brush, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
             if !range.is_empty() && take(pass, brush) {

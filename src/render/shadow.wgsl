@@ -8,7 +8,7 @@ struct Figure {
     neighbours: array<vec4f, 144>,
 }
 
-@group(1) @binding(0) var<uniform> figure: Figure;
+@group(2) @binding(0) var<uniform> figure: Figure;
 
 struct Limb {
     @builtin(vertex_index) corner: u32,

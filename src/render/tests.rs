@@ -1,7 +1,7 @@
 //! Pictures from a device without a window: run with `cargo test --bin segue render` and look at `target/stage/*.png`.
 
 use super::frame::Frame;
-use super::pipelines::{COMPOSITE, GROUND, LIMB, LINE, RING, SHADOW};
+use super::pipelines::{COMPOSITE, GROUND, KEY_SHADOW, LIMB, LINE, RING, SHADOW};
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
 use eframe::wgpu::naga;
@@ -64,6 +64,7 @@ fn every_shader_is_valid() {
     for (name, source) in [
         ("limb", LIMB),
         ("shadow", SHADOW),
+        ("key_shadow", KEY_SHADOW),
         ("ground", GROUND),
         ("line", LINE),
         ("ring", RING),
