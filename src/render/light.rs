@@ -3,7 +3,7 @@
 use super::pipelines::Pipelines;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
-use segue::scene::{Pane, Viewport};
+use segue::scene::{Figure, Pane, Viewport};
 
 /// Width and height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
@@ -12,6 +12,11 @@ pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16U
 const FARTHEST: f32 = 16.0;
 /// About every body, for what its limbs do not tell of its skin, metres.
 const MARGIN: f32 = 0.08;
+
+/// Whether a figure stands in the main light: solid ones do, and those that are only seen through.
+pub(super) fn keeps_off_light(figure: &Figure) -> bool {
+    figure.shadow >= 1.0
+}
 
 /// The box of a pane's bodies, along the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +60,7 @@ impl LightBox {
         let up = key.cross(right);
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
-        for figure in pane.figures.iter().filter(|figure| !figure.ghost && figure.shadow > 0.0) {
+        for figure in pane.figures.iter().filter(|figure| keeps_off_light(figure)) {
             for limb in pane.limbs.get(figure.limbs.clone()).unwrap_or_default() {
                 for (point, radius) in [(limb.a, limb.radius_a), (limb.b, limb.radius_b)] {
                     let is_near = (point - pane.focus).abs().max_element() < FARTHEST;
@@ -141,7 +146,7 @@ impl LightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::scene::{Figure, Limb};
+    use segue::scene::Limb;
 
     fn pane(centers: &[Vec3]) -> Pane {
         let limbs: Vec<Limb> = centers
@@ -159,6 +164,7 @@ mod tests {
         Pane {
             figures: vec![Figure {
                 limbs: 0..limbs.len(),
+                skin: None,
                 ghost: false,
                 shadow: 1.0,
             }],

@@ -1,7 +1,7 @@
 // Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
 
 struct Figure {
-    // Unused, 1 for a solid body, strength of the shadow, unused.
+    // 1 for a solid body; the rest is unused.
     about: vec4f,
     // Three for each limb of the body: centre and radius of its first ball, of its second, direction and scale of its flattening.
     neighbours: array<vec4f, 144>,
@@ -162,7 +162,7 @@ fn look_around(in: Surface) -> Around {
         let closeness = max(1.0 - gap / clamp(radius * 0.42, 0.004, 0.034), 0.0);
         melted += other * closeness * closeness * smoothstep(-0.3, 0.3, dot(other, normal));
 
-        if figure.about.y < 0.5 {
+        if figure.about.x < 0.5 {
             continue;
         }
         let ball = radius * (0.5 + 0.5 * flattening.w);

@@ -12,6 +12,7 @@ mod light;
 mod mesh;
 mod pipelines;
 mod renderer;
+mod skins;
 mod targets;
 #[cfg(test)]
 mod tests;

@@ -33,6 +33,8 @@ struct View {
     // Width of a texel in metres; how fast the edge of a shadow widens with distance, and the widest it gets, metres; how much of the light on
     // the ground is the main one's.
     light_tile_metres: vec4f,
+    // 1 for dual quaternions; width of a cell of the grid, metres; unused, unused.
+    more: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -1,7 +1,9 @@
 use super::{Body, Camera};
 use crate::skeleton::WorldPose;
+use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::Vec3;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, alpha straight.
 pub type Color = [f32; 4];
@@ -42,15 +44,47 @@ pub struct Limb {
     pub color: Color,
 }
 
-/// The limbs of one body, as a range of [`Pane::limbs`].
+/// One body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Which limbs.
+    /// Its limbs, a range of [`Pane::limbs`].
     pub limbs: Range<usize>,
+    /// The skin that is seen in their place: then they only shade the ground.
+    pub skin: Option<Skin>,
     /// Translucent: only its front is seen, and bodies behind it shine through.
     pub ghost: bool,
-    /// How strongly it darkens the ground, 0 (not at all) to 1.
+    /// How strongly it darkens the ground near it, 0 (not at all) to 1: what is that strong also keeps off the main light.
     pub shadow: f32,
+}
+
+/// A skinned mesh in a pose.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// The mesh; many figures may share one.
+    pub mesh: Arc<SkinnedMesh>,
+    /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
+    pub joints: Range<usize>,
+    /// Colour; for a ghost the alpha says how much of it is seen. The mesh's own colours are multiplied with it.
+    pub color: Color,
+    /// Whether every joint has a colour of its own instead, in [`Pane::joint_colors`].
+    pub colored: bool,
+}
+
+/// Meshes are large: one is itself and no other.
+impl PartialEq for Skin {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh) && self.joints == other.joints && self.color == other.color && self.colored == other.colored
+    }
+}
+
+/// How a skin follows its joints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Skinning {
+    /// The mean of the joints' motions, as dual quaternions: a twisted limb keeps its girth.
+    #[default]
+    Dual,
+    /// The mean of where each joint would take the point: a twisted limb collapses.
+    Linear,
 }
 
 /// Where a line is in the depth of the picture.
@@ -157,6 +191,12 @@ pub struct Pane {
     pub limbs: Vec<Limb>,
     /// The bodies.
     pub figures: Vec<Figure>,
+    /// The joints of all skins.
+    pub joints: Vec<RigidTransform>,
+    /// A colour for each of them.
+    pub joint_colors: Vec<Color>,
+    /// How skins follow their joints.
+    pub skinning: Skinning,
     /// Lines.
     pub strokes: Vec<Stroke>,
     /// Rings on the ground.
@@ -168,30 +208,62 @@ impl Pane {
     pub fn clear(&mut self) {
         self.limbs.clear();
         self.figures.clear();
+        self.joints.clear();
+        self.joint_colors.clear();
         self.strokes.clear();
         self.rings.clear();
     }
 
     /// Adds a body in a pose, solid, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, |_| color, false, 1.0);
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, false, 1.0);
     }
 
     /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
     pub fn add_colored_body(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color) {
-        self.add_figure(body, pose, color_of, false, 1.0);
+        self.add_figure(body, pose, [1.0; 4], Some(color_of), false, 1.0);
     }
 
     /// Adds a translucent body; its shadow is as strong as the colour's alpha.
     pub fn add_ghost(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, |_| color, true, color[3]);
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, color[3]);
     }
 
-    fn add_figure(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color, ghost: bool, shadow: f32) {
+    /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one does.
+    pub fn add_glass(&mut self, body: &Body, pose: &WorldPose, color: Color) {
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, 1.0);
+    }
+
+    fn add_figure(
+        &mut self,
+        body: &Body,
+        pose: &WorldPose,
+        color: Color,
+        color_of: Option<impl Fn(usize) -> Color>,
+        ghost: bool,
+        shadow: f32,
+    ) {
         let start = self.limbs.len();
-        body.colored_limbs(pose, color_of, &mut self.limbs);
+        match (&color_of, body.skin()) {
+            (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),
+            _ => body.limbs(pose, color, &mut self.limbs),
+        }
+        let skin = body.skin().map(|mesh| {
+            let first = self.joints.len();
+            self.joints.extend(mesh.world_from_bind(pose));
+            let joints = first..self.joints.len();
+            self.joint_colors
+                .extend((0..joints.len()).map(|joint| color_of.as_ref().map_or(color, |color_of| color_of(joint))));
+            Skin {
+                mesh: Arc::clone(mesh),
+                joints,
+                color,
+                colored: color_of.is_some(),
+            }
+        });
         self.figures.push(Figure {
             limbs: start..self.limbs.len(),
+            skin,
             ghost,
             shadow,
         });
@@ -283,14 +355,15 @@ impl Pane {
         }
     }
 
-    /// Adds a ring of 12 cm on the ground about a planted foot.
-    pub fn add_contact(&mut self, foot: Vec3, color: Color) {
+    /// Adds a ring of 12 cm on the ground about a planted foot. That of a foot which slides is heavier: its colour is not all that tells it.
+    pub fn add_contact(&mut self, foot: Vec3, color: Color, slides: bool) {
+        let (width, fill) = if slides { (0.032, 0.32) } else { (0.014, 0.1) };
         self.rings.push(Ring {
             center: foot,
             radius: 0.12,
-            width: 0.014,
+            width,
             color,
-            fill: 0.1,
+            fill,
         });
     }
 }
@@ -388,6 +461,8 @@ pub struct Stage {
     pub look: Look,
     /// Physical pixels per point: widths of lines are in points.
     pub pixels_per_point: f32,
+    /// Width of a cell of the grid on the ground, metres of the scene.
+    pub grid_metres: f32,
 }
 
 impl Default for Stage {
@@ -396,6 +471,7 @@ impl Default for Stage {
             panes: Vec::new(),
             look: Look::DARK,
             pixels_per_point: 1.0,
+            grid_metres: 1.0,
         }
     }
 }

@@ -95,14 +95,19 @@ impl SkinnedMesh {
 
     /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind pose that follows this joint alone. Joints that the
     /// pose does not have stay where the bind pose is.
-    pub fn joint_transforms(&self, world: &WorldPose, out: &mut Vec<RigidTransform>) {
-        out.clear();
-        out.extend(self.bind.iter().enumerate().map(|(joint, joint_from_bind)| {
+    pub fn world_from_bind(&self, world: &WorldPose) -> impl Iterator<Item = RigidTransform> {
+        self.bind.iter().enumerate().map(|(joint, joint_from_bind)| {
             match (world.positions.get(joint), world.rotations.get(joint)) {
                 (Some(&translation), Some(&rotation)) => RigidTransform { rotation, translation } * *joint_from_bind,
                 _ => RigidTransform::IDENTITY,
             }
-        }));
+        })
+    }
+
+    /// The same in a list that is overwritten.
+    pub fn joint_transforms(&self, world: &WorldPose, out: &mut Vec<RigidTransform>) {
+        out.clear();
+        out.extend(self.world_from_bind(world));
     }
 
     /// Scales the mesh and its bind pose about the origin.

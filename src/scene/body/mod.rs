@@ -5,7 +5,9 @@ mod tests;
 
 use super::{Color, Limb};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
+use crate::skin::SkinnedMesh;
 use crate::skin::shapes::{Placed, Shape, shapes};
+use std::sync::Arc;
 
 /// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.
 fn set_balls_apart(shapes: &mut [Shape]) {
@@ -25,6 +27,7 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
     shapes: Vec<Shape>,
+    skin: Option<Arc<SkinnedMesh>>,
 }
 
 impl Body {
@@ -36,7 +39,29 @@ impl Body {
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
-        Self { shapes }
+        Self { shapes, skin: None }
+    }
+
+    /// The body with girths so many times as wide.
+    #[must_use]
+    pub fn with_girth(mut self, girth: f32) -> Self {
+        for shape in &mut self.shapes {
+            shape.radius_a *= girth;
+            shape.radius_b *= girth;
+        }
+        self
+    }
+
+    /// The body in a skin: it is seen in place of the limbs, which go on to shade the ground. The mesh is one of the same skeleton.
+    #[must_use]
+    pub fn with_skin(self, mesh: Arc<SkinnedMesh>) -> Self {
+        Self { skin: Some(mesh), ..self }
+    }
+
+    /// The mesh over the limbs.
+    #[must_use]
+    pub fn skin(&self) -> Option<&Arc<SkinnedMesh>> {
+        self.skin.as_ref()
     }
 
     /// The number of limbs that [`Body::limbs`] adds at most.

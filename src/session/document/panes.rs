@@ -276,7 +276,9 @@ impl Session {
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
-        let compare = self.compare().filter(|compare| belongs_to(compare.key, self.params.text(Key::Lab)));
+        // What is only looked at may be compared in every lab.
+        let in_lab = |key: Key| !key.param().group.is_of_lab() || belongs_to(key, self.params.text(Key::Lab));
+        let compare = self.compare().filter(|compare| in_lab(compare.key));
         let variants: Vec<Option<(Key, Value)>> = match &compare {
             Some(compare) => compare
                 .values
