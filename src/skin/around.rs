@@ -10,9 +10,9 @@ use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use std::collections::BTreeMap;
 
 /// Cells of the surface are at most this large, as a share of what is thin there.
-const CELL_SHARE: f32 = 0.42;
-/// And at most this large, as a share of the body's height: 1.7 cm on an adult.
-const LARGEST_CELL: f32 = 0.0098;
+const CELL_SHARE: f32 = 0.5;
+/// And at most this large, as a share of the body's height: 1.9 cm on an adult.
+const LARGEST_CELL: f32 = 0.0108;
 /// Vertices of the whole mesh, about; cells become larger where it would be more.
 const MOST_VERTICES: f32 = 14_000.0;
 /// Skeletons of more shapes get one surface for each.
@@ -71,10 +71,9 @@ fn blended(skeleton: &Skeleton, roles: &Roles, shapes: &[Shape], pose: &WorldPos
     let cones: Vec<Cone> = placed.iter().map(|(_, placed)| Cone::new(placed)).collect();
     let paths: Vec<Vec<(f32, usize)>> = placed.iter().map(|(shape, placed)| path(skeleton, shape, placed, pose)).collect();
     let largest = LARGEST_CELL * roles.body_height(skeleton);
-    let sizes: Vec<f32> = cones
-        .iter()
-        .map(|cone| (CELL_SHARE * cone.thinness()).clamp(0.05 * largest, largest))
-        .collect();
+    // Cells are halved and halved again, so sizes are rounded to that.
+    let size = |cone: &Cone| largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.06, 1.0).log2().round().exp2();
+    let sizes: Vec<f32> = cones.iter().map(size).collect();
     // A surface passes through about 1.5 cells for each square of a cell's size.
     let vertices: f32 = cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
     let coarser = (vertices / MOST_VERTICES).max(1.0).sqrt();
@@ -89,7 +88,7 @@ fn blended(skeleton: &Skeleton, roles: &Roles, shapes: &[Shape], pose: &WorldPos
         let sizes: Vec<f32> = members.iter().map(|&index| sizes[index] * coarser).collect();
         let mut surface = contour(&field, &sizes);
         let neighbours = Neighbours::of(surface.positions.len(), &surface.triangles);
-        fair(&mut surface.positions, &neighbours, 2);
+        fair(&mut surface.positions, &neighbours, 8);
         let first: Vec<u16> = (surface.owners.iter())
             .map(|&(shape, share)| joint_at(&paths[members[shape]], share) as u16)
             .collect();

@@ -40,6 +40,7 @@ pub(super) fn contour(field: &Field, sizes: &[f32]) -> Contour {
         sizes,
         origin: (low + high) * 0.5 - Vec3::splat(0.5 * cell * (1u32 << levels) as f32),
         cell,
+        coarsest: sizes.iter().copied().fold(0.0, f32::max),
         levels,
         cells: HashMap::default(),
         leaves: Vec::new(),
@@ -87,6 +88,8 @@ struct Octree<'a> {
     origin: Vec3,
     /// Edge of the finest cells, metres.
     cell: f32,
+    /// The largest of `sizes`.
+    coarsest: f32,
     levels: u32,
     /// Leaves by corner and level.
     cells: Map<u32>,
@@ -120,24 +123,11 @@ impl Octree<'_> {
         let center = self.place(at) + Vec3::splat(0.5 * size);
         let reach = 0.5 * size * 3f32.sqrt();
         let mut narrowed = Vec::with_capacity(near.len());
-        let least = self.field.narrowed(center, reach, near, &mut narrowed);
-        let outside = least > 1.1 * reach + self.field.slack();
-        let inside = || self.field.sample(center, &narrowed, &mut Vec::new()).value < -2.5 * reach;
-        let is_near = !(outside || (least < 0.0 && inside()));
-        let wanted = narrowed
-            .iter()
-            .map(|&index| {
-                (
-                    self.sizes[usize::from(index)],
-                    self.field.cones[usize::from(index)].measure(center).distance,
-                )
-            })
-            .filter(|(_, distance)| distance.abs() < 1.2 * reach + self.cell)
-            .map(|(size, _)| size)
-            .fold(f32::INFINITY, f32::min);
-        // Above the coarsest cells that are wanted, what is far from every single surface may still hold a blend.
-        let coarsest = self.sizes.iter().copied().fold(0.0, f32::max);
-        if is_near && level > 0 && (size > 1.01 * wanted || size > 1.01 * coarsest) {
+        let around = self.field.narrowed(center, reach, near, self.sizes, &mut narrowed);
+        let is_near = around.least <= 1.1 * reach && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
+        // Where no single surface is near there may still be the blend of two.
+        let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
+        if is_near && level > 0 && size > 1.01 * wanted {
             let half = 1 << (level - 1);
             for child in 0..8 {
                 let offset = IVec3::new(child & 1, child >> 1 & 1, child >> 2) * half;

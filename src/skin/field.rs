@@ -77,9 +77,14 @@ impl Cone {
         }
     }
 
-    /// The smallest half-thickness.
+    /// Half of its thickness in the middle, where it is thinnest across.
     pub(super) fn thinness(&self) -> f32 {
-        self.radius_a.min(self.radius_a - self.fall) * self.flatness.min(1.0)
+        (self.radius_a - 0.5 * self.fall) * self.flatness.min(1.0)
+    }
+
+    /// The greatest radius.
+    pub(super) fn thickest(&self) -> f32 {
+        self.radius_a.max(self.radius_a - self.fall)
     }
 
     /// About how large the surface is, square metres.
@@ -126,8 +131,15 @@ pub(super) struct Field {
     pub(super) cones: Vec<Cone>,
     /// For each two of them whether they are neighbours, row by row.
     neighbours: Vec<bool>,
-    /// The widest blend of all, metres.
-    widest: f32,
+}
+
+/// What is known of the field around a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    /// The field at the point is no less, metres.
+    pub(super) least: f32,
+    /// The smallest of the sizes of shapes whose surface is near; infinite where none is.
+    pub(super) size: f32,
 }
 
 /// The field at a point.
@@ -150,12 +162,7 @@ impl Field {
                 neighbours[j * count + i] = is;
             }
         }
-        let widest = BLEND
-            * cones
-                .iter()
-                .map(|cone| cone.radius_a.max(cone.radius_a - cone.fall))
-                .fold(0.0, f32::max);
-        Self { cones, neighbours, widest }
+        Self { cones, neighbours }
     }
 
     /// The field, where no shapes but those in `near` matter. `scratch` is room to work in.
@@ -166,7 +173,7 @@ impl Field {
                 .map(|&index| (usize::from(index), self.cones[usize::from(index)].measure(point))),
         );
         let nearest = scratch.iter().map(|(_, measured)| measured.distance).fold(f32::INFINITY, f32::min);
-        scratch.retain(|(_, measured)| measured.distance <= nearest + self.widest);
+        scratch.retain(|(_, measured)| measured.distance <= nearest + BLEND * measured.radius);
         let mut best = Sample {
             value: f32::INFINITY,
             normal: Vec3::Y,
@@ -189,28 +196,33 @@ impl Field {
         best
     }
 
-    /// Which of `near` matter to any point within `reach` of `center`, and the field's value there.
-    pub(super) fn narrowed(&self, center: Vec3, reach: f32, near: &[u16], out: &mut Vec<u16>) -> f32 {
-        let measured: Vec<(u16, Measured)> = near
-            .iter()
-            .map(|&index| (index, self.cones[usize::from(index)].measure(center)))
-            .collect();
-        let nearest = measured
-            .iter()
-            .map(|(_, m)| m.distance.max(m.at_least))
-            .fold(f32::INFINITY, f32::min);
-        let least = measured
-            .iter()
-            .map(|(_, m)| m.at_least.min(m.distance))
-            .fold(f32::INFINITY, f32::min);
-        let limit = nearest + 2.0 * reach + self.widest;
-        out.extend(
-            measured
-                .iter()
-                .filter(|(_, m)| m.at_least.min(m.distance) <= limit)
-                .map(|(index, _)| *index),
-        );
-        least
+    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`.
+    pub(super) fn narrowed(&self, center: Vec3, reach: f32, near: &[u16], sizes: &[f32], out: &mut Vec<u16>) -> Around {
+        let mut around = Around {
+            least: f32::INFINITY,
+            size: f32::INFINITY,
+        };
+        let mut nearest = f32::INFINITY;
+        out.clear();
+        for &index in near {
+            let measured = self.cones[usize::from(index)].measure(center);
+            let at_least = measured.at_least.min(measured.distance);
+            nearest = nearest.min(measured.distance.max(measured.at_least));
+            around.least = around
+                .least
+                .min(at_least - 0.25 * BLEND * self.cones[usize::from(index)].thickest());
+            if measured.distance.abs() < 1.2 * reach {
+                around.size = around.size.min(sizes[usize::from(index)]);
+            }
+        }
+        for &index in near {
+            let cone = &self.cones[usize::from(index)];
+            let measured = cone.measure(center);
+            if measured.at_least.min(measured.distance) <= nearest + 2.0 * reach + BLEND * cone.thickest() {
+                out.push(index);
+            }
+        }
+        around
     }
 
     /// The shape whose surface a point is nearest to, and where along its axis.
@@ -220,11 +232,6 @@ impl Field {
             .map(|&index| (usize::from(index), self.cones[usize::from(index)].measure(point)));
         let nearest = measured.min_by(|(_, x), (_, y)| x.distance.total_cmp(&y.distance))?;
         Some((nearest.0, nearest.1.share))
-    }
-
-    /// How much lower than all shapes alone the field can be, metres.
-    pub(super) fn slack(&self) -> f32 {
-        0.25 * self.widest
     }
 }
 

@@ -110,7 +110,8 @@ fn picture(name: &str, mesh: &SkinnedMesh, poses: &[WorldPose]) {
         }
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
         let high = positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
-        let scale = (cell[0] / (high - low).length().max(1e-3) * 1.15).min(cell[1] * 0.9 / (high - low).y.max(1e-3));
+        let wide = (high - low).x.max((high - low).z);
+        let scale = (cell[0] * 0.96 / wide).min(cell[1] * 0.92 / (high - low).y.max(1e-3));
         for (column, yaw) in views.into_iter().enumerate() {
             let center = [cell[0] * (column as f32 + 0.5), cell[1] * (row as f32 + 0.5)];
             canvas.draw(&positions, &normals, &mesh.triangles, yaw, (low + high) * 0.5, center, scale);
