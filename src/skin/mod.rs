@@ -9,10 +9,16 @@
 //! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known. A mesh that came with a file is a
 //! [`SkinnedMesh`], too.
 
+mod around;
 mod bind;
 mod capsules;
+mod contour;
 mod deform;
+mod field;
+#[cfg(test)]
+mod gallery;
 pub(crate) mod shapes;
+mod weights;
 
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
 
@@ -84,11 +90,7 @@ impl SkinnedMesh {
     #[must_use]
     pub fn around(skeleton: &Skeleton, roles: &Roles, build: Build) -> Self {
         let build = build.clamped();
-        let bind = bind::bind_pose(skeleton, roles);
-        let rest = skeleton.rest_positions();
-        let shapes = shapes::shapes(skeleton, &rest, Some(roles));
-        let mut mesh = capsules::capsules(&shapes, &bind);
-        mesh.bind = bind::joint_from_bind(&bind);
+        let mut mesh = around::around(skeleton, roles, build);
         mesh.scale(build.height);
         mesh
     }

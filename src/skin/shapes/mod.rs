@@ -26,6 +26,8 @@ pub(crate) struct Shape {
     /// In the frame of the joint of `a`; zero where the shape is round.
     pub(crate) flat: Vec3,
     pub(crate) flatness: f32,
+    /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is the body's.
+    pub(crate) shell: usize,
 }
 
 impl Shape {
@@ -37,6 +39,7 @@ impl Shape {
             radius_b,
             flat: Vec3::ZERO,
             flatness: 1.0,
+            shell: 0,
         }
     }
 
