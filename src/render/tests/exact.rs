@@ -30,7 +30,7 @@ fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
     assert_eq!(prepared(&stage), (true, true));
 
     // The coarse frame shows the same panes in the same places.
-    let (mut fine, mut coarse) = (super::frame::Frame::default(), super::frame::Frame::default());
+    let (mut fine, mut coarse) = (Frame::default(), Frame::default());
     fine.build(&stage, size, size, Quality::Plain);
     coarse.build(&stage, size, [480, 300], Quality::Plain);
     for (fine, coarse) in fine.panes.iter().zip(&coarse.panes) {

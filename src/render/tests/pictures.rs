@@ -1,8 +1,9 @@
 //! Bodies of limbs, to be looked at.
 
-use super::{actors, gpu, stage};
+use super::{actors, blend_pane, gpu, stage};
 use glam::Vec3;
-use segue::scene::{Body, Bounds, Camera, Look, Pane, Stage, Viewport};
+use segue::math::Planar;
+use segue::scene::{Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
 use segue::skeleton::{Joint, Roles, Skeleton, world_pose};
 
 #[test]

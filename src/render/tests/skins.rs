@@ -133,7 +133,8 @@ fn joints_that_are_none_and_lists_that_do_not_fit_are_drawn_somehow() {
     stage.panes[0].joints.clear();
     render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
     stage.panes[0].figures[0].ghost = true;
-    stage.panes[0].figures.push(stage.panes[0].figures[0].clone());
+    let again = stage.panes[0].figures[0].clone();
+    stage.panes[0].figures.push(again);
     render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
 }
 
