@@ -471,6 +471,7 @@ parameters! {
     Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
 
     Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "Body, bones, or both.";
+    Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
     Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";

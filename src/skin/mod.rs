@@ -12,6 +12,7 @@
 mod around;
 mod bind;
 mod capsules;
+mod character;
 mod contour;
 mod deform;
 mod field;
@@ -20,6 +21,7 @@ mod gallery;
 pub(crate) mod shapes;
 mod weights;
 
+pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
 pub(crate) use weights::normals;
 
