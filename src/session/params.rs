@@ -484,6 +484,7 @@ parameters! {
 
     Stage "stage" "Stage" Stage Kind::Choice(STAGES), Start::Word("auto"), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
     Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
+    Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
     FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.01), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
     Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once. Twist a forearm: linear blend wraps it like a candy, dual quaternions keep its girth.";

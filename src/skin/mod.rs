@@ -12,6 +12,7 @@
 mod around;
 mod bind;
 mod capsules;
+mod character;
 mod contour;
 mod deform;
 mod field;
@@ -20,10 +21,12 @@ mod gallery;
 pub(crate) mod shapes;
 mod weights;
 
+pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
+pub(crate) use weights::normals;
 
 use crate::skeleton::{Roles, Skeleton, WorldPose};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// A mesh bound to a skeleton, in its bind pose. All lists of vertices are of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -113,12 +116,28 @@ impl SkinnedMesh {
     }
 
     /// Scales the mesh and its bind pose about the origin.
-    fn scale(&mut self, factor: f32) {
+    pub(crate) fn scale(&mut self, factor: f32) {
         for position in &mut self.positions {
             *position *= factor;
         }
         for transform in &mut self.bind {
             transform.translation *= factor;
+        }
+    }
+
+    /// Turns the mesh about the origin, and the joints' axes with it, so that they rest without rotation again.
+    pub(crate) fn turn(&mut self, turn: Quat) {
+        for position in &mut self.positions {
+            *position = turn * *position;
+        }
+        for normal in &mut self.normals {
+            *normal = turn * *normal;
+        }
+        for transform in &mut self.bind {
+            *transform = RigidTransform {
+                rotation: turn * transform.rotation * turn.conjugate(),
+                translation: turn * transform.translation,
+            };
         }
     }
 }

@@ -114,7 +114,7 @@ pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours, rounds: u
 }
 
 /// Unit normals of vertices: the mean of their triangles', by area.
-pub(super) fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+pub(crate) fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
