@@ -34,7 +34,7 @@ pub(super) struct LimbInstance {
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct SkinInstance {
-    /// The first of its joints; 1 where these have colours.
+    /// The first of its joints; where its colour is from, as in skin.wgsl.
     figure: [u32; 2],
     color: [u8; 4],
 }
@@ -241,7 +241,7 @@ impl Frame {
                 continue;
             }
             let solid_skins = self.add_solid_skins(pane);
-            let figures = self.add_figures(pane, viewport, quality);
+            let figures = self.add_figures(pane, viewport, stage.look.flat, quality);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
                 self.strokes
@@ -275,7 +275,7 @@ impl Frame {
     }
 
     /// Adds a figure in its skin; the number of its instance.
-    fn add_skin(&mut self, pane: &Pane, skin: &Skin) -> u32 {
+    fn add_skin(&mut self, pane: &Pane, skin: &Skin, ghost: bool) -> u32 {
         let first = self.joints.len() as u32;
         let transforms = pane.joints.get(skin.joints.clone()).unwrap_or_default();
         let colors = pane.joint_colors.get(skin.joints.clone()).unwrap_or_default();
@@ -290,8 +290,13 @@ impl Frame {
                 (*rotation, *shift) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4]);
             }
         }
+        let color_from = match (skin.colored, ghost || skin.mesh.colors.is_empty()) {
+            (true, _) => 1,
+            (false, true) => 0,
+            (false, false) => 2,
+        };
         self.skins.push(SkinInstance {
-            figure: [first, u32::from(skin.colored)],
+            figure: [first, color_from],
             color: bytes(skin.color),
         });
         self.skins.len() as u32 - 1
@@ -308,7 +313,7 @@ impl Frame {
             }
             let start = self.skins.len() as u32;
             for alike in solids().filter(|other| Arc::ptr_eq(&other.mesh, &skin.mesh)) {
-                self.add_skin(pane, alike);
+                self.add_skin(pane, alike, false);
             }
             let instances = start..self.skins.len() as u32;
             self.solid_skins.push(SkinDraw { mesh, instances });
@@ -316,17 +321,19 @@ impl Frame {
         first..self.solid_skins.len()
     }
 
-    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, quality: Quality) -> Range<usize> {
+    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, flat: bool, quality: Quality) -> Range<usize> {
         let first = self.figures.len();
         let [_, _, back] = pane.camera.axes();
         let plain = quality == Quality::Plain;
+        // Where the main light's shadow is all there is to be, none is soft.
+        let soft = plain || !flat;
         // The shadows of high limbs are as wide as the body and hardly seen: where every pixel costs, only what is low casts one.
         let only_low = plain || pane.figures.len() > MANY_FIGURES;
         for figure in &pane.figures {
             let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
                 continue;
             };
-            let shades = figure.shadow > 0.0 && !(plain && figure.ghost);
+            let shades = soft && figure.shadow > 0.0 && !(plain && figure.ghost);
             let mut draw = FigureDraw {
                 uniform: 0,
                 skin: None,
@@ -339,7 +346,7 @@ impl Frame {
             };
             if let Some(skin) = &figure.skin {
                 if figure.ghost {
-                    let (mesh, instance) = (self.mesh(&skin.mesh), self.add_skin(pane, skin));
+                    let (mesh, instance) = (self.mesh(&skin.mesh), self.add_skin(pane, skin, true));
                     let instances = instance..instance + 1;
                     draw.skin = Some(SkinDraw { mesh, instances });
                 }

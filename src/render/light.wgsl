@@ -98,7 +98,7 @@ fn shade(albedo: vec3f, world: vec3f, normal: vec3f, sky_seen: f32, key_seen: f3
 
     // On paper: two tones with a line between them.
     if view.style.z > 0.5 {
-        let lit = smoothstep(-0.02, 0.02, dot(normal, view.key.xyz) - 0.08) * smoothstep(0.45, 0.55, key_seen);
+        let lit = smoothstep(-0.02, 0.02, dot(normal, view.key.xyz) - 0.24) * smoothstep(0.45, 0.55, key_seen);
         out.linear = base * mix(0.62, 1.0, lit);
         return out;
     }
@@ -107,11 +107,11 @@ fn shade(albedo: vec3f, world: vec3f, normal: vec3f, sky_seen: f32, key_seen: f3
     let key = pow(clamp((dot(normal, view.key.xyz) + 0.35) / 1.35, 0.0, 1.0), 1.7) * key_seen;
     let upward = normal.y * 0.5 + 0.5;
     let near_floor = exp(-max(world.y, 0.0) * 4.0);
-    let under = mix(0.20, 0.12, near_floor) * vec3f(1.0, 0.985, 0.97);
-    let sky = mix(under, vec3f(0.36, 0.38, 0.425), upward) * sky_seen;
+    let under = mix(0.15, 0.10, near_floor) * vec3f(1.0, 0.985, 0.97);
+    let sky = mix(under, vec3f(0.29, 0.31, 0.355), upward) * sky_seen;
     let right = normalize(view.right.xyz);
     let fill = clamp(dot(normal, normalize(right - view.forward.xyz)), 0.0, 1.0) * 0.08 * sky_seen;
-    let light = sky + fill * vec3f(0.85, 0.94, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.955);
+    let light = sky + fill * vec3f(0.85, 0.94, 1.0) + key * 0.80 * vec3f(1.0, 0.985, 0.955);
 
     let half_way = normalize(view.key.xyz + to_eye);
     let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 30.0) * 0.06 * key_seen;

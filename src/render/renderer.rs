@@ -529,7 +529,7 @@ impl StageRenderer {
         if pane.lit.is_some() && take(pass, Brush::KeyShadow) {
             pass.draw(0..4, 0..1);
         }
-        if casts && take(pass, Brush::Shade) {
+        if (casts || pane.lit.is_some()) && take(pass, Brush::Shade) {
             pass.draw(0..3, 0..1);
         }
         let quads = |pass: &mut wgpu::RenderPass<'_>, brush, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {

@@ -12,7 +12,7 @@ struct Vertex {
     @location(3) weights: vec4f,
     // The mesh's own colour, encoded.
     @location(4) tint: vec4f,
-    // The first joint of the figure; 1 where its joints have colours.
+    // The first joint of the figure; where its colour is from: 0 the figure, 1 its joints, 2 the mesh.
     @location(5) figure: vec2u,
     @location(6) color: vec4f,
 }
@@ -90,7 +90,12 @@ fn skinned(vertex: Vertex) -> Moved {
         out.world = point / max(total, 1e-6);
         out.normal = normalize(normal + vertex.normal.xyz * 1e-6);
     }
-    out.color = select(vertex.color.rgb, color / max(total, 1e-6), vertex.figure.y == 1u) * vertex.tint.rgb;
+    out.color = vertex.color.rgb;
+    if vertex.figure.y == 1u {
+        out.color = color / max(total, 1e-6);
+    } else if vertex.figure.y == 2u {
+        out.color = vertex.tint.rgb;
+    }
     return out;
 }
 

@@ -93,7 +93,7 @@ impl Director {
         stage.panes.resize_with(shown.len(), Pane::default);
         let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
-        self.wardrobe.choose(params);
+        self.wardrobe.choose(session);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;

@@ -1,15 +1,16 @@
 //! The bodies of skeletons: made when first seen, kept as long as the skeleton is.
 
 use super::Body;
-use crate::session::{Key, Motion, Params};
+use crate::session::{Key, Motion, Session};
 use crate::skeleton::{Roles, Skeleton};
-use crate::skin::{Build, SkinnedMesh};
+use crate::skin::{Build, Character, Drive, SkinnedMesh};
 use std::sync::{Arc, Weak};
 
 /// What bodies look like for now, and those that were made so.
 #[derive(Debug, Default)]
 pub(super) struct Wardrobe {
     cut: Cut,
+    character: Option<Character>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
 }
 
@@ -21,15 +22,21 @@ struct Cut {
 
 impl Wardrobe {
     /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
-    pub(super) fn choose(&mut self, params: &Params) {
+    pub(super) fn choose(&mut self, session: &Session) {
+        let params = session.params();
         let cut = Cut {
             skin: params.text(Key::Look) != "limbs",
             girth: params.number(Key::FigureBuild) as f32,
         };
-        if cut != self.cut {
+        let character = session.character().filter(|_| cut.skin);
+        let same = match (&character, &self.character) {
+            (Some(new), Some(old)) => Arc::ptr_eq(&new.mesh, &old.mesh) && Arc::ptr_eq(&new.skeleton, &old.skeleton),
+            (new, old) => new.is_none() && old.is_none(),
+        };
+        if cut != self.cut || !same {
             self.bodies.clear();
         }
-        self.cut = cut;
+        (self.cut, self.character) = (cut, character);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
     }
 
@@ -41,16 +48,29 @@ impl Wardrobe {
         if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
-        let Cut { skin, girth } = self.cut;
-        let mut body = Body::new(skeleton, Some(&motion.roles)).with_girth(girth);
-        if skin {
-            let build = Build { girth, ..Build::default() };
-            body = body.with_skin(self.mesh(skeleton, &motion.roles, build));
-        }
-        let body = Arc::new(body);
+        let body = Arc::new(self.led(motion).unwrap_or_else(|| self.made(motion)));
         self.bodies
             .push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
         body
+    }
+
+    /// The character in place of a body, where there is one that can be moved so.
+    fn led(&self, motion: &Motion) -> Option<Body> {
+        let character = self.character.as_ref()?;
+        let drive = Drive::new(&motion.clip, &motion.roles, character)?;
+        Some(Body::led(character, drive, &motion.roles))
+    }
+
+    /// A body about the bones.
+    fn made(&self, motion: &Motion) -> Body {
+        let Cut { skin, girth } = self.cut;
+        let skeleton = motion.clip.skeleton();
+        let body = Body::new(skeleton, Some(&motion.roles)).with_girth(girth);
+        if !skin {
+            return body;
+        }
+        let build = Build { girth, ..Build::default() };
+        body.with_skin(self.mesh(skeleton, &motion.roles, build))
     }
 
     /// A mesh for a skeleton: the same for all skeletons that are equal, so that they are drawn together.

@@ -64,7 +64,7 @@ pub struct Skin {
     pub mesh: Arc<SkinnedMesh>,
     /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
     pub joints: Range<usize>,
-    /// Colour; for a ghost the alpha says how much of it is seen. The mesh's own colours are multiplied with it.
+    /// Colour; for a ghost the alpha says how much of it is seen. Where the mesh has colours of its own, a solid body shows those.
     pub color: Color,
     /// Whether every joint has a colour of its own instead, in [`Pane::joint_colors`].
     pub colored: bool,
@@ -243,6 +243,8 @@ impl Pane {
         ghost: bool,
         shadow: f32,
     ) {
+        let mut led = WorldPose::default();
+        let pose = body.led_pose(pose, &mut led).unwrap_or(pose);
         let start = self.limbs.len();
         match (&color_of, body.skin()) {
             (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),
@@ -253,7 +255,7 @@ impl Pane {
             self.joints.extend(mesh.world_from_bind(pose));
             let joints = first..self.joints.len();
             self.joint_colors
-                .extend((0..joints.len()).map(|joint| color_of.as_ref().map_or(color, |color_of| color_of(joint))));
+                .extend((0..joints.len()).map(|joint| color_of.as_ref().map_or(color, |color_of| color_of(body.color_joint(joint)))));
             Skin {
                 mesh: Arc::clone(mesh),
                 joints,

@@ -152,11 +152,20 @@ fn a_lecture_hall_sees_a_foot_that_slides() {
         },
     )];
     let mut session = Session::new();
-    let link = "lab=blend&a=walk&b=walk_left&blend_window=12&align=off&root_blend=off&t=2.92&camera_distance=3&stage=paper";
+    let link = "lab=blend&a=walk&b=run&blend_window=40&root_blend=off&camera_distance=4.2&stage=paper";
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}
     let mut look = Look::PAPER;
     look.edge_width *= 1.25;
-    let stage = Director::default().stage(&session, &shown, 1.0, look, &colors(1), 0.0);
+    let colors = colors(1);
+    let mut slides = |secs: f64| {
+        session.apply(Command::Seek(secs)).unwrap();
+        let stage = Director::default().stage(&session, &shown, 1.0, look, &colors, 0.0);
+        let ring = stage.panes[0].rings.iter().find(|ring| ring.color == colors.bad)?;
+        // It is heavier than that of a foot that stands.
+        assert!(ring.fill > 0.2 && ring.width > 0.02);
+        Some(stage)
+    };
+    let stage = (0..60).find_map(|step| slides(f64::from(step) * 0.1)).expect("a foot that slides");
     gpu.draw("hall-paper", &stage, size);
 }

@@ -5,7 +5,7 @@ mod tests;
 
 use super::{Color, Limb};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
-use crate::skin::SkinnedMesh;
+use crate::skin::{Character, Drive, SkinnedMesh};
 use crate::skin::shapes::{Placed, Shape, shapes};
 use std::sync::Arc;
 
@@ -24,10 +24,19 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 ///
 /// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the skeleton's own; girths follow the body
 /// height). Any other tree gets one tapered limb per bone, each as thick as what hangs on it asks for.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Body {
     shapes: Vec<Shape>,
     skin: Option<Arc<SkinnedMesh>>,
+    led: Option<Led>,
+}
+
+/// How a body is moved by poses of a skeleton that is not its own.
+#[derive(Clone, Debug)]
+struct Led {
+    drive: Drive,
+    /// For each of its joints the joint of the other skeleton whose colour it wears.
+    colors_of: Vec<usize>,
 }
 
 impl Body {
@@ -39,7 +48,43 @@ impl Body {
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
-        Self { shapes, skin: None }
+        Self {
+            shapes,
+            skin: None,
+            led: None,
+        }
+    }
+
+    /// The body of a character that poses of another skeleton, with those roles, move through `drive`.
+    #[must_use]
+    pub fn led(character: &Character, drive: Drive, roles: &Roles) -> Self {
+        let skeleton = &character.skeleton;
+        // Joints without a namesake go with the one that they hang on; parents come first.
+        let mut colors_of = vec![0; skeleton.len()];
+        for joint in 0..skeleton.len() {
+            let namesake = character.roles.role_of(joint).and_then(|role| roles.get(role));
+            let parents = skeleton.parent(joint).and_then(|parent| colors_of.get(parent).copied());
+            if let Some(color) = colors_of.get_mut(joint) {
+                *color = namesake.or(parents).unwrap_or(0);
+            }
+        }
+        Self {
+            led: Some(Led { drive, colors_of }),
+            ..Self::new(skeleton, Some(&character.roles)).with_skin(Arc::clone(&character.mesh))
+        }
+    }
+
+    /// The pose of the body's own skeleton for a pose of the one that moves it, written to `out`; `None` where both are the same.
+    pub(super) fn led_pose<'a>(&self, pose: &WorldPose, out: &'a mut WorldPose) -> Option<&'a WorldPose> {
+        let led = self.led.as_ref()?;
+        led.drive.pose(pose, out);
+        Some(out)
+    }
+
+    /// The joint of the skeleton that moves the body whose colour one of its own joints wears.
+    pub(super) fn color_joint(&self, joint: usize) -> usize {
+        let led = self.led.as_ref().and_then(|led| led.colors_of.get(joint));
+        led.copied().unwrap_or(joint)
     }
 
     /// The body with girths so many times as wide.
