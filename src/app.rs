@@ -20,7 +20,6 @@ use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
-use segue::scene::Look;
 use segue::session::reading::{Content, LARGE_BYTES};
 use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
 use std::cell::RefCell;
@@ -477,8 +476,8 @@ impl Segue {
             self.act(&action, ui.ctx());
         }
         // Only now: what a slider has just changed is in this picture, not in the next.
-        let theme = ui::theme::theme_of(ui);
-        let look = if theme.dark { Look::DARK } else { Look::LIGHT };
+        let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
+        let look = ui::stage_look(&self.session, theme);
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
         self.picture.mark_path(self.panels.path_marks(&self.session));

@@ -11,14 +11,18 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
-use segue::scene::{camera_of, resting_point};
+use segue::scene::{camera_of, figure_height, resting_point};
 use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
 
-/// The whole stage, as large as `ui`.
+/// The whole stage, as large as `ui`, in the stage's own theme.
 pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+    super::stage_theme(session, theme_of(ui)).within(ui, |ui| stage_ui(session, layout, state, out, paint, ui));
+}
+
+fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let stage = ui.available_rect_before_wrap();
     state.stage = stage;
     let panes = session.panes();
@@ -513,7 +517,7 @@ fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     let mut camera = camera_of(session.params());
     let before = camera.target;
     camera.pan(glam_vec2(drag), stage.height());
-    let moved = camera.target - before;
+    let moved = (camera.target - before) * figure_height(params);
     [(Key::PanX, moved.x), (Key::PanY, moved.y), (Key::PanZ, moved.z)]
         .map(|(key, by)| (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0))))
         .to_vec()
@@ -558,10 +562,11 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     let mut camera = camera_of(&params);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = camera.target - resting_point(first.outcome, &first.place);
+    let shown = figure_height(&params);
+    let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
-        (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),
+        (Key::CameraDistance, Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0))),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

@@ -184,6 +184,20 @@ impl Theme {
         style
     }
 
+    /// Draws with this theme on a page that has another.
+    pub(crate) fn within<R>(self, ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+        let page = theme_of(ui);
+        if page == self {
+            return add(ui);
+        }
+        let style = std::mem::replace(ui.style_mut(), self.style());
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), self));
+        let added = add(ui);
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), page));
+        *ui.style_mut() = style;
+        added
+    }
+
     fn visuals(self) -> Visuals {
         let p = self.palette();
         let mut visuals = if self.dark { Visuals::dark() } else { Visuals::light() };

@@ -27,6 +27,7 @@ use super::recipe::{
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
+use crate::skin::Character;
 use crate::synth;
 use std::sync::Arc;
 
@@ -248,6 +249,12 @@ impl Session {
     #[must_use]
     pub fn span(&self) -> Span {
         Span::between(self.params.optional(Key::In), self.params.optional(Key::Out), self.duration_secs())
+    }
+
+    /// The character that is moved in place of bodies made around bones: the one of the clip that the parameter `character` names.
+    #[must_use]
+    pub fn character(&self) -> Option<Character> {
+        self.library.find(self.params.text(Key::Character))?.character()
     }
 
     /// The clip in a slot.
@@ -576,6 +583,9 @@ impl Session {
         self.leave_company(&entry.id);
         self.leave_out_of_graph(&entry.id);
         self.library_revision += 1;
+        if self.params.text(Key::Character) == entry.id {
+            self.set_unchecked(Key::Character, Value::Text(String::new()));
+        }
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
             let key = slot_key(slot);
