@@ -293,6 +293,10 @@ impl Segue {
                         .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
                 }
             }
+            Incoming::Lesson { source, result } => {
+                let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
+                self.session.finish_lesson(&source, text);
+            }
             Incoming::Progress { address, done, total } => {
                 if let Some((name, progress)) = self.downloads.progressed(&address, done, total) {
                     self.events.push(Event::Progress { name, progress });
@@ -386,6 +390,7 @@ impl Segue {
                         platform::load_sample(sample, &self.inbox);
                     }
                 }
+                Request::Lesson(source) => platform::load_lesson(&source, &self.inbox),
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {
                     if let Some(bytes) = self.vault.bytes_of(&task.content) {

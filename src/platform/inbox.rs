@@ -1,6 +1,7 @@
 use super::{LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -41,6 +42,13 @@ pub(crate) enum Incoming {
         /// Which.
         sample: &'static Sample,
         /// Its packed bytes, or why they are not there.
+        result: Result<Arc<[u8]>, String>,
+    },
+    /// The text of a lesson.
+    Lesson {
+        /// Which.
+        source: Source,
+        /// Its bytes, or why they are not there.
         result: Result<Arc<[u8]>, String>,
     },
     /// A part of a file has come over the network.

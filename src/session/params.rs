@@ -502,6 +502,7 @@ parameters! {
     Theme "theme" "Theme" Page Kind::Choice(THEMES), Start::Word("auto"), "", "Dark, light, or as the system has it.";
     Projector "projector" "Projector" Page Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
     Embed "embed" "Embed" Page Kind::Switch, Start::Switch(false), "", "The stage and the parameters that the link names, without the rest.";
+    Lesson "lesson" "Lesson" Page Kind::Text, Start::Word(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
     Src "src" "Source" Page Kind::Text, Start::Word(""), "", "Addresses of motion files to load, separated by spaces.";
 }
 

@@ -17,6 +17,7 @@ pub(crate) use storage::Storage;
 use super::{Inbox, Incoming, address};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
@@ -67,21 +68,31 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     Fetch
 }
 
-/// Reads a bundled take; [`Incoming::Sample`] brings it. They lie in `samples` beside the program, or in the project's folder.
+/// Reads a bundled take; [`Incoming::Sample`] brings it.
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
-    let beside = std::env::current_exe()
-        .ok()
-        .and_then(|program| Some(program.parent()?.join("samples")));
-    let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples");
-    let paths: Vec<_> = beside
-        .into_iter()
-        .chain([in_project])
-        .map(|folder| folder.join(sample.file))
-        .collect();
-    let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
-    let result = match read {
-        Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
-        None => Err(format!("{} is not in the folder `samples` beside the program", sample.file)),
-    };
+    let result = bundled("samples", sample.file);
     inbox.push(Incoming::Sample { sample, result });
+}
+
+/// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+    let result = match source {
+        Source::BuiltIn(file) => bundled("lessons", file),
+        Source::Web(address) => Err(format!(
+            "This window does not load lessons over the network: {address} opens in a browser."
+        )),
+    };
+    let source = source.clone();
+    inbox.push(Incoming::Lesson { source, result });
+}
+
+/// Reads what comes with Segue. It lies in a folder beside the program, or in the project's.
+fn bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
+    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(folder)));
+    let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
+    let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
+    match paths.iter().find(|path| path.is_file()).map(std::fs::read) {
+        Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
+        None => Err(format!("{file} is not in the folder `{folder}` beside the program")),
+    }
 }

@@ -13,7 +13,7 @@ mod snapshot;
 mod storage;
 
 pub(crate) use super::address::file_name_of;
-pub(crate) use fetch::{Fetch, fetch, load_sample};
+pub(crate) use fetch::{Fetch, fetch, load_lesson, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
 pub(crate) use gamepad::gamepad;

@@ -276,6 +276,7 @@ impl Session {
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
+        self.ask_for_lesson();
         let compare = self.compare().filter(|compare| belongs_to(compare.key, self.params.text(Key::Lab)));
         let variants: Vec<Option<(Key, Value)>> = match &compare {
             Some(compare) => compare
