@@ -13,7 +13,7 @@ pub(crate) use address_bar::link_query;
 
 use crate::platform::{self, Inbox, Incoming, LargeFile, Pace, ReadNews, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
-use crate::ui::{self, Action, CurveCache, Filming, UiState};
+use crate::ui::{self, Action, CurveCache, Filming, Language, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
 use eframe::{egui, wgpu};
@@ -104,6 +104,8 @@ pub(crate) struct Segue {
     picture: Picture,
     /// What is said when the clipboard has taken what it was given.
     copied: &'static str,
+    /// The language that the user reads best.
+    preferred: Language,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
 }
@@ -183,6 +185,7 @@ impl Segue {
             picture: Picture::default(),
             film: None,
             copied: ui::LINK_COPIED,
+            preferred: Language::preferred(platform::languages().iter().map(String::as_str)),
         }
     }
 
@@ -441,6 +444,8 @@ impl Segue {
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
+        self.panels.language = Language::of(&self.session, self.preferred);
+        self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         if self.session.is_driven() {
             self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {

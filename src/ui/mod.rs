@@ -8,6 +8,7 @@ mod graph;
 mod ground_line;
 pub(crate) mod kit;
 mod lab_panel;
+mod language;
 mod layers_rows;
 mod library_panel;
 mod out;
@@ -30,6 +31,7 @@ mod top_bar;
 mod transport_row;
 
 pub(crate) use drive::Pad;
+pub(crate) use language::Language;
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};

@@ -1,6 +1,7 @@
 //! What the interface remembers that is nobody else's business.
 
 use super::drive::DriveHand;
+use super::language::Language;
 use super::path_hand::PathHand;
 use eframe::egui::Rect;
 use glam::DVec2;
@@ -96,6 +97,8 @@ pub(crate) struct UiState {
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
     pub(crate) saved_pane: usize,
+    /// The language of the interface.
+    pub(crate) language: Language,
     /// What pictures can be taken here.
     pub(crate) filming: Filming,
     /// The line that says what to look at; gone once somebody touched something.
@@ -128,6 +131,7 @@ impl Default for UiState {
             layout: Layout::Desk,
             export: ExportOptions::default(),
             saved_pane: 0,
+            language: Language::default(),
             filming: Filming::default(),
             hint: true,
             stage: Rect::NOTHING,

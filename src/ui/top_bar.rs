@@ -4,6 +4,7 @@ use super::cycle_panels::{compare_loops, compare_speeds};
 use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
+use super::language::Language;
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
 use super::register_panel::compare_warps;
@@ -73,6 +74,9 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::icon_button_ui(Icon::Contrast, text::THEME, ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
+    if kit::icon_button_ui(Icon::Language, language_switch(state.language).1, ui).clicked() {
+        out.set_once(Key::Lang, language_switch(state.language).0);
+    }
     let projector = session.params().is_on(Key::Projector);
     if kit::button_ui(
         Button::new(text::LARGER)
@@ -125,6 +129,10 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     if kit::menu_item_ui(item(text::THEME, Icon::Contrast), ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
+    let (language, words) = language_switch(state.language);
+    if kit::menu_item_ui(item(words, Icon::Language), ui).clicked() {
+        out.set_once(Key::Lang, language);
+    }
     if kit::menu_item_ui(item(text::HELP, Icon::Help), ui).clicked() {
         state.help_open = true;
     }
@@ -132,6 +140,15 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
 
 fn other_theme(ui: &Ui) -> Value {
     Value::Choice(if theme_of(ui).dark { "light" } else { "dark" })
+}
+
+/// The language that the switch leads to, and what it says.
+fn language_switch(present: Language) -> (Value, &'static str) {
+    let (other, words) = match present {
+        Language::English => (Language::Chinese, text::IN_CHINESE),
+        Language::Chinese => (Language::English, text::IN_ENGLISH),
+    };
+    (Value::Choice(other.tag()), words)
 }
 
 /// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or goes back to one pane.

@@ -37,6 +37,14 @@ pub(crate) fn location_query() -> String {
         .map_or_else(String::new, |query| address::state_of(&query))
 }
 
+/// The user's languages, best first, as their tags.
+pub(crate) fn languages() -> Vec<String> {
+    ["LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .filter_map(|key| std::env::var(key).ok())
+        .collect()
+}
+
 /// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there.
 pub(crate) fn copy_text(text: String, ctx: &egui::Context, inbox: &Inbox) {
     ctx.copy_text(text);

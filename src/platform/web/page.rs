@@ -37,6 +37,13 @@ pub(crate) fn location_query() -> String {
     state_of(&search())
 }
 
+/// The user's languages, best first, as their tags.
+pub(crate) fn languages() -> Vec<String> {
+    window().map_or_else(Vec::new, |window| {
+        window.navigator().languages().iter().filter_map(|tag| tag.as_string()).collect()
+    })
+}
+
 /// The graphics that the page's address asks for.
 pub(super) fn wanted_backend() -> Option<String> {
     backend_of(&search())

@@ -481,6 +481,8 @@ impl Session {
         let link = link::read(query);
         let mut params = Params::default();
         let named: Vec<Key> = link.values.iter().map(|(key, _)| *key).collect();
+        // A language is the reader's own until a link names another one.
+        params.copy_from(&self.params, Key::Lang);
         for (key, value) in link.values {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");

@@ -2,10 +2,10 @@
 
 use super::Session;
 use crate::session::command::{CommandError, Request};
-use crate::session::lesson::{CONTENTS, LESSONS, LessonError, MOST_BYTES, Page, Source, Text, parse, source_of};
+use crate::session::lesson::{CONTENTS, LESSONS, LessonError, Page, Source, Text, parse, source_of};
 use crate::session::link::{self, Link};
 use crate::session::notice::Level;
-use crate::session::params::{Group, Key, PARAMS, Param, Params, Value};
+use crate::session::params::{Group, Key, PARAMS, Param, Params};
 use crate::session::recipe::Slot;
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ impl Session {
         if name.is_empty() {
             return None;
         }
-        let (source, index) = match source_of(name, self.language()) {
+        let (source, index) = match source_of(name, self.shelf.language) {
             Ok(found) => found,
             Err(problem) => return Some(Lesson::Failed(problem)),
         };
@@ -119,14 +119,18 @@ impl Session {
         format!("{name} is no lesson: {error}.")
     }
 
-    /// The language of the lessons that come with Segue.
-    fn language(&self) -> &str {
-        "en"
+    /// From now on, the lessons that come with Segue are those in this language: a folder of theirs, `en` or `zh-Hant`.
+    pub fn read_lessons_in(&mut self, language: &'static str) {
+        if self.shelf.language != language {
+            self.shelf.language = language;
+            self.ask_for_lesson();
+            self.revision += 1;
+        }
     }
 
     /// The page that is open.
     fn lesson_page(&self) -> Option<&Page> {
-        let (source, index) = source_of(self.params.text(Key::Lesson), self.language()).ok()?;
+        let (source, index) = source_of(self.params.text(Key::Lesson), self.shelf.language).ok()?;
         self.shelf.pages(&source)?.get(index)
     }
 
@@ -136,7 +140,7 @@ impl Session {
         if name.is_empty() {
             return;
         }
-        let Ok((source, _)) = source_of(name, self.language()) else { return };
+        let Ok((source, _)) = source_of(name, self.shelf.language) else { return };
         if !self.shelf.texts.contains_key(&source) {
             self.shelf.texts.insert(source.clone(), Text::Asked);
             self.requests.push(Request::Lesson(source));

@@ -82,12 +82,24 @@ pub(in crate::session) enum Text {
 }
 
 /// The texts that were asked for, by where they are.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(in crate::session) struct Shelf {
+    /// The folder of the lessons that come with Segue.
+    pub(in crate::session) language: &'static str,
     /// See the type.
     pub(in crate::session) texts: BTreeMap<Source, Text>,
     /// The lesson that is to set the document up once its text is here.
     pub(in crate::session) to_set_up: Option<String>,
+}
+
+impl Default for Shelf {
+    fn default() -> Self {
+        Self {
+            language: "en",
+            texts: BTreeMap::new(),
+            to_set_up: None,
+        }
+    }
 }
 
 impl Shelf {

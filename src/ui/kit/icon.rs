@@ -18,6 +18,8 @@ pub(crate) enum Icon {
     Loop,
     /// Dark or light.
     Contrast,
+    /// Another language: 中 / EN.
+    Language,
     /// More, behind three lines.
     Menu,
     /// Take away.
@@ -102,6 +104,13 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 (8.0 + 5.6 * angle.cos(), 8.0 + 5.6 * angle.sin())
             });
             pen.fill(&arc.collect::<Vec<_>>());
+        }
+        Icon::Language => {
+            // 中 is a box and an upright: no font has to have it.
+            pen.stroke(&[(2.0, 3.6), (9.0, 3.6), (9.0, 7.8), (2.0, 7.8), (2.0, 3.6)]);
+            pen.stroke(&[(5.5, 1.2), (5.5, 11.4)]);
+            pen.stroke(&[(14.0, 9.0), (11.0, 9.0), (11.0, 14.6), (14.0, 14.6)]);
+            pen.stroke(&[(11.0, 11.7), (13.6, 11.7)]);
         }
         Icon::Menu => {
             for y in [4.0, 8.0, 12.0] {
