@@ -385,6 +385,7 @@ impl Segue {
     }
 
     fn send_requests(&mut self) {
+        self.session.read_lessons_in(Language::of(&self.session, self.preferred).tag());
         for request in self.session.take_requests() {
             match request {
                 Request::Sample(sample) => {
@@ -445,7 +446,6 @@ impl Segue {
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.language = Language::of(&self.session, self.preferred);
-        self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         if self.session.is_driven() {
             self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {

@@ -65,6 +65,12 @@ pub(crate) enum Type {
     Body,
     /// Names: a clip, the chosen tab.
     Strong,
+    /// The heading of a page that is read.
+    Heading,
+    /// Text that is read, not looked up.
+    Reading,
+    /// What is firm in it.
+    ReadingStrong,
     /// Labels of parameters.
     Label,
     /// The value of a parameter.
@@ -93,7 +99,10 @@ impl Theme {
     /// The font of one step of the type scale.
     pub(crate) fn font(self, step: Type) -> FontId {
         let (size, strong) = match step {
+            Type::Heading => (19.0, true),
             Type::Title => (15.5, true),
+            Type::Reading => (14.0, false),
+            Type::ReadingStrong => (14.0, true),
             Type::Body | Type::Label => (13.0, false),
             Type::Strong | Type::Number => (13.0, true),
             Type::Metric => (16.0, true),

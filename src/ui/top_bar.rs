@@ -5,6 +5,7 @@ use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::Language;
+use super::lessons_panel::{lessons_button_ui, toggle_lessons};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
 use super::register_panel::compare_warps;
@@ -105,6 +106,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui).clicked() {
         toggle_compare(session, out);
     }
+    lessons_button_ui(session, layout, out, ui);
 }
 
 /// What a phone has no room for in the bar.
@@ -116,6 +118,9 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     };
     if kit::menu_item_ui(item(text::LIBRARY, Icon::Folder), ui).clicked() {
         state.library_open = true;
+    }
+    if kit::menu_item_ui(item(text::LESSONS, Icon::Book), ui).clicked() {
+        toggle_lessons(session, out);
     }
     if kit::menu_item_ui(item(text::COMPARE, Icon::Swap), ui).clicked() {
         toggle_compare(session, out);

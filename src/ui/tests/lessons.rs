@@ -1,0 +1,156 @@
+//! The panel of lessons.
+
+use super::*;
+use segue::session::Lesson;
+use segue::session::lesson::Source;
+
+/// Brings the texts that are asked for, from the project's folder.
+fn deliver(session: &mut Session) {
+    for request in session.take_requests() {
+        if let segue::session::Request::Lesson(source) = request {
+            let text = match &source {
+                Source::BuiltIn(file) => {
+                    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lessons").join(file);
+                    std::fs::read(path).map_err(|error| error.to_string())
+                }
+                Source::Web(address) => Err(format!("There is no file at {address} (answer 404).")),
+            };
+            session.finish_lesson(&source, text.as_deref().map_err(Clone::clone));
+        }
+    }
+    while session.work() {}
+}
+
+fn lesson(link: &str) -> Page {
+    let mut page = page(link);
+    deliver(&mut page.session);
+    page
+}
+
+/// Presses something, and lets come what it asks for.
+fn go(label: &str, harness: &mut Harness<'_, Page>) {
+    press(label, harness);
+    deliver(&mut harness.state_mut().session);
+    harness.run();
+}
+
+#[test]
+fn a_lesson_is_read_tried_and_left() {
+    let mut harness = harness(DESK, DARK, page("lab=make&gait=run&play=off"));
+    let before = harness.state().session.query();
+    go(text::LESSONS, &mut harness);
+    picture("lessons-contents", &mut harness);
+    go("3. The blend window", &mut harness);
+    harness.get_by_label("3 of 14");
+    let params = |harness: &Harness<'_, Page>, key: Key| harness.state().session.params().text(key).to_owned();
+    assert_eq!(params(&harness, Key::Lab), "blend");
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
+    let is_marked = |label: &str, harness: &Harness<'_, Page>| {
+        let node = harness.get_by_label(label);
+        node.accesskit_node().is_selected() == Some(true)
+    };
+    assert!(is_marked("Full, half, a third", &harness) && !is_marked("One frame", &harness));
+    go("One frame", &mut harness);
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,1");
+    assert!(is_marked("One frame", &harness) && !is_marked("Full, half, a third", &harness));
+    harness.state_mut().session.apply(Command::Undo).expect("a step to take back");
+    harness.run();
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
+    assert!(harness.query_by_label_contains("four times the acceleration").is_none());
+    press(text::SHOW_ANSWER, &mut harness);
+    harness.get_by_label_contains("four times the acceleration");
+    picture("lessons-answer", &mut harness);
+    go(text::NEXT, &mut harness);
+    harness.get_by_label("4 of 14");
+    harness.get_by_label(text::SHOW_ANSWER);
+    go(text::PREVIOUS_PAGE, &mut harness);
+    harness.get_by_label("3 of 14");
+    harness.key_press(Keyboard::Escape);
+    harness.run();
+    assert!(harness.state().session.lesson().is_none());
+    harness.key_press(Keyboard::N);
+    harness.run();
+    harness.get_by_label("3. The blend window");
+    // All that was done is taken back step by step.
+    while harness.state().session.can_undo() {
+        harness.state_mut().session.apply(Command::Undo).expect("a step to take back");
+    }
+    assert_eq!(harness.state().session.query(), before);
+}
+
+#[test]
+fn a_lesson_is_worked_by_the_keyboard() {
+    let mut harness = harness(DESK, LIGHT, lesson("lesson=foot_skate&lab=blend&play=off"));
+    let node = harness.get_by_label("Only foot lock");
+    node.focus();
+    harness.run();
+    harness.key_press(Keyboard::Enter);
+    harness.run();
+    assert!(harness.state().session.params().is_on(Key::FootLock));
+    harness.get_by_label(text::SHOW_ANSWER).focus();
+    harness.run();
+    harness.key_press(Keyboard::Enter);
+    harness.run();
+    harness.get_by_label_contains("30 cm at most");
+}
+
+#[test]
+fn a_lesson_that_does_not_come_says_why() {
+    let mut harness = harness(PHONE, DARK, lesson("lesson=https://example.org/steps.md"));
+    harness.get_by_label_contains("There is no file at https://example.org/steps.md");
+    press(text::TRY_AGAIN, &mut harness);
+    assert!(matches!(harness.state().session.lesson(), Some(Lesson::Waiting)));
+    picture("lessons-waiting", &mut harness);
+}
+
+#[test]
+fn lessons_look_well_everywhere() {
+    for (name, size, theme, link) in [
+        ("desk-dark", DESK, DARK, "lesson=alignment&play=off&t=2.5"),
+        ("desk-light", DESK, LIGHT, "lesson=half_life&play=off&t=2.5"),
+        ("desk-graph", DESK, DARK, "lesson=distance_matrix&play=off&t=4"),
+        ("desk-path", DESK, LIGHT, "lesson=path_editing&play=off&t=1"),
+        ("projector", vec2(1280.0, 720.0), HALL, "lesson=blend_window&play=off&t=2.3"),
+        ("projector-1920", vec2(1920.0, 1080.0), HALL, "lesson=slerp&play=off&t=2.3"),
+        ("tablet", vec2(900.0, 700.0), LIGHT, "lesson=edge_weights&play=off"),
+        ("phone-dark", PHONE, DARK, "lesson=foot_skate&play=off&t=1.4"),
+        ("phone-light", PHONE, LIGHT, "lesson=contents&play=off"),
+    ] {
+        for (language, tag) in [("en", ""), ("zh", "zh-Hant")] {
+            if language == "zh" && harness_has_no_chinese() {
+                continue;
+            }
+            let mut page = page("lab=blend");
+            if !tag.is_empty() {
+                page.session.read_lessons_in("zh-Hant");
+            }
+            let named = link.split('&').next().unwrap_or_default();
+            for link in [named, link] {
+                page.session
+                    .apply(if link == named { Command::OpenLink(link.into()) } else { Command::Set(rest_of(link)) })
+                    .expect("a page as the tests need it");
+                deliver(&mut page.session);
+            }
+            let mut harness = harness(size, theme, page);
+            harness.get_by_label(text::CLOSE_LESSONS);
+            picture(&format!("lessons-{name}-{language}"), &mut harness);
+            if let Some(button) = harness.query_by_label(text::SHOW_ANSWER) {
+                button.scroll_to_me();
+                harness.run();
+                press(text::SHOW_ANSWER, &mut harness);
+                picture(&format!("lessons-{name}-{language}-down"), &mut harness);
+            }
+        }
+    }
+}
+
+/// What a link says beside its lesson.
+fn rest_of(link: &str) -> Vec<(Key, Value)> {
+    let values = segue::session::link::read(link).values;
+    values.into_iter().filter(|(key, _)| *key != Key::Lesson).collect()
+}
+
+/// Before the fonts of another language are here, its pictures would show boxes.
+fn harness_has_no_chinese() -> bool {
+    true
+}
