@@ -2,7 +2,7 @@
 
 mod prose;
 
-use super::kit::{self, Button, Icon};
+use super::kit::{self, Button, Icon, MenuItem};
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
@@ -41,10 +41,13 @@ pub(super) fn lessons_button_ui(session: &Session, layout: Layout, out: &mut Out
 /// Where a lesson and the parameters share one place: which of them is there.
 pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
     let options = [(false, text::LESSON), (true, text::PARAMETERS)];
-    if let Some(behind) = kit::segmented_ui(text::LESSON_OR_PARAMETERS, state.lesson_behind, &options, ui) {
+    let picked = clear_of_bar_ui(ui, |ui| {
+        kit::segmented_ui(text::LESSON_OR_PARAMETERS, state.lesson_behind, &options, ui)
+    });
+    if let Some(behind) = picked {
         state.lesson_behind = behind;
     }
-    ui.add_space(space::S);
+    ui.add_space(space::XS);
 }
 
 /// The whole panel.
@@ -54,16 +57,11 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
     if state.answered.as_ref().is_some_and(|answered| answered != name) {
         state.answered = None;
     }
-    header_ui(&lesson, out, ui);
+    clear_of_bar_ui(ui, |ui| header_ui(&lesson, out, ui));
     ui.add_space(space::XS);
     // Every page is scrolled for itself.
     ScrollArea::vertical().id_salt(name).auto_shrink(false).show(ui, |ui| {
-        let margin = Margin {
-            right: space::M as i8,
-            bottom: space::M as i8,
-            ..Margin::ZERO
-        };
-        Frame::new().inner_margin(margin).show(ui, |ui| match &lesson {
+        clear_of_bar_ui(ui, |ui| match &lesson {
             Lesson::Contents(page) => contents_ui(page, out, ui),
             Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
             Lesson::Waiting => note_ui(text::LESSON_WAITING, false, ui),
@@ -75,6 +73,15 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
             }
         });
     });
+}
+
+/// Leaves the room in which the bar of what scrolls lies.
+fn clear_of_bar_ui<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let margin = Margin {
+        right: space::M as i8,
+        ..Margin::ZERO
+    };
+    Frame::new().inner_margin(margin).show(ui, content).inner
 }
 
 /// Back to the list, where one is, forth and back, and away.
@@ -119,11 +126,15 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
     ui.add_space(space::XS);
     for (index, entry) in page.entries().enumerate() {
         let name = format!("{}. {}", index + 1, entry.label);
-        if kit::button_ui(Button::new(&name), ui).clicked() {
+        let item = MenuItem {
+            text: &name,
+            ..MenuItem::default()
+        };
+        if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Try(entry.query.clone()));
         }
+        ui.add_space(-space::S);
         indented_ui(ui, |ui| spans_ui(&entry.about, Type::Small, true, out, ui));
-        ui.add_space(space::XS);
     }
 }
 
@@ -164,17 +175,20 @@ fn answer_ui(page: &Page, name: &str, state: &mut UiState, out: &mut Out, ui: &m
     if page.answer.is_empty() {
         return;
     }
-    let is_shown = state.answered.is_some();
-    let words = if is_shown { text::HIDE_ANSWER } else { text::SHOW_ANSWER };
-    if kit::button_ui(Button::new(words).selected(is_shown), ui).clicked() {
-        state.answered = (!is_shown).then(|| name.to_owned());
+    let was_shown = state.answered.is_some();
+    let words = if was_shown { text::HIDE_ANSWER } else { text::SHOW_ANSWER };
+    if kit::button_ui(Button::new(words).selected(was_shown), ui).clicked() {
+        state.answered = (!was_shown).then(|| name.to_owned());
     }
-    if is_shown {
+    if state.answered.is_some() {
         let frame = Frame::new().fill(palette_of(ui).panel_raised).corner_radius(radius::M);
-        frame.inner_margin(Margin::same(space::M as i8)).show(ui, |ui| {
+        let shown = frame.inner_margin(Margin::same(space::M as i8)).show(ui, |ui| {
             ui.set_width(ui.available_width());
             blocks_ui(&page.answer, Type::Reading, out, ui);
         });
+        if !was_shown {
+            shown.response.scroll_to_me(None);
+        }
     }
 }
 

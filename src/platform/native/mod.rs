@@ -96,7 +96,9 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
 
 /// Reads what comes with Segue. It lies in a folder beside the program, or in the project's.
 fn bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
-    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(folder)));
+    let beside = std::env::current_exe()
+        .ok()
+        .and_then(|program| Some(program.parent()?.join(folder)));
     let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
     let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
     match paths.iter().find(|path| path.is_file()).map(std::fs::read) {

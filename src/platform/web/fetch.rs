@@ -147,10 +147,12 @@ async fn get(address: &str, wanted: &Wanted, signal: Option<&AbortSignal>, inbox
     if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, wanted.most_bytes)) {
         return Err(reason);
     }
-    read(&response, address, total, wanted.most_bytes, inbox).await.map_err(|error| match error {
-        Unread::TooLarge(reason) => reason,
-        Unread::Broken(error) => format!("The connection broke while {name} was loading: {}.", words_of(&error)),
-    })
+    read(&response, address, total, wanted.most_bytes, inbox)
+        .await
+        .map_err(|error| match error {
+            Unread::TooLarge(reason) => reason,
+            Unread::Broken(error) => format!("The connection broke while {name} was loading: {}.", words_of(&error)),
+        })
 }
 
 enum Unread {
@@ -180,7 +182,9 @@ async fn read(response: &Response, address: &str, total: Option<u64>, most_bytes
         let done = bytes.len() as u64 + u64::from(piece.length());
         if done > most_bytes {
             JsFuture::from(reader.cancel()).await.ok();
-            return Err(Unread::TooLarge(too_large(&file_name_of(address), done, most_bytes).unwrap_or_default()));
+            return Err(Unread::TooLarge(
+                too_large(&file_name_of(address), done, most_bytes).unwrap_or_default(),
+            ));
         }
         bytes.extend(piece.to_vec());
         // The length is that of what travels, packed; once there is more than that, it says nothing.

@@ -216,7 +216,13 @@ impl Session {
     /// The query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
-        link::write(&self.params)
+        let query = link::write(&self.params);
+        if self.would_set_up() {
+            // The lab, which is named only where it is not the first one, says that there is a state besides.
+            format!("{query}&{}={}", Key::Lab.param().name, self.params.text(Key::Lab))
+        } else {
+            query
+        }
     }
 
     /// The comparison that is open.

@@ -56,7 +56,10 @@ impl Session {
         };
         let Some(page) = pages.get(index) else {
             let found = index + 1;
-            return Some(Lesson::Failed(format!("lesson: found page {found}, expected 1 to {}.", pages.len())));
+            return Some(Lesson::Failed(format!(
+                "lesson: found page {found}, expected 1 to {}.",
+                pages.len()
+            )));
         };
         if name == CONTENTS {
             return Some(Lesson::Contents(page));
@@ -140,7 +143,9 @@ impl Session {
         if name.is_empty() {
             return;
         }
-        let Ok((source, _)) = source_of(name, self.shelf.language) else { return };
+        let Ok((source, _)) = source_of(name, self.shelf.language) else {
+            return;
+        };
         if !self.shelf.texts.contains_key(&source) {
             self.shelf.texts.insert(source.clone(), Text::Asked);
             self.requests.push(Request::Lesson(source));
@@ -155,6 +160,12 @@ impl Session {
         let alone = values.into_iter().all(is_about_the_reader);
         self.shelf.to_set_up = alone.then(|| self.params.text(Key::Lesson).to_owned());
         self.set_up();
+    }
+
+    /// Whether a link that names only what is not as in the table would set the document up for a lesson, in place of what is there.
+    pub(super) fn would_set_up(&self) -> bool {
+        let mut changed = self.params.changed().map(|(param, _)| param.key);
+        !self.params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
     }
 
     /// Sets the document up as the open page says, if it waits for that and the text is here. Whether it did.
@@ -176,6 +187,11 @@ impl Session {
     pub(super) fn try_out(&mut self, query: &str) -> Result<(), CommandError> {
         let link = link::read(query);
         if let Some(lesson) = link.values.iter().find(|(key, _)| *key == Key::Lesson) {
+            if self.params.get(Key::Lesson) == &lesson.1 {
+                // It is open already: what did not come is asked for again.
+                self.remember(None);
+                self.lesson_was_set([Key::Lesson]);
+            }
             self.set(vec![lesson.clone()])?;
             self.history.settle();
             return Ok(());
@@ -214,10 +230,7 @@ impl Session {
         let sources_changed = params.text(Key::Src) != self.params.text(Key::Src);
         self.params = params;
         if !problems.is_empty() {
-            self.say(
-                Level::Warning,
-                format!("The link was used, but for this: {}.", problems.join("; ")),
-            );
+            self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; ")));
         }
         if sources_changed {
             self.fetch_sources();

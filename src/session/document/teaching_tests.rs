@@ -7,10 +7,7 @@ const PAGE: &str = "# One\n\n[Begin](?lab=blend&a=walk&b=run&blend_window=30)\n\
 const ADDRESS: &str = "https://example.org/steps.md";
 
 fn set(session: &mut Session, values: &[(Key, &str)]) {
-    let values = values
-        .iter()
-        .map(|(key, text)| (*key, key.param().parse(text).unwrap()))
-        .collect();
+    let values = values.iter().map(|(key, text)| (*key, key.param().parse(text).unwrap())).collect();
     session.apply(Command::Set(values)).unwrap();
     session.apply(Command::Settle).unwrap();
 }
@@ -48,7 +45,11 @@ fn a_lesson_that_is_chosen_sets_the_document_up_in_one_step() {
     set(&mut session, &[(Key::Lesson, ADDRESS)]);
     assert!(matches!(session.lesson(), Some(Lesson::Waiting)));
     assert_eq!(deliver(&mut session), [Source::Web(ADDRESS.to_owned())]);
-    assert_eq!(session.query(), format!("lesson={ADDRESS}"), "the state of the page is that of the table");
+    assert_eq!(
+        session.query(),
+        format!("lesson={ADDRESS}&lab=blend"),
+        "the state of the page is that of the table"
+    );
     // The second page is in the same file.
     let Some(Lesson::Page(page)) = session.lesson() else { panic!() };
     assert_eq!((page.number, page.of, page.previous), (1, 2, None));
@@ -72,7 +73,6 @@ fn a_link_with_a_state_keeps_it_beside_the_lesson() {
     ] {
         let mut session = Session::new();
         session.apply(Command::OpenLink(link.clone())).unwrap();
-        set(&mut session, &[]);
         deliver(&mut session);
         assert_eq!(session.params().number(Key::BlendWindow), window, "{link}");
         assert_eq!(number_of(&session), 1);
@@ -80,6 +80,24 @@ fn a_link_with_a_state_keeps_it_beside_the_lesson() {
         session.apply(Command::OpenLink(again.clone())).unwrap();
         assert_eq!(session.query(), again, "a link reproduces itself");
     }
+}
+
+#[test]
+fn a_link_to_what_is_there_does_not_set_the_page_up() {
+    let mut session = Session::new();
+    set(&mut session, &[(Key::Lesson, &format!("{ADDRESS}#2"))]);
+    deliver(&mut session);
+    assert_eq!(session.params().text(Key::Lab), "make");
+    // All as in the table, but for the lesson.
+    set(&mut session, &[(Key::Lab, "blend"), (Key::Gait, "walk")]);
+    let link = session.query();
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(link.clone())).unwrap();
+    deliver(&mut other);
+    assert_eq!(
+        (other.query(), number_of(&other), other.params().text(Key::Lab)),
+        (link, 2, "blend")
+    );
 }
 
 #[test]
@@ -96,7 +114,10 @@ fn a_try_lays_its_link_over_the_page_and_is_one_step() {
     assert_eq!((params.text(Key::Theme), params.text(Key::Look)), ("light", "bones"));
     assert_eq!(params.text(Key::Lesson), ADDRESS);
     session.apply(Command::Try("lab=loop&a=walk_left".into())).unwrap();
-    assert_eq!((session.params().text(Key::Lab), session.params().number(Key::BlendWindow)), ("loop", 30.0));
+    assert_eq!(
+        (session.params().text(Key::Lab), session.params().number(Key::BlendWindow)),
+        ("loop", 30.0)
+    );
     session.apply(Command::Try(String::new())).unwrap();
     assert!(session.is_tried(""));
     for _ in 0..3 {
@@ -128,7 +149,10 @@ fn a_link_to_another_lesson_opens_it() {
     assert!(matches!(session.lesson(), Some(Lesson::Waiting)));
     assert_eq!(deliver(&mut session), [Source::BuiltIn("zh-Hant/04-half_life.md".to_owned())]);
     let Some(Lesson::Page(page)) = session.lesson() else { panic!() };
-    assert_eq!((page.number, page.previous.as_deref(), page.next.as_deref()), (4, Some("blend_window"), Some("loops")));
+    assert_eq!(
+        (page.number, page.previous.as_deref(), page.next.as_deref()),
+        (4, Some("blend_window"), Some("loops"))
+    );
 }
 
 #[test]

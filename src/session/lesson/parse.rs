@@ -173,7 +173,8 @@ impl Reader {
     }
 
     fn text(&mut self, text: &str, code: bool) {
-        let mut text: String = text.chars().filter(|&letter| letter == '\n' || !letter.is_control()).collect();
+        let text: String = text.chars().filter(|&letter| letter == '\n' || !letter.is_control()).collect();
+        let mut text = with_units_held(&text);
         if std::mem::take(&mut self.line_ended) {
             let before = self.spans.last().and_then(|span| span.text.chars().next_back());
             let around = [before, text.chars().next()];
@@ -281,4 +282,21 @@ fn target_of(address: &str) -> Result<Target, String> {
 /// Whether no space is set about a sign: Chinese and Japanese letters, and full-width punctuation.
 fn is_unspaced(letter: char) -> bool {
     matches!(letter, '\u{2e80}'..='\u{9fff}' | '\u{f900}'..='\u{faff}' | '\u{ff00}'..='\u{ffef}' | '\u{20000}'..='\u{3ffff}')
+}
+
+/// A text whose numbers are not torn from their units at the end of a line.
+fn with_units_held(text: &str) -> String {
+    const UNITS: [&str; 7] = ["%", "°", "cm", "mm", "m", "s", "ms"];
+    let mut held = String::with_capacity(text.len());
+    let mut pieces = text.split(' ').peekable();
+    while let Some(piece) = pieces.next() {
+        held.push_str(piece);
+        if let Some(next) = pieces.peek() {
+            let unit = next.trim_end_matches(|letter: char| letter.is_ascii_punctuation() && letter != '%');
+            let is_unit = UNITS.iter().any(|known| unit == *known) || next.starts_with('°') || next.starts_with('%');
+            let after_number = piece.ends_with(|letter: char| letter.is_ascii_digit());
+            held.push(if after_number && is_unit { '\u{a0}' } else { ' ' });
+        }
+    }
+    held
 }

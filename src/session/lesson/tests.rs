@@ -59,9 +59,9 @@ fn a_lesson_is_pages_with_their_parts() {
     else {
         panic!("{:?}", page.body)
     };
-    assert_eq!(plain(watch), "Watch the right foot, at t = 1.2 s.");
+    assert_eq!(plain(watch), "Watch the right foot, at t = 1.2\u{a0}s.");
     assert!(watch.iter().any(|span| span.strong && span.text == "right"));
-    assert!(watch.iter().any(|span| span.code && span.text == "t = 1.2 s"));
+    assert!(watch.iter().any(|span| span.code && span.text == "t = 1.2\u{a0}s"));
     let item = |block: &Block| match block {
         Block::Item { depth, number, spans } => (*depth, *number, plain(spans)),
         other => panic!("{other:?}"),
@@ -76,7 +76,9 @@ fn a_lesson_is_pages_with_their_parts() {
         ]
     );
     assert_eq!((more.as_str(), code.as_str()), ("More", "y = 2x"));
-    let [short] = page.tries.as_slice() else { panic!("{:?}", page.tries) };
+    let [short] = page.tries.as_slice() else {
+        panic!("{:?}", page.tries)
+    };
     assert_eq!((short.label.as_str(), short.query.as_str()), ("Short", "blend_window=10"));
     assert_eq!(plain(&short.about), "It bursts.");
     assert_eq!(page.question.len(), 1);
@@ -111,10 +113,7 @@ fn links_that_may_not_be_opened_are_text() {
         panic!("{:?}", pages[0].body)
     };
     assert!(spans.iter().all(|span| span.target.is_none()), "{spans:?}");
-    assert_eq!(
-        plain(spans),
-        "a (javascript:alert(1)) b (data:text/html,x) p x c (//evil)"
-    );
+    assert_eq!(plain(spans), "a (javascript:alert(1)) b (data:text/html,x) p x c (//evil)");
 }
 
 #[test]
@@ -152,7 +151,11 @@ fn lessons_are_found_by_name_and_by_address() {
     assert_eq!(source_of("https://a.org/x.md", "en"), Ok((web.clone(), 0)));
     assert_eq!(source_of("https://a.org/x.md#3", "en"), Ok((web.clone(), 2)));
     assert_eq!(source_of("https://a.org/x.md#top", "en"), Ok((web, 0)));
-    assert!(source_of("cooking", "en").unwrap_err().contains("expected contents, alignment, slerp"));
+    assert!(
+        source_of("cooking", "en")
+            .unwrap_err()
+            .contains("expected contents, alignment, slerp")
+    );
     assert_eq!(shelf::lesson_of_file("02-slerp.md"), Some("slerp"));
     assert_eq!(shelf::lesson_of_file("03-slerp.md"), None);
 }

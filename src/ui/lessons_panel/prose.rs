@@ -68,7 +68,9 @@ pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, u
                 ui.label(job);
                 continue;
             };
-            let response = ui.add(Label::new(job).sense(Sense::click())).on_hover_cursor(CursorIcon::PointingHand);
+            let response = ui
+                .add(Label::new(job).sense(Sense::click()))
+                .on_hover_cursor(CursorIcon::PointingHand);
             let clicked = response.clicked();
             match target {
                 Target::State(query) if clicked => out.commands.push(Command::Try(query.clone())),
@@ -100,7 +102,11 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
     };
     TextFormat {
         italics: span.emphasis,
-        background: if span.code { palette.panel_raised } else { eframe::egui::Color32::TRANSPARENT },
+        background: if span.code {
+            palette.panel_raised
+        } else {
+            eframe::egui::Color32::TRANSPARENT
+        },
         underline: if span.target.is_some() {
             Stroke::new(theme.hairline(), palette.line_strong)
         } else {

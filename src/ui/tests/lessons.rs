@@ -1,6 +1,7 @@
 //! The panel of lessons.
 
 use super::*;
+use eframe::egui::accesskit::Toggled;
 use segue::session::Lesson;
 use segue::session::lesson::Source;
 
@@ -47,7 +48,7 @@ fn a_lesson_is_read_tried_and_left() {
     assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
     let is_marked = |label: &str, harness: &Harness<'_, Page>| {
         let node = harness.get_by_label(label);
-        node.accesskit_node().is_selected() == Some(true)
+        node.accesskit_node().toggled() == Some(Toggled::True)
     };
     assert!(is_marked("Full, half, a third", &harness) && !is_marked("One frame", &harness));
     go("One frame", &mut harness);
@@ -127,7 +128,11 @@ fn lessons_look_well_everywhere() {
             let named = link.split('&').next().unwrap_or_default();
             for link in [named, link] {
                 page.session
-                    .apply(if link == named { Command::OpenLink(link.into()) } else { Command::Set(rest_of(link)) })
+                    .apply(if link == named {
+                        Command::OpenLink(link.into())
+                    } else {
+                        Command::Set(rest_of(link))
+                    })
                     .expect("a page as the tests need it");
                 deliver(&mut page.session);
             }
@@ -153,4 +158,14 @@ fn rest_of(link: &str) -> Vec<(Key, Value)> {
 /// Before the fonts of another language are here, its pictures would show boxes.
 fn harness_has_no_chinese() -> bool {
     true
+}
+
+#[test]
+fn every_letter_of_every_lesson_is_in_the_font() {
+    // A letter without a glyph ends the test: the harness does not draw boxes.
+    for name in segue::session::lesson::LESSONS {
+        let mut harness = harness(vec2(1440.0, 4000.0), LIGHT, lesson(&format!("lesson={name}&lab=make&play=off")));
+        press(text::SHOW_ANSWER, &mut harness);
+        harness.get_by_label(text::HIDE_ANSWER);
+    }
 }
