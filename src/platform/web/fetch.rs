@@ -43,18 +43,30 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
-        let address = format!("samples/{}", sample.file);
-        let response = request(&address, RequestMode::SameOrigin, None).await;
-        let result = match response {
-            Err(_) => Err("the connection may have been interrupted".to_owned()),
-            Ok(response) if !response.ok() => Err(format!("its server answered {}", response.status())),
-            Ok(response) => whole(&response).await.map_err(|error| words_of(&error)),
-        };
-        inbox.push(Incoming::Sample {
-            sample,
-            result: result.map(Arc::from),
-        });
+        let result = bundled(&format!("samples/{}", sample.file)).await;
+        inbox.push(Incoming::Sample { sample, result });
     });
+}
+
+/// Asks for what it takes to speak a language; [`Incoming::Language`] brings it.
+pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
+    let inbox = inbox.clone();
+    spawn_local(async move {
+        let files = async {
+            let catalogue = bundled(&format!("lang/{tag}.json")).await?;
+            Ok([catalogue, bundled(&format!("lang/{tag}.otf")).await?])
+        };
+        inbox.push(Incoming::Language(files.await));
+    });
+}
+
+/// A file that lies beside the page.
+async fn bundled(address: &str) -> Result<Arc<[u8]>, String> {
+    match request(address, RequestMode::SameOrigin, None).await {
+        Err(_) => Err("the connection may have been interrupted".to_owned()),
+        Ok(response) if !response.ok() => Err(format!("its server answered {}", response.status())),
+        Ok(response) => whole(&response).await.map(Arc::from).map_err(|error| words_of(&error)),
+    }
 }
 
 async fn whole(response: &Response) -> Result<Vec<u8>, JsValue> {
