@@ -8,12 +8,13 @@ mod downloads;
 mod frames;
 mod keeper;
 mod picture;
+mod speech;
 
 pub(crate) use address_bar::link_query;
 
 use crate::platform::{self, Inbox, Incoming, LargeFile, Pace, ReadNews, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
-use crate::ui::{self, Action, CurveCache, Filming, Language, UiState};
+use crate::ui::{self, Action, CurveCache, Filming, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
 use eframe::{egui, wgpu};
@@ -23,6 +24,7 @@ use picture::Picture;
 use segue::scene::Look;
 use segue::session::reading::{Content, LARGE_BYTES};
 use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
+use speech::{Speech, Spoken};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -104,8 +106,7 @@ pub(crate) struct Segue {
     picture: Picture,
     /// What is said when the clipboard has taken what it was given.
     copied: &'static str,
-    /// The language that the user reads best.
-    preferred: Language,
+    speech: Speech,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
 }
@@ -139,6 +140,8 @@ struct Window {
     pace: Option<Pace>,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
+    /// What it speaks.
+    spoken: Spoken,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
     within_event: bool,
 }
@@ -185,7 +188,7 @@ impl Segue {
             picture: Picture::default(),
             film: None,
             copied: ui::LINK_COPIED,
-            preferred: Language::preferred(platform::languages().iter().map(String::as_str)),
+            speech: Speech::new(),
         }
     }
 
@@ -300,6 +303,11 @@ impl Segue {
                 let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
                 self.session.finish_lesson(&source, text);
             }
+            Incoming::Language(files) => {
+                if let Some(reason) = self.speech.arrived(files) {
+                    self.session.say(Level::Warning, reason);
+                }
+            }
             Incoming::Progress { address, done, total } => {
                 if let Some((name, progress)) = self.downloads.progressed(&address, done, total) {
                     self.events.push(Event::Progress { name, progress });
@@ -385,7 +393,6 @@ impl Segue {
     }
 
     fn send_requests(&mut self) {
-        self.session.read_lessons_in(Language::of(&self.session, self.preferred).tag());
         for request in self.session.take_requests() {
             match request {
                 Request::Sample(sample) => {
@@ -445,7 +452,8 @@ impl Segue {
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
-        self.panels.language = Language::of(&self.session, self.preferred);
+        self.panels.language = self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
+        self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         if self.session.is_driven() {
             self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {

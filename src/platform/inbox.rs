@@ -51,6 +51,8 @@ pub(crate) enum Incoming {
         /// Its bytes, or why they are not there.
         result: Result<Arc<[u8]>, String>,
     },
+    /// The catalogue and the letters of the language that was asked for, or why they are not here.
+    Language(Result<[Arc<[u8]>; 2], String>),
     /// A part of a file has come over the network.
     Progress {
         /// The file's address.

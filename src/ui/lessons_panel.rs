@@ -3,6 +3,7 @@
 mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};
+use super::language::tr;
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
@@ -93,7 +94,7 @@ fn header_ui(lesson: &Lesson<'_>, out: &mut Out, ui: &mut Ui) {
             go_to(CONTENTS, out);
         }
         if let Lesson::Page(page) = lesson {
-            let words = RichText::new(text::page_of(page.number, page.of));
+            let words = RichText::new(tr(&text::page_of(page.number, page.of), ui));
             ui.label(words.font(theme.font(Type::Small)).color(palette.muted));
         }
         ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
@@ -210,7 +211,7 @@ fn title_ui(title: &str, ui: &mut Ui) {
 fn note_ui(words: &str, is_problem: bool, ui: &mut Ui) {
     let palette = palette_of(ui);
     let color = if is_problem { palette.warning } else { palette.muted };
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Body)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Body)).color(color));
     ui.add_space(space::S);
 }
 

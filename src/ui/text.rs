@@ -550,7 +550,7 @@ pub(crate) const GRAPHING: &str = "Making graph and walk";
 /// After it was given up.
 pub(crate) const GO_ON: &str = "Go on";
 /// Of the parameters that say where the walk goes.
-pub(crate) const WALK: &str = "Walk";
+pub(crate) const WALK: &str = "The walk";
 /// The picture of the distances.
 pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.

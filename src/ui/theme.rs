@@ -9,6 +9,7 @@ use eframe::egui::{
     self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id, Margin, Shadow, Stroke, Style, TextStyle, Ui,
     Vec2, Visuals, style,
 };
+use eframe::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use std::sync::Arc;
 
 pub(crate) use palette::Palette;
@@ -240,6 +241,16 @@ impl Theme {
         visuals.disabled_alpha = 0.45;
         visuals
     }
+}
+
+/// Adds a face that stands in for the letters that the others lack. It can be written with from the next frame on.
+pub(crate) fn add_face(name: &str, mut face: FontData, ctx: &Context) {
+    face.tweak.subpixel_binning = Some(false);
+    let families = [FontFamily::Proportional, FontFamily::Monospace, strong_family()].map(|family| InsertFontFamily {
+        family,
+        priority: FontPriority::Lowest,
+    });
+    ctx.add_font(FontInsert::new(name, face, families.into()));
 }
 
 fn strong_family() -> FontFamily {

@@ -78,14 +78,24 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
 
 /// Reads a bundled take; [`Incoming::Sample`] brings it.
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
-    let result = bundled("samples", sample.file);
+    let result = read_bundled("samples", sample.file);
     inbox.push(Incoming::Sample { sample, result });
 }
+
+/// Reads what it takes to speak a language; [`Incoming::Language`] brings it.
+pub(crate) fn load_language(tag: &str, inbox: &Inbox) {
+    let read = |ending| read_bundled("lang", &format!("{tag}.{ending}"));
+    let files = read("json").and_then(|catalogue| Ok([catalogue, read("otf")?]));
+    inbox.push(Incoming::Language(files));
+}
+
+/// A window has no page around it that would have a language.
+pub(crate) fn tell_language(_tag: &str) {}
 
 /// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
     let result = match source {
-        Source::BuiltIn(file) => bundled("lessons", file),
+        Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| format!("{file} could not be loaded: {reason}.")),
         Source::Web(address) => Err(format!(
             "This window does not load lessons over the network: {address} opens in a browser."
         )),
@@ -94,14 +104,15 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
     inbox.push(Incoming::Lesson { source, result });
 }
 
-/// Reads what comes with Segue. It lies in a folder beside the program, or in the project's.
-fn bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
+/// What lies in a folder beside the program, or in the project's own.
+fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
     let beside = std::env::current_exe()
         .ok()
         .and_then(|program| Some(program.parent()?.join(folder)));
     let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
     let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
-    match paths.iter().find(|path| path.is_file()).map(std::fs::read) {
+    let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
+    match read {
         Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
         None => Err(format!("{file} is not in the folder `{folder}` beside the program")),
     }

@@ -45,10 +45,7 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
         let result = bundled(&format!("samples/{}", sample.file)).await;
-        inbox.push(Incoming::Sample {
-            sample,
-            result: result.map(Arc::from),
-        });
+        inbox.push(Incoming::Sample { sample, result });
     });
 }
 
@@ -60,21 +57,30 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
             Source::BuiltIn(file) => bundled(&format!("lessons/{file}"))
                 .await
                 .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
-            Source::Web(address) => get(address, &LESSON, None, &inbox).await,
+            Source::Web(address) => get(address, &LESSON, None, &inbox).await.map(Arc::from),
         };
-        inbox.push(Incoming::Lesson {
-            source,
-            result: result.map(Arc::from),
-        });
+        inbox.push(Incoming::Lesson { source, result });
+    });
+}
+
+/// Asks for what it takes to speak a language; [`Incoming::Language`] brings it.
+pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
+    let inbox = inbox.clone();
+    spawn_local(async move {
+        let files = async {
+            let catalogue = bundled(&format!("lang/{tag}.json")).await?;
+            Ok([catalogue, bundled(&format!("lang/{tag}.otf")).await?])
+        };
+        inbox.push(Incoming::Language(files.await));
     });
 }
 
 /// A file that lies beside the page.
-async fn bundled(address: &str) -> Result<Vec<u8>, String> {
+async fn bundled(address: &str) -> Result<Arc<[u8]>, String> {
     match request(address, RequestMode::SameOrigin, None).await {
         Err(_) => Err("the connection may have been interrupted".to_owned()),
         Ok(response) if !response.ok() => Err(format!("its server answered {}", response.status())),
-        Ok(response) => whole(&response).await.map_err(|error| words_of(&error)),
+        Ok(response) => whole(&response).await.map(Arc::from).map_err(|error| words_of(&error)),
     }
 }
 

@@ -3,6 +3,16 @@
 //! The parameter `lang` is `auto` until somebody chooses by hand, as the theme is. Three rules follow from that one:
 //! a link carries a language only when its sender chose one; a link that names none leaves every reader their own; and what was
 //! chosen by hand is stored with the work and is there again on the next visit.
+//!
+//! Everything is written in English, in the place where it is used, and translated where it is set as text: [`tr`] asks the context's
+//! [`Tongue`], and the widgets of the kit ask it for all that they are given. So the core knows no language, what a link or a file
+//! carries stays English, and a new panel is translated by a row in `assets/lang`. Catalogue and letters are fetched when a language is
+//! first asked for; until they are here, everything is in English.
+
+mod catalogue;
+mod tongue;
+
+pub(crate) use tongue::{Tongue, speak_english, tr};
 
 use segue::session::{Key, Session};
 
