@@ -8,6 +8,7 @@ mod downloads;
 mod frames;
 mod keeper;
 mod picture;
+mod speech;
 
 pub(crate) use address_bar::link_query;
 
@@ -22,6 +23,7 @@ use keeper::Keeper;
 use picture::Picture;
 use segue::session::reading::{Content, LARGE_BYTES};
 use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
+use speech::{Speech, Spoken};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -105,6 +107,7 @@ pub(crate) struct Segue {
     copied: &'static str,
     /// Whether the work and the link were here once.
     has_begun: bool,
+    speech: Speech,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
 }
@@ -138,6 +141,8 @@ struct Window {
     pace: Option<Pace>,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
+    /// What it speaks.
+    spoken: Spoken,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
     within_event: bool,
 }
@@ -185,6 +190,7 @@ impl Segue {
             film: None,
             copied: ui::LINK_COPIED,
             has_begun: false,
+            speech: Speech::new(),
         }
     }
 
@@ -311,6 +317,15 @@ impl Segue {
                         .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
                 }
             }
+            Incoming::Lesson { source, result } => {
+                let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
+                self.session.finish_lesson(&source, text);
+            }
+            Incoming::Language(files) => {
+                if let Some(reason) = self.speech.arrived(files) {
+                    self.session.say(Level::Warning, reason);
+                }
+            }
             Incoming::Progress { address, done, total } => {
                 if let Some((name, progress)) = self.downloads.progressed(&address, done, total) {
                     self.events.push(Event::Progress { name, progress });
@@ -404,6 +419,7 @@ impl Segue {
                         platform::load_sample(sample, &self.inbox);
                     }
                 }
+                Request::Lesson(source) => platform::load_lesson(&source, &self.inbox),
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {
                     if let Some(bytes) = self.vault.bytes_of(&task.content) {
@@ -454,6 +470,8 @@ impl Segue {
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
+        self.panels.language = self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
+        self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         if self.session.is_driven() {
             self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {

@@ -180,7 +180,7 @@ fn names_are_kept_as_written() {
     assert_eq!(names(named("", "// #1").as_bytes())[..2], ["", "// #1"]);
     let latin1: Vec<u8> = named("Hüfte", "b").chars().map(|c| c as u8).collect();
     assert_eq!(names(&latin1)[0], "Hüfte");
-    assert_eq!(one(latin1).1, ["1 name (line 2) is not UTF-8; read as Latin-1"]);
+    assert_eq!(one(latin1).1, ["1 name not in UTF-8 (line 2); read as Latin-1"]);
 }
 
 #[test]
@@ -463,7 +463,10 @@ fn values_that_are_no_numbers_repeat_the_last_good_one() {
         format!("{CHAIN}MOTION\nFrames: 50\nFrame Time: 0.01\n{}\n", rows.join("\n"))
     };
     let (found, warnings) = one(spoilt(6));
-    assert_eq!(warnings, ["6 values (first: line 34) are no number; the last good value was held"]);
+    assert_eq!(
+        warnings,
+        ["6 values without a number (first: line 34); the last good value was held"]
+    );
     assert_eq!(
         found.clip,
         one(chain(50)).0.clip,

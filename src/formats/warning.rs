@@ -176,12 +176,7 @@ impl fmt::Display for ImportWarning {
         };
         match &self.kind {
             WarningKind::Latin1Names => {
-                write!(
-                    f,
-                    "{}{place} {} not UTF-8; read as Latin-1",
-                    n("name"),
-                    if one { "is" } else { "are" }
-                )
+                write!(f, "{} not in UTF-8{place}; read as Latin-1", n("name"))
             }
             WarningKind::ChannelCount { declared, named } => {
                 let lines = if one {
@@ -227,23 +222,15 @@ impl fmt::Display for ImportWarning {
                 f,
                 "no line holds exactly one frame{place}; the numbers were read one after the other"
             ),
-            WarningKind::NotFinite => {
-                write!(
-                    f,
-                    "{}{place} {} no number; the last good value was held",
-                    n("value"),
-                    if one { "is" } else { "are" }
-                )
-            }
+            WarningKind::NotFinite => write!(f, "{} without a number{place}; the last good value was held", n("value")),
             WarningKind::DecimalCommas => write!(f, "the numbers have decimal commas{place}; read as points"),
             WarningKind::MissingSpaces => write!(f, "{} between numbers{place}; split before the sign", n("missing space")),
             WarningKind::HiddenFiles => write!(f, "{} of the archive left out", n("hidden file")),
             WarningKind::OtherFiles => write!(f, "{} of the archive without motion left out", n("file")),
             WarningKind::PathsOutside => write!(
                 f,
-                "{} of the archive {} a path out of it; the rest of the path was taken",
-                n("file"),
-                if one { "has" } else { "have" }
+                "{} of the archive with a path out of it; the rest of the path was taken",
+                n("file")
             ),
             WarningKind::UnreadableFiles { path, why } if one => write!(f, "`{path}` in the archive left out: {why}"),
             WarningKind::UnreadableFiles { path, why } => {
@@ -268,12 +255,7 @@ impl fmt::Display for ImportWarning {
                     "the format has no frame rate; {fps} frames per second are taken, it can be set by hand"
                 )
             }
-            WarningKind::FrameNumbers => write!(
-                f,
-                "{}{place} {} not follow the one before; frames were taken as they come",
-                n("frame number"),
-                if one { "does" } else { "do" }
-            ),
+            WarningKind::FrameNumbers => write!(f, "{} out of order{place}; frames were taken as they come", n("frame number")),
             WarningKind::MissingBones => write!(f, "{}{place} without some of the bones; their pose was held", n("frame")),
             WarningKind::UnknownBones { name } => {
                 write!(
@@ -382,7 +364,7 @@ mod tests {
         assert!(say(channels(), 2, Some(5)).starts_with("2 CHANNELS lines give numbers that disagree"));
         assert_eq!(
             say(WarningKind::NotFinite, 1, Some(9)),
-            "1 value (line 9) is no number; the last good value was held"
+            "1 value without a number (line 9); the last good value was held"
         );
     }
 }

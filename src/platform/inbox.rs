@@ -1,6 +1,7 @@
 use super::{LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -45,6 +46,15 @@ pub(crate) enum Incoming {
         /// Its packed bytes, or why they are not there.
         result: Result<Arc<[u8]>, String>,
     },
+    /// The text of a lesson.
+    Lesson {
+        /// Which.
+        source: Source,
+        /// Its bytes, or why they are not there.
+        result: Result<Arc<[u8]>, String>,
+    },
+    /// The catalogue and the letters of the language that was asked for, or why they are not here.
+    Language(Result<[Arc<[u8]>; 2], String>),
     /// A part of a file has come over the network.
     Progress {
         /// The file's address.

@@ -81,8 +81,7 @@ impl LightBox {
         if !(half.is_finite() && near > far) {
             return None;
         }
-        let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5)
-            .exp2();
+        let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5).exp2();
         let texel = 2.0 * half_width / texels.max(1) as f32;
         let middle = ((low + high) * (0.5 / texel)).round() * texel;
         // Depths are of the texture's steps, not of the texels': they need not be snapped, but a still body's must stay.
@@ -211,7 +210,11 @@ mod tests {
     fn tiles_lie_side_by_side() {
         assert_eq!(tile(0, 1).width, MAP_SIZE);
         let tiles: Vec<_> = (0..4).map(|index| tile(index, 4)).collect();
-        assert!(tiles.iter().all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE));
+        assert!(
+            tiles
+                .iter()
+                .all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE)
+        );
         assert_eq!((tiles[3].x, tiles[3].y), (MAP_SIZE / 2, MAP_SIZE / 2));
     }
 }

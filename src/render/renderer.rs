@@ -406,9 +406,15 @@ impl StageRenderer {
             pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
             let figures = view.drawn.figures.get(pane.figures.clone()).unwrap_or_default();
             let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
-            let glass = figures.iter().filter(|figure| figure.in_light).filter_map(|figure| figure.skin.as_ref());
+            let glass = figures
+                .iter()
+                .filter(|figure| figure.in_light)
+                .filter_map(|figure| figure.skin.as_ref());
             if let (Some(limbs), Some(pipeline)) = (
-                view.limbs.buffer.as_ref().filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
+                view.limbs
+                    .buffer
+                    .as_ref()
+                    .filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
                 self.pipelines.get(Brush::Cast),
             ) {
                 pass.set_pipeline(pipeline);

@@ -7,6 +7,7 @@ mod command;
 mod compare;
 mod document;
 pub mod export;
+pub mod lesson;
 mod library;
 pub mod link;
 mod motion;
@@ -22,7 +23,7 @@ mod undo;
 
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{ClipInfo, Companion, Job, Loaded, Pane, Session, Shown};
+pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Pane, Session, Shown};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
 pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};

@@ -350,6 +350,7 @@ const CURVES: &[Choice] = &[
     choice("turn", "turn rate"),
 ];
 const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
+const LANGUAGES: &[Choice] = &[choice("auto", "auto"), choice("en", "English"), choice("zh-Hant", "繁體中文")];
 
 parameters! {
     Lab "lab" "Lab" Page Kind::Choice(LABS), Start::Word("blend"), "", "Which experiment is open.";
@@ -519,8 +520,10 @@ parameters! {
 
     Compare "compare" "Compare" Page Kind::Compare, Start::Word(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10.";
     Theme "theme" "Theme" Page Kind::Choice(THEMES), Start::Word("auto"), "", "Dark, light, or as the system has it.";
+    Lang "lang" "Language" Page Kind::Choice(LANGUAGES), Start::Word("auto"), "", "English, Traditional Chinese, or as the browser has it. A link that names none leaves every reader their own.";
     Projector "projector" "Projector" Page Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
     Embed "embed" "Embed" Page Kind::Switch, Start::Switch(false), "", "The stage and the parameters that the link names, without the rest.";
+    Lesson "lesson" "Lesson" Page Kind::Text, Start::Word(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
     Src "src" "Source" Page Kind::Text, Start::Word(""), "", "Addresses of motion files to load, separated by spaces.";
 }
 
@@ -734,7 +737,6 @@ impl Param {
             Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab() || self.key == Key::Skinning,
             _ => false,
         }
-    }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The classic mistakes of the Transition lab: one at a time, and what each of them looks like.
 
 use super::kit::{self, Button};
+use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::text;
@@ -26,7 +27,7 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         };
         if !sentence.is_empty() {
             let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
-            ui.label(RichText::new(sentence).font(theme_of(ui).font(Type::Small)).color(color));
+            ui.label(RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
         }
     }
     let chosen = params.text(Key::Mistake);

@@ -1,6 +1,7 @@
 //! What was read of a clip, and what may be said of it by hand: in the library under its row, and in the View lab.
 
 use super::kit::{self, Tree, TreeRow};
+use super::language::tr;
 use super::out::Out;
 use super::save_rows::save_rows_ui;
 use super::state::{Typing, UiState};
@@ -40,7 +41,7 @@ pub(crate) fn clip_panel_ui(entry: &Entry, saved: &str, session: &Session, state
 }
 
 fn sentence_ui(sentence: &str, color: eframe::egui::Color32, ui: &mut Ui) {
-    ui.label(RichText::new(sentence).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }
 
 fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {

@@ -2,6 +2,7 @@
 
 use super::kit::{self, Button, Mark, Part};
 use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
+use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::state::UiState;
@@ -141,6 +142,6 @@ fn found_sentence(cycle: Option<Cycle>) -> String {
 
 /// A sentence in small type.
 fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
     ui.add_space(space::XS);
 }

@@ -6,6 +6,7 @@ use super::cycle_panels::{loop_ui, speed_ui};
 use super::drive::drive_ui;
 use super::graph::graph_ui;
 use super::kit::{self, Button, Icon};
+use super::language::tr;
 use super::layers_rows::layers_ui;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -143,7 +144,7 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     };
     param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A, automatic(Key::EnterB)), session, out, ui);
     param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B, false), session, out, ui);
-    ui.label(egui::RichText::new(Key::WeightLaw.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(egui::RichText::new(tr(Key::WeightLaw.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
@@ -181,7 +182,7 @@ pub(super) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::B, session, out, ui);
     let outcome = session.main_outcome();
     if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
-        let words = egui::RichText::new(text::retargeted(retargeted)).font(theme_of(ui).font(Type::Small));
+        let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui)).font(theme_of(ui).font(Type::Small));
         let line = ui.label(words.color(palette_of(ui).muted));
         if !retargeted.unmatched.is_empty() {
             line.on_hover_text(retargeted.unmatched.join(", "));
@@ -329,7 +330,7 @@ fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mu
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
             if matches!(param.kind, Kind::Choice(choices) if choices.len() <= 4) {
-                ui.label(egui::RichText::new(param.label).font(theme_of(ui).font(Type::Label)));
+                ui.label(egui::RichText::new(tr(param.label, ui)).font(theme_of(ui).font(Type::Label)));
             }
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }

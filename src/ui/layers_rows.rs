@@ -2,6 +2,7 @@
 
 use super::kit;
 use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
+use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::state::UiState;
@@ -31,7 +32,7 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     label_ui(Key::LayerFit, ui);
     param_row_ui(Key::LayerFit, &plain, session, out, ui);
     if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer.as_ref()) {
-        let words = RichText::new(text::fit(layer)).font(theme_of(ui).font(Type::Small));
+        let words = RichText::new(tr(&text::fit(layer), ui)).font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).muted));
     }
     param_row_ui(Key::LayerStart, &plain, session, out, ui);
@@ -46,5 +47,5 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
 }
 
 fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }

@@ -2,6 +2,7 @@
 
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
+use super::language::tr;
 use super::out::{Action, Out};
 use super::state::{Typing, UiState};
 use super::text;
@@ -87,7 +88,7 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::XS);
     ui.label(
-        RichText::new(segue::session::SAMPLES_CREDIT)
+        RichText::new(tr(segue::session::SAMPLES_CREDIT, ui))
             .font(theme.font(Type::Small))
             .color(palette.muted),
     );
@@ -154,6 +155,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let facts = facts(entry);
     let row = ClipRow {
         name: &entry.name,
+        own: matches!(entry.origin, Origin::File(_)),
         detail: &facts,
         part,
         warning: &warning,

@@ -1,6 +1,7 @@
 //! What lies over the whole page: notices, the list of shortcuts, the field for files that hang over the window.
 
 use super::kit::{self, Mood, Notice, NoticeEvent};
+use super::language::tr;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
@@ -42,7 +43,7 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
 fn help_ui(state: &mut UiState, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let mut open = true;
-    egui::Window::new(RichText::new(text::HELP).font(theme.font(Type::Title)))
+    egui::Window::new(RichText::new(tr(text::HELP, ui)).font(theme.font(Type::Title)))
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
         .resizable(false)
@@ -50,8 +51,8 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
         .show(ui.ctx(), |ui| {
             Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
                 for (keys, what) in text::SHORTCUTS {
-                    ui.label(RichText::new(*keys).font(theme.font(Type::Strong)).color(palette.text));
-                    ui.label(RichText::new(*what).font(theme.font(Type::Body)).color(palette.muted));
+                    ui.label(RichText::new(tr(keys, ui)).font(theme.font(Type::Strong)).color(palette.text));
+                    ui.label(RichText::new(tr(what, ui)).font(theme.font(Type::Body)).color(palette.muted));
                     ui.end_row();
                 }
             });
@@ -79,7 +80,7 @@ fn drop_ui(ui: &Ui) {
     painter.text(
         screen.center(),
         Align2::CENTER_CENTER,
-        text::DROP_NOW,
+        tr(text::DROP_NOW, ui),
         theme.font(Type::Title),
         palette.text,
     );

@@ -2,6 +2,7 @@
 
 use super::kit::{self, Button, Icon};
 use super::lab_panel::{lab_label, save_result_ui, slot_row_ui};
+use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::path_hand::path_of;
@@ -115,7 +116,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
 
 /// What is done with the whole path.
 fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    ui.label(RichText::new(text::WHOLE_PATH).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate {
         radians: degrees.to_radians(),
     };
@@ -163,7 +164,7 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
 
 /// How the path is fitted to the motion, and how well.
 fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) {
-    ui.label(RichText::new(text::FIT).font(theme_of(ui).font(Type::Strong)));
+    ui.label(RichText::new(tr(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     let label = if on { text::COMPARE_OFF } else { text::FOUR_EIGHT_SIXTEEN };
     if kit::button_ui(Button::new(label).selected(on), ui).clicked() {
@@ -192,7 +193,7 @@ pub(super) fn compare_points(session: &Session, out: &mut Out) {
 /// Who else is on the stage.
 fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.label(RichText::new(text::COMPANY).font(theme.font(Type::Strong)));
+    ui.label(RichText::new(tr(text::COMPANY, ui)).font(theme.font(Type::Strong)));
     for (place, companion) in session.company().iter().enumerate() {
         ui.push_id(("companion", place), |ui| {
             let row = kit::paint::full_width(theme.row_height(), ui);
@@ -246,11 +247,11 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
 }
 
 fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }
 
 /// A sentence in small type.
 fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
     ui.add_space(space::XS);
 }

@@ -2,6 +2,7 @@
 
 use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
 use super::lab_panel::{clip_choice_ui, compare_ui, lab_label, pair_ui, save_result_ui};
+use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::state::UiState;
@@ -59,7 +60,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
-    ui.label(RichText::new(Key::Ends.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(Key::Ends.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::Ends, &plain, session, out, ui);
     if params.text(Key::Ends) == "free" {
         param_row_ui(Key::EndSlack, &plain, session, out, ui);
@@ -75,7 +76,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         param_row_ui(Key::WarpWeight, &Detail::default(), session, out, ui);
         compare_ui(Key::WarpWeight, session, out, ui);
     } else {
-        ui.label(RichText::new(Key::WarpCurve.param().label).font(theme_of(ui).font(Type::Label)));
+        ui.label(RichText::new(tr(Key::WarpCurve.param().label, ui)).font(theme_of(ui).font(Type::Label)));
         let curve = weight_curve(&keys);
         let points: Vec<f64> = (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
         let duration = session.duration_secs();
@@ -226,7 +227,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         note_ui(text::MAP_HELP, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(text::pins(pins.len())).font(theme_of(ui).font(Type::Label)));
+            ui.label(RichText::new(tr(&text::pins(pins.len()), ui)).font(theme_of(ui).font(Type::Label)));
             if kit::button_ui(Button::new(text::REMOVE_PINS), ui).clicked() {
                 out.set_once(Key::Pins, Value::Text(String::new()));
             }
@@ -415,5 +416,5 @@ pub(super) fn heat_at(share: f32, heat: &[Color32; 5]) -> Color32 {
 
 /// A sentence in small type.
 fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

@@ -3,6 +3,7 @@
 use super::drive::stick_on_stage_ui;
 use super::ground_line::{GroundLine, ground_line};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
+use super::language::tr;
 use super::out::{Action, Out};
 use super::path_hand::path_of;
 use super::path_stage::{frame_once, handles_ui, said_ui};
@@ -209,7 +210,13 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
             vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0),
         ));
         ui.scope_builder(builder, |ui| {
-            ui.vertical_centered(|ui| ui.label(egui::RichText::new(problem).font(theme.font(Type::Body)).color(palette.warning)));
+            ui.vertical_centered(|ui| {
+                ui.label(
+                    egui::RichText::new(tr(problem, ui))
+                        .font(theme.font(Type::Body))
+                        .color(palette.warning),
+                )
+            });
         });
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
@@ -566,7 +573,10 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
-        (Key::CameraDistance, Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0))),
+        (
+            Key::CameraDistance,
+            Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0)),
+        ),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

@@ -16,6 +16,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 mod drive;
+mod lessons;
 mod path;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);

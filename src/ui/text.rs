@@ -30,6 +30,8 @@ pub(crate) const BLEND_MORE: &str = "Blend in another clip";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
+pub(crate) const IN_CHINESE: &str = "Interface in Chinese";
+pub(crate) const IN_ENGLISH: &str = "Interface in English";
 pub(crate) const HELP: &str = "Shortcuts";
 pub(crate) const MENU: &str = "Menu";
 pub(crate) const MORE_LABS: &str = "More labs";
@@ -162,6 +164,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("[ ]", "slower, faster"),
     ("L", "loop"),
     ("C", "compare full, half, third"),
+    ("N", "lessons; Esc closes them"),
     ("1 … 9", "the labs, from left to right"),
     ("T", "from above"),
     ("F", "frame everything"),
@@ -560,7 +563,7 @@ pub(crate) const GRAPHING: &str = "Making graph and walk";
 /// After it was given up.
 pub(crate) const GO_ON: &str = "Go on";
 /// Of the parameters that say where the walk goes.
-pub(crate) const WALK: &str = "Walk";
+pub(crate) const WALK: &str = "The walk";
 /// The picture of the distances.
 pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.
@@ -867,6 +870,44 @@ pub(crate) fn blended_clip(index: usize) -> String {
 /// Its weight.
 pub(crate) fn weight_of(index: usize) -> String {
     format!("Weight of {}", letter(index))
+}
+
+/// The button that opens the list of lessons.
+pub(crate) const LESSONS: &str = "Lessons";
+/// Its hint.
+pub(crate) const LESSONS_HELP: &str = "Short guided pages: what to look at, what to try, a question";
+/// Of the page, where it shares its place with the parameters.
+pub(crate) const LESSON: &str = "Lesson";
+/// See [`LESSON`].
+pub(crate) const PARAMETERS: &str = "Parameters";
+/// What the two are, for a screen reader.
+pub(crate) const LESSON_OR_PARAMETERS: &str = "Lesson or parameters";
+/// Back to the list.
+pub(crate) const ALL_LESSONS: &str = "All lessons";
+/// Closes the panel.
+pub(crate) const CLOSE_LESSONS: &str = "Close the lessons";
+/// To the page before.
+pub(crate) const PREVIOUS_PAGE: &str = "Previous page";
+/// To the page behind.
+pub(crate) const NEXT_PAGE: &str = "Next page";
+/// Likewise, below the text.
+pub(crate) const NEXT: &str = "Next";
+/// Over what there is to try.
+pub(crate) const TRY: &str = "Try";
+/// Over the question.
+pub(crate) const QUESTION: &str = "Question";
+/// Shows what was hidden.
+pub(crate) const SHOW_ANSWER: &str = "Show answer";
+/// And hides it.
+pub(crate) const HIDE_ANSWER: &str = "Hide answer";
+/// While a text is under way.
+pub(crate) const LESSON_WAITING: &str = "The lesson is loading…";
+/// After it did not come.
+pub(crate) const TRY_AGAIN: &str = "Try again";
+
+/// The place of a page.
+pub(crate) fn page_of(number: usize, of: usize) -> String {
+    format!("{number} of {of}")
 }
 
 #[cfg(test)]

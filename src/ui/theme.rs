@@ -9,6 +9,7 @@ use eframe::egui::{
     self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id, Margin, Shadow, Stroke, Style, TextStyle, Ui,
     Vec2, Visuals, style,
 };
+use eframe::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use std::sync::Arc;
 
 pub(crate) use palette::Palette;
@@ -65,6 +66,12 @@ pub(crate) enum Type {
     Body,
     /// Names: a clip, the chosen tab.
     Strong,
+    /// The heading of a page that is read.
+    Heading,
+    /// Text that is read, not looked up.
+    Reading,
+    /// What is firm in it.
+    ReadingStrong,
     /// Labels of parameters.
     Label,
     /// The value of a parameter.
@@ -93,7 +100,10 @@ impl Theme {
     /// The font of one step of the type scale.
     pub(crate) fn font(self, step: Type) -> FontId {
         let (size, strong) = match step {
+            Type::Heading => (19.0, true),
             Type::Title => (15.5, true),
+            Type::Reading => (14.0, false),
+            Type::ReadingStrong => (14.0, true),
             Type::Body | Type::Label => (13.0, false),
             Type::Strong | Type::Number => (13.0, true),
             Type::Metric => (16.0, true),
@@ -245,6 +255,16 @@ impl Theme {
         visuals.disabled_alpha = 0.45;
         visuals
     }
+}
+
+/// Adds a face that stands in for the letters that the others lack. It can be written with from the next frame on.
+pub(crate) fn add_face(name: &str, mut face: FontData, ctx: &Context) {
+    face.tweak.subpixel_binning = Some(false);
+    let families = [FontFamily::Proportional, FontFamily::Monospace, strong_family()].map(|family| InsertFontFamily {
+        family,
+        priority: FontPriority::Lowest,
+    });
+    ctx.add_font(FontInsert::new(name, face, families.into()));
 }
 
 fn strong_family() -> FontFamily {

@@ -4,6 +4,8 @@ use super::cycle_panels::{compare_loops, compare_speeds};
 use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
+use super::language::Language;
+use super::lessons_panel::{lessons_button_ui, toggle_lessons};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
 use super::register_panel::compare_warps;
@@ -73,6 +75,9 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::icon_button_ui(Icon::Contrast, text::THEME, ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
+    if kit::icon_button_ui(Icon::Language, language_switch(state.language).1, ui).clicked() {
+        out.set_once(Key::Lang, language_switch(state.language).0);
+    }
     let projector = session.params().is_on(Key::Projector);
     if kit::button_ui(
         Button::new(text::LARGER)
@@ -101,6 +106,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui).clicked() {
         toggle_compare(session, out);
     }
+    lessons_button_ui(session, layout, out, ui);
 }
 
 /// What a phone has no room for in the bar.
@@ -112,6 +118,9 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     };
     if kit::menu_item_ui(item(text::LIBRARY, Icon::Folder), ui).clicked() {
         state.library_open = true;
+    }
+    if kit::menu_item_ui(item(text::LESSONS, Icon::Book), ui).clicked() {
+        toggle_lessons(session, out);
     }
     if kit::menu_item_ui(item(text::COMPARE, Icon::Swap), ui).clicked() {
         toggle_compare(session, out);
@@ -128,6 +137,10 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     if kit::menu_item_ui(item(text::THEME, Icon::Contrast), ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
+    let (language, words) = language_switch(state.language);
+    if kit::menu_item_ui(item(words, Icon::Language), ui).clicked() {
+        out.set_once(Key::Lang, language);
+    }
     if kit::menu_item_ui(item(text::HELP, Icon::Help), ui).clicked() {
         state.help_open = true;
     }
@@ -135,6 +148,15 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
 
 fn other_theme(ui: &Ui) -> Value {
     Value::Choice(if theme_of(ui).dark { "light" } else { "dark" })
+}
+
+/// The language that the switch leads to, and what it says.
+fn language_switch(present: Language) -> (Value, &'static str) {
+    let (other, words) = match present {
+        Language::English => (Language::Chinese, text::IN_CHINESE),
+        Language::Chinese => (Language::English, text::IN_ENGLISH),
+    };
+    (Value::Choice(other.tag()), words)
 }
 
 /// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or goes back to one pane.

@@ -199,11 +199,11 @@ fn frames_are_number_lines_whatever_the_number() {
     );
     assert_eq!(
         same_motion(with(&text, "\n2\n", "\n4000000000\n")),
-        ["2 frame numbers (first: line 9) do not follow the one before; frames were taken as they come"]
+        ["2 frame numbers out of order (first: line 9); frames were taken as they come"]
     );
     assert_eq!(
         same_motion(with(&text, "\n3\n", "\n99999999999999999999999\n")),
-        ["1 frame number (line 14) does not follow the one before; frames were taken as they come"]
+        ["1 frame number out of order (line 14); frames were taken as they come"]
     );
     assert_eq!(same_motion(with(&text, "\n3\n", "\n3.0\n")), [""; 0]);
     // Rows over several lines, and all on one.
@@ -221,7 +221,7 @@ fn numbers_in_every_spelling() {
 fn values_that_are_none_are_held() {
     let many = amc(60);
     let (clip, warnings) = clip_of(ASF, with(&many, "\n30\nroot 30.5", "\n30\nroot nan"));
-    assert_eq!(warnings, ["1 value (line 150) is no number; the last good value was held"]);
+    assert_eq!(warnings, ["1 value without a number (line 150); the last good value was held"]);
     assert_eq!(clip.root_translations()[29].x, clip.root_translations()[28].x);
     let error = refused(ASF, &many.replace("shin 11.5", "shin -1.#IND"));
     assert_eq!(

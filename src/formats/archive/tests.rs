@@ -52,7 +52,7 @@ fn motion_comes_out_sorted_and_the_rest_is_told() {
             "`a.zip/deeper.zip` in the archive left out: an archive inside an archive inside this one",
             "1 file of the archive without motion left out",
             "2 hidden files of the archive left out",
-            "2 files of the archive have a path out of it; the rest of the path was taken",
+            "2 files of the archive with a path out of it; the rest of the path was taken",
         ]
     );
 }

@@ -367,7 +367,10 @@ mod tests {
         let many = "1 2\n".repeat(100);
         let (rows, warnings) = read(&format!("{many}nan 5\n6 1.#IND\n"), 2).unwrap();
         assert_eq!(rows[100..], [[1.0, 5.0], [6.0, 5.0]]);
-        assert_eq!(warnings, ["2 values (first: line 101) are no number; the last good value was held"]);
+        assert_eq!(
+            warnings,
+            ["2 values without a number (first: line 101); the last good value was held"]
+        );
         let refused = fault("1 2\nnan 3\n", 2);
         assert_eq!((refused.at, refused.found.as_str()), (4, "no number in 1 of 4 values"));
     }

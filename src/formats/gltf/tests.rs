@@ -350,7 +350,7 @@ fn oddities_are_told() {
         sentences(&imported),
         [
             "1 animated scale ignored",
-            "1 value is no number; the last good value was held",
+            "1 value without a number; the last good value was held",
             "the keys have no common rate; sampled at 30 frames per second",
             "1 node scaled by a different factor along each axis; joints below are exact at rest and near in motion",
         ]

@@ -17,6 +17,7 @@ pub(crate) use storage::Storage;
 use super::{Inbox, Incoming, address};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
@@ -39,6 +40,14 @@ pub(crate) fn location_query() -> String {
 /// Desktops tell a window nothing of the kind.
 pub(crate) fn prefers_stillness() -> bool {
     false
+}
+
+/// The user's languages, best first, as their tags.
+pub(crate) fn languages() -> Vec<String> {
+    ["LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .filter_map(|key| std::env::var(key).ok())
+        .collect()
 }
 
 /// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there.
@@ -72,21 +81,44 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     Fetch
 }
 
-/// Reads a bundled take; [`Incoming::Sample`] brings it. They lie in `samples` beside the program, or in the project's folder.
+/// Reads a bundled take; [`Incoming::Sample`] brings it.
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
+    let result = read_bundled("samples", sample.file);
+    inbox.push(Incoming::Sample { sample, result });
+}
+
+/// Reads what it takes to speak a language; [`Incoming::Language`] brings it.
+pub(crate) fn load_language(tag: &str, inbox: &Inbox) {
+    let read = |ending| read_bundled("lang", &format!("{tag}.{ending}"));
+    let files = read("json").and_then(|catalogue| Ok([catalogue, read("otf")?]));
+    inbox.push(Incoming::Language(files));
+}
+
+/// A window has no page around it that would have a language.
+pub(crate) fn tell_language(_tag: &str) {}
+
+/// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+    let result = match source {
+        Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| format!("{file} could not be loaded: {reason}.")),
+        Source::Web(address) => Err(format!(
+            "This window does not load lessons over the network: {address} opens in a browser."
+        )),
+    };
+    let source = source.clone();
+    inbox.push(Incoming::Lesson { source, result });
+}
+
+/// What lies in a folder beside the program, or in the project's own.
+fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
     let beside = std::env::current_exe()
         .ok()
-        .and_then(|program| Some(program.parent()?.join("samples")));
-    let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples");
-    let paths: Vec<_> = beside
-        .into_iter()
-        .chain([in_project])
-        .map(|folder| folder.join(sample.file))
-        .collect();
+        .and_then(|program| Some(program.parent()?.join(folder)));
+    let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
+    let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
     let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
-    let result = match read {
+    match read {
         Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
-        None => Err(format!("{} is not in the folder `samples` beside the program", sample.file)),
-    };
-    inbox.push(Incoming::Sample { sample, result });
+        None => Err(format!("{file} is not in the folder `{folder}` beside the program")),
+    }
 }

@@ -55,7 +55,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
 /// Reads files, each with its name, one after the other, so that they arrive in order.
 pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
     for (name, file) in files {
-        if let Some(reason) = too_large(&name, file.size() as u64) {
+        if let Some(reason) = too_large(&name, file.size() as u64, MAX_FILE_BYTES) {
             inbox.push(Incoming::Failed { reason });
             continue;
         }
@@ -95,7 +95,7 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
                 .and_then(|name| name.to_str())
                 .map_or_else(|| path_text(file.path()), str::to_owned);
             let size = file.web_file().map_or(0.0, |file| file.size());
-            if let Some(reason) = too_large(&name, size as u64) {
+            if let Some(reason) = too_large(&name, size as u64, MAX_FILE_BYTES) {
                 inbox.push(Incoming::Failed { reason });
                 continue;
             }

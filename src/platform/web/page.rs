@@ -6,7 +6,7 @@ use js_sys::{Function, Promise};
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::JsFuture;
-use web_sys::{Document, EventTarget, HtmlCanvasElement, Window};
+use web_sys::{Document, EventTarget, HtmlCanvasElement, HtmlElement, Window};
 
 pub(super) fn window() -> Option<Window> {
     web_sys::window()
@@ -35,6 +35,21 @@ fn search() -> String {
 /// The state that the page's address describes: its query, without `?` and without what belongs to the page.
 pub(crate) fn location_query() -> String {
     state_of(&search())
+}
+
+/// The user's languages, best first, as their tags.
+pub(crate) fn languages() -> Vec<String> {
+    window().map_or_else(Vec::new, |window| {
+        window.navigator().languages().iter().filter_map(|tag| tag.as_string()).collect()
+    })
+}
+
+/// Tells the browser and screen readers which language the page is in.
+pub(crate) fn tell_language(tag: &str) {
+    let root = document().and_then(|document| document.document_element());
+    if let Some(root) = root.and_then(|root| root.dyn_into::<HtmlElement>().ok()) {
+        root.set_lang(tag);
+    }
 }
 
 /// The graphics that the page's address asks for.

@@ -4,6 +4,7 @@ use super::{Job, Session, slot_key};
 use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
 use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id, file_stem};
+use crate::session::link;
 use crate::session::motion::Motion;
 use crate::session::notice::Level;
 use crate::session::params::{Key, Value};
@@ -466,6 +467,11 @@ impl Session {
                     lost.join(", ")
                 ),
             );
+        }
+        // A language that was chosen by hand stays, whatever link the page is opened with, unless the link names another.
+        if let Some((key, chosen)) = link::read(&saved.query).values.into_iter().find(|(key, _)| *key == Key::Lang) {
+            let result = self.params.set(key, chosen);
+            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
         self.open_link(query.unwrap_or(&saved.query));
         self.history = History::default();

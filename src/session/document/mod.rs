@@ -6,15 +6,18 @@ mod going_round;
 mod graphing;
 mod loading;
 mod panes;
+mod teaching;
 
 pub use company::Companion;
 pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
 pub use panes::{Pane, Shown};
+pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
+use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin, Sample, split_reference};
 use super::link;
 use super::motion::Motion;
@@ -104,6 +107,7 @@ pub struct Session {
     viewer: Viewer,
     driver: Driver,
     driving: driving::Driving,
+    shelf: Shelf,
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
@@ -139,6 +143,7 @@ impl Session {
             viewer: Viewer::default(),
             driver: Driver::default(),
             driving: driving::Driving::default(),
+            shelf: Shelf::default(),
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
@@ -212,7 +217,13 @@ impl Session {
     /// The query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
-        link::write(&self.params)
+        let query = link::write(&self.params);
+        if self.would_set_up() {
+            // The lab, which is named only where it is not the first one, says that there is a state besides.
+            format!("{query}&{}={}", Key::Lab.param().name, self.params.text(Key::Lab))
+        } else {
+            query
+        }
     }
 
     /// The comparison that is open.
@@ -365,6 +376,7 @@ impl Session {
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
+            Command::Try(query) => self.try_out(&query)?,
             Command::StopGraph(stop) => self.grapher.stop(stop),
             Command::Undo => {
                 if self.history.undo(&mut self.params, &mut self.library) {
@@ -455,6 +467,7 @@ impl Session {
 
     fn set(&mut self, values: Vec<(Key, Value)>) -> Result<(), CommandError> {
         let mut params = self.params.clone();
+        let named: Vec<Key> = values.iter().map(|(key, _)| *key).collect();
         let mut changed = Vec::new();
         for (key, value) in values {
             if params.set(key, value)? {
@@ -477,27 +490,28 @@ impl Session {
         if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
             self.library_revision += 1;
         }
+        if changed.contains(&Key::Lesson) {
+            self.lesson_was_set(named);
+        }
         Ok(())
     }
 
     fn open_link(&mut self, query: &str) {
         let link = link::read(query);
         let mut params = Params::default();
+        let named: Vec<Key> = link.values.iter().map(|(key, _)| *key).collect();
+        // A language is the reader's own until a link names another one.
+        params.copy_from(&self.params, Key::Lang);
         for (key, value) in link.values {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
-        let sources_changed = params.text(Key::Src) != self.params.text(Key::Src);
-        self.params = params;
-        if !link.problems.is_empty() {
-            self.say(
-                Level::Warning,
-                format!("The link was used, but for this: {}.", link.problems.join("; ")),
-            );
-        }
-        if sources_changed {
-            self.fetch_sources();
-        }
+        self.take_over(params, &link.problems);
+        self.lesson_was_set(named);
+    }
+
+    /// Looks for every clip that the parameters name.
+    fn look_for_clips(&mut self) {
         for slot in [Slot::A, Slot::B] {
             let reference = self.params.text(slot_key(slot)).to_owned();
             self.look_for(slot.label(), &reference);
@@ -742,5 +756,7 @@ mod loading_tests;
 mod path_tests;
 #[cfg(test)]
 mod registering_tests;
+#[cfg(test)]
+mod teaching_tests;
 #[cfg(test)]
 mod tests;

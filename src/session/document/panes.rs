@@ -298,6 +298,7 @@ impl Session {
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
+        self.ask_for_lesson();
         let lab = self.params.text(Key::Lab);
         let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
         // What is only looked at may be compared in every lab.

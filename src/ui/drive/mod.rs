@@ -11,6 +11,7 @@ pub(super) use rows::{compare_hysteresis, drive_ui};
 pub(super) use strip::drive_panel_ui;
 
 use super::theme::{Type, theme_of};
+use crate::ui::language::tr;
 use eframe::egui::{Color32, RichText, Ui};
 use segue::session::Session;
 use segue::session::{DriveMoment, Driven, Key};
@@ -29,5 +30,5 @@ fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
 
 /// A sentence in small type.
 fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

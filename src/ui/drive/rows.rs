@@ -4,6 +4,7 @@ use super::note_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
+use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::param_row::{Detail, param_row_ui};
 use crate::ui::state::UiState;
@@ -77,11 +78,11 @@ fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 fn heading_ui(words: &str, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Strong)));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Strong)));
 }
 
 fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }
 
 /// What is done with the input: from the start, again, or by hand.
@@ -184,7 +185,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                     rest.remove(index);
                     set(&rest, out);
                 }
-                ui.label(RichText::new(name).font(theme.font(Type::Body)));
+                ui.label(RichText::new(tr(name, ui)).font(theme.font(Type::Body)));
             });
         });
     }

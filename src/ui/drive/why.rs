@@ -2,6 +2,7 @@
 
 use super::{note_ui, shown};
 use crate::ui::kit::{self, CostBars, CostRow};
+use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::param_row::{Detail, param_row_ui};
 use crate::ui::state::UiState;
@@ -29,7 +30,7 @@ pub(super) fn place_name(database: &Database, candidate: &Candidate) -> String {
 pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     state.drive.hovered = None;
     let palette = palette_of(ui);
-    ui.label(RichText::new(text::WHY).font(theme_of(ui).font(Type::Strong)));
+    ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
     let search = shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
     let Some((driven, search)) = search else {
         note_ui(text::NO_SEARCH, palette.muted, ui);

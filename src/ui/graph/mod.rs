@@ -13,6 +13,7 @@ use super::out::Out;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, theme_of};
+use crate::ui::language::tr;
 use eframe::egui::{Color32, RichText, Ui};
 use segue::graph::Place;
 use segue::session::{Built, Command, Key, Session, Value, Walk, write_jump};
@@ -66,5 +67,5 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
 
 /// A sentence in small type.
 fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(words).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

@@ -3,9 +3,10 @@
 use super::{close_jump, map, note_ui, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
+use crate::ui::language::tr;
 use crate::ui::out::{Action, Out};
 use crate::ui::param_row::{Detail, param_row_ui};
-use crate::ui::state::{Layout, UiState};
+use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RichText, Ui};
@@ -23,7 +24,7 @@ pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut 
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
         note_ui(problem, palette.warning, ui);
     }
-    if state.layout != Layout::Desk {
+    if !state.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
     }
     clips_ui(session, out, ui);
@@ -36,7 +37,7 @@ pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut 
     ui.add_space(space::M);
     experiments_ui(session, out, ui);
     ui.add_space(space::M);
-    if state.layout != Layout::Desk || session.panes().len() < 2 {
+    if !state.has_map_panel || session.panes().len() < 2 {
         kit::folded_ui(text::NUMBERS, ui, |ui| table::table_ui(session, out, ui));
     }
     files_ui(session, out, ui);
@@ -74,7 +75,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 .map(|motion| motion.clip.duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(RichText::new(name).font(theme.font(Type::Label)).color(palette.text));
+                    ui.label(RichText::new(tr(name, ui)).font(theme.font(Type::Label)).color(palette.text));
                     ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
                         let leave_out = format!("{} {name}", text::LEAVE_OUT);
                         if ids.len() > 1 && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
@@ -83,7 +84,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                         }
                         if let Some(secs) = secs {
                             ui.label(
-                                RichText::new(format!("{secs:.1} s"))
+                                RichText::new(tr(&format!("{secs:.1} s"), ui))
                                     .font(theme.font(Type::Small))
                                     .color(palette.muted),
                             );
@@ -183,19 +184,19 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     param_row_ui(Key::Seed, &seed, session, out, ui);
     param_row_ui(Key::Continuity, &plain, session, out, ui);
-    ui.label(RichText::new(Key::EdgeWeight.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(Key::EdgeWeight.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
     if params.text(Key::EdgeWeight) == "exponential" {
         param_row_ui(Key::EdgeSigma, &plain, session, out, ui);
     }
     param_row_ui(Key::VisitedDiscount, &plain, session, out, ui);
-    ui.label(RichText::new(Key::WalkMethod.param().label).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(Key::WalkMethod.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::WalkMethod, &plain, session, out, ui);
     if params.text(Key::WalkMethod) == "inertialize" {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
     }
     for key in [Key::Transform, Key::Atan] {
-        ui.label(RichText::new(key.param().label).font(theme_of(ui).font(Type::Label)));
+        ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
         param_row_ui(key, &plain, session, out, ui);
     }
     param_row_ui(Key::WalkSeconds, &plain, session, out, ui);
@@ -280,7 +281,7 @@ pub(in crate::ui) fn compare_windows(out: &mut Out) {
 
 fn files_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some(walk) = session.graph_walk() else { return };
-    ui.label(RichText::new(text::GRAPH_FILES).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(tr(text::GRAPH_FILES, ui)).font(theme_of(ui).font(Type::Label)));
     ui.horizontal(|ui| {
         let (graph, choices) = (walk.built.graph(), &walk.choices);
         if kit::button_ui(Button::new("JSON").icon(Icon::Download), ui).clicked() {

@@ -1,6 +1,7 @@
 //! The numbers of all panes side by side, to be read and to be copied.
 
 use crate::ui::kit::{self, Button};
+use crate::ui::language::tr;
 use crate::ui::out::{Action, Out};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -11,17 +12,17 @@ use segue::session::{NumberTable, Session, digits};
 pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = NumberTable::of(session);
-    let small = |words: &str, color| RichText::new(words).font(theme.font(Type::Small)).color(color);
+    let small = |words: &str, color, ui: &Ui| RichText::new(tr(words, ui)).font(theme.font(Type::Small)).color(color);
     ui.spacing_mut().interact_size.y = 0.0;
     let grid = Grid::new("numbers").num_columns(table.panes.len() + 1).spacing([space::M, 2.0]);
     grid.show(ui, |ui| {
         ui.label("");
         for pane in &table.panes {
-            ui.label(small(pane, palette.text));
+            ui.label(small(pane, palette.text, ui));
         }
         ui.end_row();
         for row in &table.rows {
-            ui.label(small(&row.heading(), palette.muted)).on_hover_text(row.help);
+            ui.label(small(&row.heading(), palette.muted, ui)).on_hover_text(tr(row.help, ui));
             let [best, worst] = row.ends();
             for value in &row.values {
                 let color = match value {
@@ -29,7 +30,7 @@ pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                     Some(value) if Some(*value) == worst => palette.bad,
                     _ => palette.text,
                 };
-                ui.label(small(&digits(*value), color));
+                ui.label(small(&digits(*value), color, ui));
             }
             ui.end_row();
         }

@@ -2,6 +2,7 @@
 
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of};
+use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Palette, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
@@ -200,7 +201,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     if button.hint.is_empty() {
         response
     } else {
-        response.on_hover_text(button.hint)
+        response.on_hover_text(tr(button.hint, ui))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::chip::{Part, paint_badge};
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, focus_ring, full_width, line_of, paragraph, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
@@ -11,6 +12,8 @@ use eframe::egui::{Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense,
 pub(crate) struct ClipRow<'a> {
     /// Its name.
     pub(crate) name: &'a str,
+    /// The name is the user's own, such as that of a file.
+    pub(crate) own: bool,
     /// Length, rate, joints: `3.9 s · 120 fps · 30 joints`. Wraps.
     pub(crate) detail: &'a str,
     /// The part it plays now.
@@ -68,7 +71,11 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 
     let show_actions = (hovered || response.has_focus()) && !row.actions.is_empty();
     let actions_width = if show_actions { row.actions.len() as f32 * HIT + 2.0 } else { 0.0 };
-    let name = line_of(&[Run::new(row.name, Type::Strong, palette.text)], text_width - actions_width, ui);
+    let name = line_of(
+        &[Run::new(row.name, Type::Strong, palette.text).own(row.own)],
+        text_width - actions_width,
+        ui,
+    );
     let middle = rect.top() + pad + name_height / 2.0;
     put(ui.painter(), pos2(rect.left() + text_left, middle), Align2::LEFT_CENTER, name);
     put(
@@ -105,7 +112,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
         let sign = ui.interact(at, id.with("warning"), Sense::hover());
         paint_icon(Icon::Warning, at.shrink(4.5), palette.warning, ui.painter());
         sign.widget_info(|| WidgetInfo::labeled(Role::Label, true, row.warning));
-        sign.on_hover_text(row.warning);
+        sign.on_hover_text(tr(row.warning, ui));
         right -= HIT;
     }
     let mut action = None;
@@ -146,5 +153,5 @@ pub(super) fn small_icon_ui(icon: Icon, name: &str, id: Id, rect: Rect, ground: 
     );
     focus_ring(rect, radius::S, &response, ui);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
-    response.on_hover_text(name)
+    response.on_hover_text(tr(name, ui))
 }

@@ -1,6 +1,7 @@
 //! Words to type, and values only to read.
 
 use super::paint::{Run, faded, full_width, line_of, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2};
 
@@ -18,7 +19,7 @@ pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut 
     let theme = theme_of(ui);
     let size = vec2(ui.available_width(), theme.row_height());
     let edit = TextEdit::singleline(text)
-        .hint_text(hint)
+        .hint_text(tr(hint, ui))
         .font(theme.font(Type::Body))
         .margin(Margin::symmetric(8, 5))
         .desired_width(size.x);

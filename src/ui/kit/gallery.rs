@@ -203,6 +203,7 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
                 warning,
                 selected: index == 2,
                 actions: &actions,
+                own: false,
             },
             ui,
         );

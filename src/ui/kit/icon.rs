@@ -18,6 +18,8 @@ pub(crate) enum Icon {
     Loop,
     /// Dark or light.
     Contrast,
+    /// Another language: 中 / EN.
+    Language,
     /// More, behind three lines.
     Menu,
     /// Take away.
@@ -48,7 +50,9 @@ pub(crate) enum Icon {
     Info,
     /// Opens downward.
     ChevronDown,
-    /// Folded: opens downward when pressed.
+    /// Back by one.
+    ChevronLeft,
+    /// Folded: opens downward when pressed; on by one.
     ChevronRight,
     /// A picture of what is seen.
     Picture,
@@ -64,6 +68,8 @@ pub(crate) enum Icon {
     Folder,
     /// Exchange two.
     Swap,
+    /// Something to read.
+    Book,
     /// Settings.
     Sliders,
 }
@@ -104,6 +110,26 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 (8.0 + 5.6 * angle.cos(), 8.0 + 5.6 * angle.sin())
             });
             pen.fill(&arc.collect::<Vec<_>>());
+        }
+        Icon::Language => {
+            // 中 is a box and an upright: no font has to have it.
+            pen.stroke(&[(2.0, 3.6), (9.0, 3.6), (9.0, 7.8), (2.0, 7.8), (2.0, 3.6)]);
+            pen.stroke(&[(5.5, 1.2), (5.5, 11.4)]);
+            pen.stroke(&[(14.0, 9.0), (11.0, 9.0), (11.0, 14.6), (14.0, 14.6)]);
+            pen.stroke(&[(11.0, 11.7), (13.6, 11.7)]);
+        }
+        Icon::Book => {
+            // Two pages that lie open.
+            pen.stroke(&[(8.0, 4.2), (6.2, 3.0), (2.0, 3.0), (2.0, 12.2), (6.2, 12.2), (8.0, 13.4)]);
+            pen.stroke(&[
+                (8.0, 4.2),
+                (9.8, 3.0),
+                (14.0, 3.0),
+                (14.0, 12.2),
+                (9.8, 12.2),
+                (8.0, 13.4),
+                (8.0, 4.2),
+            ]);
         }
         Icon::Menu => {
             for y in [4.0, 8.0, 12.0] {
@@ -184,6 +210,7 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.disc(8.0, 5.0, 0.9);
         }
         Icon::ChevronDown => pen.stroke(&[(4.0, 6.2), (8.0, 10.2), (12.0, 6.2)]),
+        Icon::ChevronLeft => pen.stroke(&[(9.8, 4.0), (5.8, 8.0), (9.8, 12.0)]),
         Icon::ChevronRight => pen.stroke(&[(6.2, 4.0), (10.2, 8.0), (6.2, 12.0)]),
         Icon::Picture => {
             pen.closed(&[

@@ -2,6 +2,7 @@
 
 use super::paint::{Run, line_of, put};
 use super::words::Words;
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Galley, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -49,7 +50,7 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
         let response = ui.interact(rect, ui.make_persistent_id(("metric", index)), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{} {} {word}", metric.value, metric.label)));
         if !metric.hint.is_empty() {
-            response.on_hover_text(metric.hint);
+            response.on_hover_text(tr(metric.hint, ui));
         }
     }
 }

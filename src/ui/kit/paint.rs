@@ -1,5 +1,6 @@
 //! What the widgets share: setting text, the ring around what has the keyboard, fades.
 
+use crate::ui::language::tr;
 use crate::ui::theme::{Theme, Type, palette_of, theme_of};
 use eframe::egui::{
     self, Align, Align2, Color32, CornerRadius, FontId, Galley, Id, Mesh, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui,
@@ -8,6 +9,7 @@ use eframe::egui::{
     text::{LayoutJob, TextFormat, TextWrapping},
     vec2,
 };
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// One run of text in one font and colour.
@@ -21,6 +23,8 @@ pub(crate) struct Run<'a> {
     pub(crate) color: Color32,
     /// Space before it, in points.
     pub(crate) gap: f32,
+    /// It is the user's own word, such as the name of a file: no language changes it.
+    pub(crate) own: bool,
 }
 
 impl<'a> Run<'a> {
@@ -31,7 +35,14 @@ impl<'a> Run<'a> {
             step,
             color,
             gap: 0.0,
+            own: false,
         }
+    }
+
+    /// The same as a word of the user's, in whatever language.
+    pub(crate) fn own(mut self, own: bool) -> Self {
+        self.own = own;
+        self
     }
 
     /// The same with space before it.
@@ -58,7 +69,8 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
     for run in runs {
         let mut format = format(theme, run.step, run.color);
         format.line_height = Some(baseline_height(format.font_id.size, largest));
-        job.append(run.text, run.gap, format);
+        let text = if run.own { Cow::Borrowed(run.text) } else { tr(run.text, ui) };
+        job.append(&text, run.gap, format);
     }
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
@@ -77,7 +89,7 @@ fn baseline_height(size: f32, largest: f32) -> f32 {
 /// Sets text in as many lines as it needs.
 pub(crate) fn paragraph(text: &str, step: Type, color: Color32, max_width: f32, ui: &Ui) -> Arc<Galley> {
     let theme = theme_of(ui);
-    let mut job = LayoutJob::single_section(text.to_owned(), format(theme, step, color));
+    let mut job = LayoutJob::single_section(tr(text, ui).into_owned(), format(theme, step, color));
     job.wrap.max_width = max_width.max(1.0);
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }

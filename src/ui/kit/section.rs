@@ -2,13 +2,14 @@
 
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, theme_of};
 use eframe::egui::{Align2, CollapsingHeader, Rect, RichText, Ui, vec2};
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at its right end.
 pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
     let rect = full_width((24.0 * theme_of(ui).scale()).round(), ui);
-    let capitals = title.to_uppercase();
+    let capitals = tr(title, ui).to_uppercase();
     let galley = line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
     rect
@@ -16,7 +17,7 @@ pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
 
 /// A section that is folded until it is asked for. Whether its content was shown.
 pub(crate) fn folded_ui(title: &str, ui: &mut Ui, content: impl FnOnce(&mut Ui)) -> bool {
-    let words = RichText::new(title)
+    let words = RichText::new(tr(title, ui))
         .font(theme_of(ui).font(Type::Strong))
         .color(palette_of(ui).muted);
     let header = CollapsingHeader::new(words).id_salt(title).icon(|ui, openness, response| {

@@ -5,6 +5,7 @@ use super::icon::{Icon, paint_icon};
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
 use super::paint::{Run, focus_ring, line_of, put};
 use super::words::Words;
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 
@@ -124,7 +125,7 @@ pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
     let name = if playing { words.pause } else { words.play };
     response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
     let clicked = response.clicked();
-    response.on_hover_text(name);
+    response.on_hover_text(tr(name, ui));
     clicked
 }
 

@@ -2,6 +2,7 @@
 
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::accesskit::Action;
 use eframe::egui::{
@@ -240,7 +241,7 @@ fn row_ui(row: Open, says: &TreeRow, is_chosen: bool, is_folded: bool, rect: Rec
     };
     let left = chevron.right() + 2.0;
     let name = line_of(
-        &[Run::new(&says.name, step, faded(ink, enabled))],
+        &[Run::new(&says.name, step, faded(ink, enabled)).own(true)],
         right.left() - space::S - left,
         ui,
     );
@@ -265,7 +266,7 @@ fn row_ui(row: Open, says: &TreeRow, is_chosen: bool, is_folded: bool, rect: Rec
     if says.hint.is_empty() {
         response
     } else {
-        response.on_hover_text(&says.hint)
+        response.on_hover_text(tr(&says.hint, ui))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
 use super::super::words::Words;
 use super::{SliderResponse, SliderRow, Source};
+use crate::ui::language::tr;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
@@ -58,7 +59,7 @@ pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: 
             ui.data_mut(|data| data.insert_temp(edit_id, start));
             ui.data_mut(|data| data.insert_temp(edit_id.with("fresh"), true));
         }
-        number_response.on_hover_text(words.type_value);
+        number_response.on_hover_text(tr(words.type_value, ui));
         right = value_hit.left();
     }
 
@@ -68,7 +69,8 @@ pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: 
 
     let label = line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
     let rect = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, label);
-    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(words.reset_hint)
+    ui.interact(rect, id.with("label"), Sense::CLICK)
+        .on_hover_text(tr(words.reset_hint, ui))
 }
 
 /// The word that says who decides: filled while the app does; an outline to press while the user does and the app could.

@@ -2,6 +2,7 @@
 
 use super::super::paint::{Run, gradient_bar, line_of, put};
 use super::{Moment, Part, Stripe, TimeAxis, Timeline, Track};
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -149,7 +150,7 @@ pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
     let response = ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
     let said = format!("{}, {:.2} s", moment.name, moment.time);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
-    response.on_hover_text(said);
+    response.on_hover_text(tr(&said, ui));
 }
 
 #[cfg(test)]

@@ -1,0 +1,401 @@
+//! A catalogue: what English sentences are in another language.
+//!
+//! English stands in the program, where it is written and read; it is the key of its own translation. So the core needs no language at
+//! all, and a sentence that has no translation is still a sentence. What is made of parts is found again by its parts:
+//!
+//! - an entry with placeholders, `{} could not be loaded: {}.`, is a pattern; `{#}` stands for a number alone. What its placeholders
+//!   stood for is translated in turn, and goes into the placeholders of the translation, in order or by number (`{1}`);
+//! - several sentences behind each other, lists, and `title: text` are translated piece by piece;
+//! - a note, `the rest pose was taken`, is found also where it was made a sentence, `The rest pose was taken.`;
+//! - a number before a thing, `3 bones`, needs an entry for one `bone` only.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Texts with numbers in them are ever new; once so many are known they are all forgotten.
+const MOST_KNOWN: usize = 4096;
+/// Parts of parts are not looked into any deeper.
+const DEEPEST: usize = 6;
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct Catalogue {
+    exact: BTreeMap<String, String>,
+    /// Those with the most words of their own come first.
+    patterns: Vec<Pattern>,
+    /// What was asked before; none for what has no translation.
+    known: Mutex<BTreeMap<String, Option<Arc<str>>>>,
+}
+
+#[derive(Debug)]
+struct Pattern {
+    english: Vec<Piece>,
+    translation: String,
+    letters: usize,
+}
+
+/// A part of an entry.
+#[derive(Clone, Debug, PartialEq)]
+enum Piece {
+    Words(String),
+    Anything,
+    Number,
+}
+
+impl Catalogue {
+    /// Reads a catalogue: JSON, sections by name, and in each the translations by their English.
+    ///
+    /// # Errors
+    /// What is wrong with the JSON.
+    pub(crate) fn read(json: &[u8]) -> Result<Self, String> {
+        let sections: BTreeMap<String, BTreeMap<String, String>> = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+        let mut exact = BTreeMap::new();
+        let mut patterns = Vec::new();
+        for (english, translation) in sections.into_values().flatten() {
+            let pieces = pieces(&english);
+            if let [Piece::Words(words)] = pieces.as_slice() {
+                exact.insert(words.clone(), translation);
+            } else {
+                let letters = pieces.iter().map(Piece::letters).sum();
+                patterns.push(Pattern {
+                    english: pieces,
+                    translation,
+                    letters,
+                });
+            }
+        }
+        patterns.sort_by_key(|pattern| std::cmp::Reverse(pattern.letters));
+        Ok(Self {
+            exact,
+            patterns,
+            known: Mutex::default(),
+        })
+    }
+
+    /// The translation of a text; `None` where there is none.
+    pub(crate) fn find(&self, text: &str) -> Option<Arc<str>> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known.get(text) {
+            return found.clone();
+        }
+        let found: Option<Arc<str>> = self.look_up(text, 0).map(Arc::from);
+        if known.len() >= MOST_KNOWN {
+            known.clear();
+        }
+        known.insert(text.to_owned(), found.clone());
+        found
+    }
+
+    fn look_up(&self, text: &str, depth: usize) -> Option<String> {
+        if depth > DEEPEST || !has_word(text) {
+            return None;
+        }
+        let core = text.trim();
+        self.whole(core)
+            .or_else(|| self.sentences(core, depth))
+            .or_else(|| self.pattern(core, depth))
+            .or_else(|| self.note(core, depth))
+            .or_else(|| self.counted(core, depth))
+            .or_else(|| self.bracketed(core, depth))
+            .or_else(|| self.joined(core, depth))
+    }
+
+    fn part(&self, text: &str, depth: usize) -> String {
+        self.look_up(text, depth + 1).unwrap_or_else(|| text.trim().to_owned())
+    }
+
+    fn whole(&self, text: &str) -> Option<String> {
+        self.exact.get(text).cloned()
+    }
+
+    /// `It is so. It is not.`: only where there is a translation of each.
+    fn sentences(&self, text: &str, depth: usize) -> Option<String> {
+        let ends: Vec<usize> = (text.match_indices(". "))
+            .filter(|(at, _)| text[at + 2..].starts_with(|first: char| first.is_uppercase()))
+            .map(|(at, _)| at + 1)
+            .collect();
+        if ends.is_empty() {
+            return None;
+        }
+        let mut whole = String::new();
+        let mut from = 0;
+        for to in ends.into_iter().chain([text.len()]) {
+            whole.push_str(&self.look_up(&text[from..to], depth + 1)?);
+            from = to;
+        }
+        Some(whole)
+    }
+
+    fn pattern(&self, text: &str, depth: usize) -> Option<String> {
+        self.patterns.iter().find_map(|pattern| {
+            let mut filled = Vec::new();
+            let fits = fill(&pattern.english, text, pattern.letters, &mut filled);
+            fits.then(|| {
+                let parts: Vec<String> = filled.iter().map(|part| self.part(part, depth)).collect();
+                put_in(&pattern.translation, &parts)
+            })
+        })
+    }
+
+    /// A note that was made a sentence: `no frame time` as `No frame time.`.
+    fn note(&self, text: &str, depth: usize) -> Option<String> {
+        let note = text.strip_suffix('.')?;
+        let mut letters = note.chars();
+        let small: String = letters.next()?.to_lowercase().chain(letters).collect();
+        let found = [note, &small].into_iter().find_map(|note| self.look_up(note, depth + 1))?;
+        Some(format!("{found}。"))
+    }
+
+    /// `3 bones`, by the entry of `bone` or of `bones`.
+    fn counted(&self, text: &str, depth: usize) -> Option<String> {
+        let (number, thing) = text.split_once(' ')?;
+        if !is_number(number) {
+            return None;
+        }
+        let one = thing.strip_suffix('s').unwrap_or(thing);
+        let found = self.whole(thing).or_else(|| self.whole(one)).or_else(|| {
+            // As in `3 bones (line 7)`.
+            let (thing, rest) = thing.split_once(" (")?;
+            Some(format!(
+                "{}{}",
+                self.whole(thing.strip_suffix('s').unwrap_or(thing))?,
+                self.part(&format!("({rest}"), depth)
+            ))
+        })?;
+        Some(format!("{number} 個{found}"))
+    }
+
+    /// `words (more words)`.
+    fn bracketed(&self, text: &str, depth: usize) -> Option<String> {
+        let (words, more) = text.strip_suffix(')')?.rsplit_once(" (")?;
+        let whole = format!("({more})");
+        let inside = self
+            .look_up(&whole, depth + 1)
+            .or_else(|| Some(format!("（{}）", self.look_up(more, depth + 1)?)));
+        let before = self.look_up(words, depth + 1);
+        (inside.is_some() || before.is_some()).then(|| {
+            let inside = inside.unwrap_or_else(|| format!("（{more}）"));
+            format!("{}{inside}", before.unwrap_or_else(|| words.to_owned()))
+        })
+    }
+
+    /// What stands beside each other: `this · that`, `this; that`, `this: that`, `this, that`. Some of it must have a translation; of what is
+    /// divided by commas, which also stand in sentences, all.
+    fn joined(&self, text: &str, depth: usize) -> Option<String> {
+        [
+            (" · ", " · "),
+            ("; ", "；"),
+            (": ", "："),
+            (" → ", " → "),
+            (" | ", " | "),
+            (", ", "、"),
+        ]
+        .into_iter()
+        .filter(|(between, _)| text.contains(between))
+        .find_map(|(between, translated)| {
+            let parts: Vec<&str> = if between == ": " {
+                let (title, rest) = text.split_once(between)?;
+                vec![title, rest]
+            } else {
+                text.split(between).collect()
+            };
+            let found: Vec<Option<String>> = parts.iter().map(|part| self.look_up(part, depth + 1)).collect();
+            let some = found.iter().any(Option::is_some);
+            let all = found.iter().zip(&parts).all(|(found, part)| found.is_some() || !has_word(part));
+            (some && (all || between != ", ")).then(|| {
+                let whole: Vec<String> = (found.into_iter().zip(&parts))
+                    .map(|(found, part)| found.unwrap_or_else(|| part.trim().to_owned()))
+                    .collect();
+                whole.join(translated)
+            })
+        })
+    }
+}
+
+impl Piece {
+    fn letters(&self) -> usize {
+        match self {
+            Self::Words(words) => words.chars().filter(|letter| letter.is_alphabetic()).count(),
+            Self::Anything | Self::Number => 0,
+        }
+    }
+}
+
+/// An entry by its parts.
+fn pieces(entry: &str) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut words = String::new();
+    let mut rest = entry.trim();
+    while !rest.is_empty() {
+        let placeholder = [("{}", Piece::Anything), ("{#}", Piece::Number)]
+            .into_iter()
+            .find_map(|(sign, piece)| Some((rest.strip_prefix(sign)?, piece)));
+        if let Some((after, piece)) = placeholder {
+            if !words.is_empty() {
+                pieces.push(Piece::Words(std::mem::take(&mut words)));
+            }
+            pieces.push(piece);
+            rest = after;
+        } else {
+            let mut letters = rest.chars();
+            words.extend(letters.next());
+            rest = letters.as_str();
+        }
+    }
+    if !words.is_empty() {
+        pieces.push(Piece::Words(words));
+    }
+    pieces
+}
+
+/// Whether `text` is made of these pieces; `filled` holds then what the placeholders stand for.
+fn fill<'a>(pieces: &[Piece], text: &'a str, letters: usize, filled: &mut Vec<&'a str>) -> bool {
+    let Some((first, rest)) = pieces.split_first() else {
+        return text.is_empty();
+    };
+    if let Piece::Words(words) = first {
+        return text
+            .strip_prefix(words.as_str())
+            .is_some_and(|text| fill(rest, text, letters, filled));
+    }
+    let fits = |part: &str| match first {
+        Piece::Number => is_number(part),
+        // Few words may stand anywhere in a long text by chance.
+        _ => letters >= 8 || part.len() <= 40 && !part.contains(". "),
+    };
+    let known = filled.len();
+    let ends: Vec<usize> = match rest.first() {
+        None => vec![text.len()],
+        // Two placeholders side by side: the first takes all, for they go side by side into the translation, too.
+        Some(Piece::Anything | Piece::Number) => {
+            let next = rest
+                .iter()
+                .find_map(|piece| if let Piece::Words(words) = piece { Some(words) } else { None });
+            next.map_or_else(
+                || vec![text.len()],
+                |words| text.match_indices(words.as_str()).map(|(at, _)| at).collect(),
+            )
+        }
+        Some(Piece::Words(words)) => text.match_indices(words.as_str()).map(|(at, _)| at).collect(),
+    };
+    for end in ends {
+        if fits(&text[..end]) {
+            filled.push(&text[..end]);
+            if fill(rest, &text[end..], letters, filled) {
+                return true;
+            }
+            filled.truncate(known);
+        }
+    }
+    false
+}
+
+/// A translation with its placeholders filled.
+fn put_in(translation: &str, parts: &[String]) -> String {
+    let mut whole = String::new();
+    let mut rest = translation;
+    let mut next = 0;
+    while let Some((before, after)) = rest.split_once('{') {
+        whole.push_str(before);
+        let Some((index, behind)) = after.split_once('}') else {
+            whole.push('{');
+            rest = after;
+            continue;
+        };
+        let index = index.parse().unwrap_or_else(|_| {
+            next += 1;
+            next - 1
+        });
+        whole.push_str(parts.get(index).map_or("", String::as_str));
+        rest = behind;
+    }
+    whole.push_str(rest);
+    whole
+}
+
+/// Whether there is anything to translate: two letters side by side.
+fn has_word(text: &str) -> bool {
+    text.as_bytes().windows(2).any(|pair| pair.iter().all(u8::is_ascii_alphabetic))
+}
+
+fn is_number(text: &str) -> bool {
+    text.contains(|sign: char| sign.is_ascii_digit()) && text.chars().all(|sign| sign.is_ascii_digit() || "+-−.,:".contains(sign))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn catalogue() -> Catalogue {
+        Catalogue::read(
+            r#"{
+                "words": {"Walk": "走", "frame": "影格", "bone": "骨頭", "too short": "太短", "left": "左", "samples": "範例"},
+                "patterns": {
+                    "{} could not be loaded: {}.": "無法載入 {0}：{1}。",
+                    "{} of {} frames": "{1} 個影格中的 {0} 個",
+                    "{#} transitions, {}.": "{} 個轉場，{}。",
+                    "no dead end": "沒有死路",
+                    "(line {#})": "（第 {} 行）",
+                    "{}{} ignored": "略過{}{}",
+                    "One is enough.": "一個就夠了。",
+                    "a window of {} frames": "{} 個影格的視窗"
+                }
+            }"#
+            .as_bytes(),
+        )
+        .unwrap()
+    }
+
+    fn told(text: &str) -> String {
+        catalogue()
+            .find(text)
+            .map_or_else(|| format!("({text})"), |found| found.to_string())
+    }
+
+    #[test]
+    fn sentences_are_found_by_their_words_and_by_their_parts() {
+        for (english, expected) in [
+            ("Walk", "走"),
+            (" Walk ", "走"),
+            ("Walk could not be loaded: too short.", "無法載入 走：太短。"),
+            ("3 of 12 frames", "12 個影格中的 3 個"),
+            ("12 transitions, no dead end. One is enough.", "12 個轉場，沒有死路。一個就夠了。"),
+            ("Too short.", "太短。"),
+            ("3 bones (line 7) ignored", "略過3 個骨頭（第 7 行）"),
+            ("Walk · 3 frames", "走 · 3 個影格"),
+            ("Walk, left", "走、左"),
+            ("samples: 3.2 s", "範例：3.2 s"),
+            ("A window of 5 frames.", "5 個影格的視窗。"),
+        ] {
+            assert_eq!(told(english), expected, "{english}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_stays() {
+        for english in [
+            "",
+            "0.5 s",
+            "cm",
+            "01_01",
+            "Walk on, then left",
+            "x could be",
+            "many transitions, no dead end.",
+        ] {
+            assert_eq!(told(english), format!("({english})"));
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_no_catalogue_is_refused() {
+        assert!(Catalogue::read(b"<!doctype html>").is_err());
+        assert!(Catalogue::read(br#"{"a": "b"}"#).is_err());
+    }
+
+    #[test]
+    fn translations_hold_their_parts_in_any_order() {
+        let parts = ["a".to_owned(), "b".to_owned()];
+        assert_eq!(put_in("{1}{0}", &parts), "ba");
+        assert_eq!(put_in("{} {}{2}{", &parts), "a b{");
+    }
+}
