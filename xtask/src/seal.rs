@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use crate::shell::{Result, fail};
 
 /// What is fetched when somebody asks for it, and kept from then on.
-const LATER: [&str; 3] = ["samples/", "fonts/", "lessons/"];
+const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
 /// The two that everything else is reached from: their names stay.
 const PAGE: &str = "index.html";
 const WORKER: &str = "sw.js";

@@ -198,6 +198,7 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
         clip_row_ui(
             ClipRow {
                 name,
+                own: false,
                 detail,
                 part,
                 warning,
