@@ -204,7 +204,6 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
                 warning,
                 selected: index == 2,
                 actions: &actions,
-                own: false,
             },
             ui,
         );
