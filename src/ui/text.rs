@@ -22,6 +22,8 @@ pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exa
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
+/// Behind the sign 中.
+pub(crate) const OR_ENGLISH: &str = "/ EN";
 pub(crate) const IN_CHINESE: &str = "Interface in Chinese";
 pub(crate) const IN_ENGLISH: &str = "Interface in English";
 pub(crate) const HELP: &str = "Shortcuts";
