@@ -1,6 +1,7 @@
 use super::{LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,11 +37,20 @@ pub(crate) enum Incoming {
     },
     /// The text that was to be copied is in the clipboard.
     Copied,
+    /// The picture that was asked for, as an address that is the picture itself; `None` where none could be taken.
+    Picture(Option<String>),
     /// A bundled take.
     Sample {
         /// Which.
         sample: &'static Sample,
         /// Its packed bytes, or why they are not there.
+        result: Result<Arc<[u8]>, String>,
+    },
+    /// The text of a lesson.
+    Lesson {
+        /// Which.
+        source: Source,
+        /// Its bytes, or why they are not there.
         result: Result<Arc<[u8]>, String>,
     },
     /// The catalogue and the letters of the language that was asked for, or why they are not here.

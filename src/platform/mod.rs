@@ -80,15 +80,14 @@ pub(crate) struct Gamepad {
     pub(crate) strafe: bool,
 }
 
-/// Why a file of that size is not read; `None` when it is.
-fn too_large(name: &str, bytes: u64) -> Option<String> {
-    (bytes > MAX_FILE_BYTES).then(|| {
-        let megabytes = |bytes: u64| bytes.div_ceil(1024 * 1024);
-        format!(
-            "{name} has {} MB; files of up to {} MB are read.",
-            megabytes(bytes),
-            megabytes(MAX_FILE_BYTES)
-        )
+/// Why a file of that size is not read, where up to `most` bytes are; `None` when it is.
+fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
+    (bytes > most).then(|| {
+        let in_words = |bytes: u64| match bytes.div_ceil(1024) {
+            small @ ..1024 => format!("{small} KB"),
+            large => format!("{} MB", large.div_ceil(1024)),
+        };
+        format!("{name} has {}; files of up to {} are read.", in_words(bytes), in_words(most))
     })
 }
 

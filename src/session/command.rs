@@ -1,3 +1,4 @@
+use super::lesson::Source;
 use super::library::Sample;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
@@ -45,6 +46,8 @@ pub enum Command {
     TogglePlay,
     /// Opens "full, half, third" of a parameter in three panes.
     CompareThirds(Key),
+    /// Lays a link of the open lesson over the state of its page; an empty one is the page's own state.
+    Try(String),
     /// Takes the last step back.
     Undo,
     /// Does it again.
@@ -94,6 +97,8 @@ pub enum Request {
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load`].
     Fetch(String),
+    /// The text of a lesson; hand its bytes to [`super::Session::finish_lesson`].
+    Lesson(Source),
     /// A file that takes too long to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
     Read(ReadTask),
     /// Nobody waits for a task any longer.

@@ -328,7 +328,19 @@ const GAITS: &[Choice] = &[
     choice("spin", "spin"),
     choice("jump", "jump"),
 ];
-const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
+const LOOKS: &[Choice] = &[
+    choice("body", "body"),
+    choice("limbs", "limbs"),
+    choice("bones", "bones"),
+    choice("both", "both"),
+];
+const SKINNINGS: &[Choice] = &[choice("dual", "dual quaternions"), choice("linear", "linear blend")];
+const STAGES: &[Choice] = &[
+    choice("auto", "auto"),
+    choice("dark", "dark"),
+    choice("light", "light"),
+    choice("paper", "paper"),
+];
 const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
 const CURVES: &[Choice] = &[
@@ -387,6 +399,7 @@ parameters! {
     WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
     WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
+    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Word(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
     WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Word(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
     WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
     WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
@@ -471,7 +484,13 @@ parameters! {
     MakeSeconds "make_seconds" "Length" Make number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
     Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
 
-    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "Body, bones, or both.";
+    Stage "stage" "Stage" Stage Kind::Choice(STAGES), Start::Word("auto"), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
+    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
+    Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
+    FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
+    FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.01), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
+    Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once. Twist a forearm: linear blend wraps it like a candy, dual quaternions keep its girth.";
+    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does: a test of the skin.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
     Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";
@@ -504,6 +523,7 @@ parameters! {
     Lang "lang" "Language" Page Kind::Choice(LANGUAGES), Start::Word("auto"), "", "English, Traditional Chinese, or as the browser has it. A link that names none leaves every reader their own.";
     Projector "projector" "Projector" Page Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
     Embed "embed" "Embed" Page Kind::Switch, Start::Switch(false), "", "The stage and the parameters that the link names, without the rest.";
+    Lesson "lesson" "Lesson" Page Kind::Text, Start::Word(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
     Src "src" "Source" Page Kind::Text, Start::Word(""), "", "Addresses of motion files to load, separated by spaces.";
 }
 
@@ -709,10 +729,14 @@ impl Param {
         }
     }
 
-    /// Whether compare can make panes of it: a number that changes the result.
+    /// Whether compare can make panes of it: a clip, a number or choice that changes the result, and the two ways of skinning.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_)) && self.group.is_of_lab()
+        match self.kind {
+            Kind::Clip => true,
+            Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab() || self.key == Key::Skinning,
+            _ => false,
+        }
     }
 }
 

@@ -36,10 +36,10 @@ pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath};
 pub(super) use path::{PathInputs, Paths};
-pub use register::{Beat, DistanceMap, Registered, weight_curve, write_pairs};
-pub(super) use register::{RegisterInputs, Registrar, read_pins, read_weights};
+pub use register::{Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs};
+pub(super) use register::{RegisterInputs, Registrars, read_also, read_pins, read_weights};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
-pub(super) use view::{FeetHolder, ViewInputs};
+pub(super) use view::{ViewInputs, Viewer};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

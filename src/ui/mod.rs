@@ -10,6 +10,7 @@ pub(crate) mod kit;
 mod lab_panel;
 mod language;
 mod layers_rows;
+mod lessons_panel;
 mod library_panel;
 mod out;
 mod overlays;
@@ -35,10 +36,11 @@ pub(crate) use language::{Language, Tongue, speak_english};
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};
-pub(crate) use text::{LINK_COPIED, TABLE_COPIED};
+pub(crate) use text::{LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
+use segue::scene::Look;
 use segue::session::{Key, Session};
 use state::Layout;
 use theme::{Theme, palette_of, space, theme_of};
@@ -56,6 +58,27 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
     }
 }
 
+/// The theme of what lies over the stage, on a page of that theme.
+pub(crate) fn stage_theme(session: &Session, page: Theme) -> Theme {
+    let dark = match session.params().text(Key::Stage) {
+        "dark" => true,
+        "light" | "paper" => false,
+        _ => page.dark,
+    };
+    Theme { dark, ..page }
+}
+
+/// Colours and light of the stage in that theme.
+pub(crate) fn stage_look(session: &Session, theme: Theme) -> Look {
+    let mut look = match (session.params().text(Key::Stage), theme.dark) {
+        ("paper", _) => Look::PAPER,
+        (_, true) => Look::DARK,
+        (_, false) => Look::LIGHT,
+    };
+    look.edge_width *= theme.scale();
+    look
+}
+
 /// Draws the page. `paint` draws the 3D picture into the stage.
 pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCache, paint: Paint<'_>, ui: &mut Ui) -> Out {
     let mut out = Out::default();
@@ -65,6 +88,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
+    state.has_map_panel = layout == Layout::Desk && graph::is_open(session) && !lessons_panel::is_open(session);
     if !matches!(session.params().text(Key::Lab), "graph" | "path") {
         state.drawing = None;
     }
@@ -124,9 +148,17 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
             time_ui(session, layout, state, curves, out, ui);
         });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
-    // The map of the graph takes the library's room.
-    let drawer = layout == Layout::Tablet || graph::is_open(session);
-    if !drawer || state.library_open {
+    let lesson = lessons_panel::is_open(session);
+    if lesson && layout == Layout::Desk {
+        Panel::left("lesson")
+            .exact_size(lessons_panel::width(ui.available_width(), scale))
+            .frame(scrolling_frame(ui, space::L, space::M))
+            .resizable(false)
+            .show(ui, |ui| lessons_panel::lessons_panel_ui(session, state, out, ui));
+    }
+    // A lesson, and the map of the graph, take the library's room.
+    let drawer = layout == Layout::Tablet || lesson || graph::is_open(session);
+    if state.library_open || !drawer {
         Panel::left("library")
             .exact_size(244.0 * scale)
             .frame(side(ui))
@@ -135,18 +167,27 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
                 library_panel::library_panel_ui(session, state, out, ui);
             });
     }
+    // A lesson that has no place of its own shares that of the parameters.
+    let shared = lesson && layout == Layout::Tablet;
     Panel::right("lab")
-        .exact_size(288.0 * scale)
+        .exact_size(if shared { 340.0 } else { 288.0 } * scale)
         .frame(scrolling_frame(ui, space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
+            if shared {
+                lessons_panel::lesson_or_parameters_ui(state, ui);
+                if !state.lesson_behind {
+                    lessons_panel::lessons_panel_ui(session, state, out, ui);
+                    return;
+                }
+            }
             if drawer {
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
             scrolled_ui(space::L, ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
         });
-    if layout == Layout::Desk && graph::is_open(session) {
+    if state.has_map_panel {
         Panel::right("graph map")
             .exact_size((graph::map_share(session) * ui.available_width()).round())
             .frame(panel_frame(ui, space::M, space::M))
@@ -174,9 +215,10 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         .exact_size(48.0 * scale)
         .frame(frame)
         .show(ui, |ui| top_bar::top_bar_ui(session, Layout::Phone, state, out, ui));
+    let lesson = lessons_panel::is_open(session);
     let height = ui.available_height();
     Panel::top("stage")
-        .exact_size((height * 0.5).round())
+        .exact_size((height * if lesson { 0.42 } else { 0.5 }).round())
         .frame(Frame::new())
         .show(ui, |ui| {
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
@@ -196,6 +238,13 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
     egui::CentralPanel::default()
         .frame(scrolling_frame(ui, space::L, space::M))
         .show(ui, |ui| {
+            if lesson && !state.library_open {
+                lessons_panel::lesson_or_parameters_ui(state, ui);
+                if !state.lesson_behind {
+                    lessons_panel::lessons_panel_ui(session, state, out, ui);
+                    return;
+                }
+            }
             scrolled_ui(space::L, ui, |ui| {
                 if state.library_open {
                     library_panel::drop_ui(session, state, out, ui);

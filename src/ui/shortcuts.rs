@@ -1,5 +1,6 @@
 //! Keys that do what buttons do. The list that people read stands in [`super::text::SHORTCUTS`].
 
+use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
 use super::stage_panel::frame_everything;
 use super::state::UiState;
@@ -42,6 +43,9 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         state.help_open = !state.help_open;
     }
     if pressed(none, Keyboard::Escape) {
+        if lessons_panel::is_open(session) && !state.help_open && !state.library_open && state.drawing.is_none() {
+            toggle_lessons(session, out);
+        }
         (state.help_open, state.library_open) = (false, false);
         state.drawing = None;
     }
@@ -84,6 +88,9 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     if pressed(none, Keyboard::L) {
         out.toggle(Key::Loop, params.is_on(Key::Loop));
+    }
+    if pressed(none, Keyboard::N) {
+        toggle_lessons(session, out);
     }
     if pressed(none, Keyboard::C) {
         toggle_compare(session, out);

@@ -65,6 +65,10 @@ pub(crate) struct UiState {
     pub(crate) samples_open: bool,
     /// The list of shortcuts is open.
     pub(crate) help_open: bool,
+    /// The parameters are in front of the lesson, where they share one place.
+    pub(crate) lesson_behind: bool,
+    /// The lesson whose answer is shown.
+    pub(crate) answered: Option<String>,
     /// The pane that a phone shows.
     pub(crate) shown_pane: usize,
     /// The clip whose name is being typed.
@@ -93,6 +97,8 @@ pub(crate) struct UiState {
     pub(crate) walk_secs: f64,
     /// How much room there is.
     pub(crate) layout: Layout,
+    /// The map of the graph has a panel of its own; elsewhere it stands among the parameters.
+    pub(crate) has_map_panel: bool,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -115,6 +121,8 @@ impl Default for UiState {
             library_open: false,
             samples_open: false,
             help_open: false,
+            lesson_behind: false,
+            answered: None,
             shown_pane: 0,
             renaming: None,
             typed_fps: None,
@@ -129,6 +137,7 @@ impl Default for UiState {
             drawing: None,
             walk_secs: 0.0,
             layout: Layout::Desk,
+            has_map_panel: false,
             export: ExportOptions::default(),
             saved_pane: 0,
             language: Language::default(),

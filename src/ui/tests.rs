@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 mod chinese;
 mod drive;
+mod lessons;
 mod path;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
@@ -578,7 +579,7 @@ fn a_weight_over_time_is_drawn_by_hand() {
     let (share, weight) = keys(&harness)[1];
     assert!(share.abs_diff(30) <= 2 && weight.abs_diff(20) <= 2, "{share} {weight}");
     let beats = &outcome(harness.state()).registered.as_ref().unwrap().beats;
-    assert!((beats[beats.len() * 3 / 10].weight_b - 0.2).abs() < 0.06);
+    assert!((beats[beats.len() * 3 / 10].weights[1] - 0.2).abs() < 0.06);
     picture("register-weights-dark", &mut harness);
     press(text::ONE_WEIGHT, &mut harness);
     assert_eq!(keys(&harness), []);

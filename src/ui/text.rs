@@ -19,6 +19,14 @@ pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";
 pub(crate) const LINK: &str = "Link";
 pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
+pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
+pub(crate) const REPORT: &str = "Copy a report";
+pub(crate) const REPORT_COPIED: &str = "The report is in the clipboard: Markdown, with the picture in it.";
+pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
+pub(crate) const CLIP: &str = "Clip";
+pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
+pub(crate) const COMPARE_CLIPS_HELP: &str = "A and B as they are, side by side, with the same numbers for both";
+pub(crate) const BLEND_MORE: &str = "Blend in another clip";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
@@ -158,6 +166,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("[ ]", "slower, faster"),
     ("L", "loop"),
     ("C", "compare full, half, third"),
+    ("N", "lessons; Esc closes them"),
     ("1 … 9", "the labs, from left to right"),
     ("T", "from above"),
     ("F", "frame everything"),
@@ -198,6 +207,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("apart_cm", "apart cm"),
     ("skate_mean_cm", "skate cm"),
     ("seam_dps", "seam °/s"),
+    ("clip_seam_dps", "worst jerk °/s"),
     ("skate_cm", "skate cm"),
     ("skate_before_cm", "unlocked cm"),
     ("skate_original_cm", "original cm"),
@@ -212,8 +222,12 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("off_spine_deg", "spine"),
     ("off_head_deg", "head"),
     ("off_legs_deg", "legs"),
+    ("clip_spin_deg", "turn in 0.2 s"),
     ("seam_deg", "jump"),
+    ("clip_seam_deg", "worst jump"),
     ("penetration_cm", "sunk cm"),
+    ("clip_penetration_cm", "sunk cm"),
+    ("clip_jump_cm", "leap cm"),
     ("loop_before_deg", "bare seam"),
     ("cycle_s", "cycle s"),
     ("cycle_frames", "frames"),
@@ -589,7 +603,6 @@ pub(crate) const COPY_CSV: &str = "Copy as CSV";
 /// What is said then.
 pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
 /// A row of it.
-pub(crate) const BUILD_TIME: &str = "Build time";
 /// A mark of the walk.
 pub(crate) const SEAM: &str = "Into another clip";
 
@@ -844,6 +857,59 @@ pub(crate) fn database(database: &Database) -> String {
 /// The name of a button.
 pub(crate) fn leave_clip_out(name: &str) -> String {
     format!("Leave {name} out")
+}
+
+/// The letter of a further clip in a blend: those behind A and B.
+fn letter(index: usize) -> char {
+    char::from_u32('C' as u32 + index as u32).unwrap_or('…')
+}
+
+/// What a further clip of a blend is called.
+pub(crate) fn blended_clip(index: usize) -> String {
+    letter(index).to_string()
+}
+
+/// Its weight.
+pub(crate) fn weight_of(index: usize) -> String {
+    format!("Weight of {}", letter(index))
+}
+
+/// The button that opens the list of lessons.
+pub(crate) const LESSONS: &str = "Lessons";
+/// Its hint.
+pub(crate) const LESSONS_HELP: &str = "Short guided pages: what to look at, what to try, a question";
+/// Of the page, where it shares its place with the parameters.
+pub(crate) const LESSON: &str = "Lesson";
+/// See [`LESSON`].
+pub(crate) const PARAMETERS: &str = "Parameters";
+/// What the two are, for a screen reader.
+pub(crate) const LESSON_OR_PARAMETERS: &str = "Lesson or parameters";
+/// Back to the list.
+pub(crate) const ALL_LESSONS: &str = "All lessons";
+/// Closes the panel.
+pub(crate) const CLOSE_LESSONS: &str = "Close the lessons";
+/// To the page before.
+pub(crate) const PREVIOUS_PAGE: &str = "Previous page";
+/// To the page behind.
+pub(crate) const NEXT_PAGE: &str = "Next page";
+/// Likewise, below the text.
+pub(crate) const NEXT: &str = "Next";
+/// Over what there is to try.
+pub(crate) const TRY: &str = "Try";
+/// Over the question.
+pub(crate) const QUESTION: &str = "Question";
+/// Shows what was hidden.
+pub(crate) const SHOW_ANSWER: &str = "Show answer";
+/// And hides it.
+pub(crate) const HIDE_ANSWER: &str = "Hide answer";
+/// While a text is under way.
+pub(crate) const LESSON_WAITING: &str = "The lesson is loading…";
+/// After it did not come.
+pub(crate) const TRY_AGAIN: &str = "Try again";
+
+/// The place of a page.
+pub(crate) fn page_of(number: usize, of: usize) -> String {
+    format!("{number} of {of}")
 }
 
 #[cfg(test)]

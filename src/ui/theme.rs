@@ -66,6 +66,12 @@ pub(crate) enum Type {
     Body,
     /// Names: a clip, the chosen tab.
     Strong,
+    /// The heading of a page that is read.
+    Heading,
+    /// Text that is read, not looked up.
+    Reading,
+    /// What is firm in it.
+    ReadingStrong,
     /// Labels of parameters.
     Label,
     /// The value of a parameter.
@@ -94,7 +100,10 @@ impl Theme {
     /// The font of one step of the type scale.
     pub(crate) fn font(self, step: Type) -> FontId {
         let (size, strong) = match step {
+            Type::Heading => (19.0, true),
             Type::Title => (15.5, true),
+            Type::Reading => (14.0, false),
+            Type::ReadingStrong => (14.0, true),
             Type::Body | Type::Label => (13.0, false),
             Type::Strong | Type::Number => (13.0, true),
             Type::Metric => (16.0, true),
@@ -165,7 +174,7 @@ impl Theme {
             ]
             .into(),
             visuals: self.visuals(),
-            animation_time: 0.12,
+            animation_time: 0.13,
             ..Style::default()
         };
         let spacing = &mut style.spacing;
@@ -183,6 +192,20 @@ impl Theme {
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.45;
         style
+    }
+
+    /// Draws with this theme on a page that has another.
+    pub(crate) fn within<R>(self, ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+        let page = theme_of(ui);
+        if page == self {
+            return add(ui);
+        }
+        let style = std::mem::replace(ui.style_mut(), self.style());
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), self));
+        let added = add(ui);
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), page));
+        *ui.style_mut() = style;
+        added
     }
 
     fn visuals(self) -> Visuals {

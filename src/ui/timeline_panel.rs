@@ -2,7 +2,6 @@
 
 use super::drive::drive_panel_ui;
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
-use super::lab_panel::value_in_words;
 use super::out::Out;
 use super::state::Layout;
 use super::text;
@@ -285,7 +284,7 @@ fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
 /// The results of all panes, with what tells them apart.
 fn named_outcomes(session: &Session) -> Vec<(String, &Arc<Outcome>)> {
     let named = session.panes().iter().filter_map(|pane| {
-        let name = pane.variant.as_ref().map_or_else(|| text::RESULT.to_owned(), value_in_words);
+        let name = session.variant_name(pane).unwrap_or_else(|| text::RESULT.to_owned());
         Some((name, pane.outcome.as_ref()?))
     });
     named.collect()

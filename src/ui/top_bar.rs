@@ -5,6 +5,7 @@ use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::{Language, tr};
+use super::lessons_panel::{lessons_button_ui, toggle_lessons};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
 use super::register_panel::compare_warps;
@@ -12,7 +13,7 @@ use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
-use segue::session::{Command, Key, Kind, Session, Value};
+use segue::session::{Command, Compare, Key, Kind, Session, Value};
 
 /// The whole bar.
 pub(crate) fn top_bar_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -107,6 +108,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui).clicked() {
         toggle_compare(session, out);
     }
+    lessons_button_ui(session, layout, out, ui);
 }
 
 /// What a phone has no room for in the bar.
@@ -119,6 +121,9 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     if kit::menu_item_ui(item(text::LIBRARY, Icon::Folder), ui).clicked() {
         state.library_open = true;
     }
+    if kit::menu_item_ui(item(text::LESSONS, Icon::Book), ui).clicked() {
+        toggle_lessons(session, out);
+    }
     if kit::menu_item_ui(item(text::COMPARE, Icon::Swap), ui).clicked() {
         toggle_compare(session, out);
     }
@@ -127,6 +132,9 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     }
     if kit::menu_item_ui(item(text::REDO, Icon::Redo), ui).clicked() {
         out.commands.push(Command::Redo);
+    }
+    if kit::menu_item_ui(item(text::REPORT, Icon::Report), ui).clicked() {
+        out.actions.push(Action::CopyReport);
     }
     if kit::menu_item_ui(item(text::THEME, Icon::Contrast), ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
@@ -166,13 +174,22 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "path" => return compare_points(session, out),
         "graph" => return compare_windows(out),
         "match" => return compare_hysteresis(session, out),
+        "view" => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
     out.commands.push(Command::CompareThirds(key));
-    if session.params().text(Key::Lab) == "view" {
-        out.set_once(Key::Lab, Value::Choice("blend"));
-    }
+}
+
+/// Two clips as they are, side by side: a reference, and what somebody made after it.
+pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
+    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
+    let compare = Compare { key: Key::A, values }.to_string();
+    out.commands.push(Command::Set(vec![
+        (Key::Lab, Value::Choice("view")),
+        (Key::Compare, Value::Text(compare)),
+    ]));
+    out.commands.push(Command::Settle);
 }

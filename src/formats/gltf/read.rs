@@ -3,9 +3,10 @@ use super::curve::{Curve, Kind, SAME_FRAME, rotation};
 use super::document::Document;
 use super::node::Nodes;
 use super::rate::{Rate, rate};
+use super::skin::mesh;
 use crate::clip::UpAxis;
 use crate::formats::measure::measure;
-use crate::formats::raw::RawMotion;
+use crate::formats::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::formats::t_pose::first_frame_is_t_pose;
 use crate::formats::warning::{Tally, WarningKind};
 use crate::formats::{ImportError, ImportOptions, Imported, ImportedClip, check_size, stem};
@@ -178,6 +179,7 @@ impl Context<'_> {
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
+        let mut skin = mesh(self.document, self.nodes, character, tally);
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);
         }
@@ -188,6 +190,13 @@ impl Context<'_> {
             tracks: Vec::new(),
         };
         let metres_per_unit = self.unit(&rest, tally);
+        if let Some(mesh) = &mut skin {
+            mesh.scale(metres_per_unit as f32);
+            if self.options.up == Some(UpAxis::Z) {
+                mesh.turn(Y_UP_FROM_Z_UP);
+            }
+        }
+        let skin = skin.map(Arc::new);
         let is_moved = |motion: &&Motion| {
             let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
             character.nodes.iter().any(moves)
@@ -195,12 +204,18 @@ impl Context<'_> {
         let before = clips.len();
         for motion in motions.iter().filter(is_moved) {
             let raw = self.sampled(character, motion)?;
-            clips.push(self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?);
+            clips.push(
+                self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?
+                    .with_mesh(&skin),
+            );
         }
         if clips.len() == before {
             tally.add(WarningKind::NoFrames, None);
             let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
-            clips.push(self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?);
+            clips.push(
+                self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?
+                    .with_mesh(&skin),
+            );
         }
         Ok(())
     }
@@ -301,6 +316,7 @@ impl Context<'_> {
             t_pose_first_row,
             t_pose_dropped,
             measure,
+            mesh: None,
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::LargeFile;
 use crate::platform::{
-    Inbox, Incoming, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in, too_large, too_many_in,
+    Inbox, Incoming, MAX_FILE_BYTES, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in, too_large, too_many_in,
 };
 use eframe::egui::DroppedFileHandle;
 use segue::session::reading::LARGE_BYTES;
@@ -106,7 +106,7 @@ fn motion_files(folder: &Path, name: &str, most: usize) -> std::io::Result<(Vec<
 fn read_file(path: &Path, name: String, inbox: &Inbox) {
     let unreadable = |error: std::io::Error| format!("{name} cannot be read: {error}.");
     let bytes = match std::fs::metadata(path) {
-        Ok(metadata) => match too_large(&name, metadata.len()) {
+        Ok(metadata) => match too_large(&name, metadata.len(), MAX_FILE_BYTES) {
             Some(reason) => Err(reason),
             None => std::fs::read(path).map_err(unreadable),
         },

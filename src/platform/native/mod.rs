@@ -8,7 +8,7 @@ mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
-pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
+pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use reader::{LargeFile, Reader};
@@ -17,6 +17,7 @@ pub(crate) use storage::Storage;
 use super::{Inbox, Incoming, address};
 use eframe::egui;
 use segue::session::Sample;
+use segue::session::lesson::Source;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
@@ -34,6 +35,11 @@ pub(crate) fn location_query() -> String {
         .skip(1)
         .find(|argument| files::is_query(argument))
         .map_or_else(String::new, |query| address::state_of(&query))
+}
+
+/// Desktops tell a window nothing of the kind.
+pub(crate) fn prefers_stillness() -> bool {
+    false
 }
 
 /// The user's languages, best first, as their tags.
@@ -90,6 +96,18 @@ pub(crate) fn load_language(tag: &str, inbox: &Inbox) {
 
 /// A window has no page around it that would have a language.
 pub(crate) fn tell_language(_tag: &str) {}
+
+/// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+    let result = match source {
+        Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| format!("{file} could not be loaded: {reason}.")),
+        Source::Web(address) => Err(format!(
+            "This window does not load lessons over the network: {address} opens in a browser."
+        )),
+    };
+    let source = source.clone();
+    inbox.push(Incoming::Lesson { source, result });
+}
 
 /// What lies in a folder beside the program, or in the project's own.
 fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {

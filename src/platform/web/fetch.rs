@@ -5,6 +5,7 @@ use super::words_of;
 use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, file_name_of, too_large};
 use js_sys::{Reflect, Uint8Array};
 use segue::session::Sample;
+use segue::session::lesson::{MOST_BYTES, Source};
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -29,7 +30,7 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let signal = controller.as_ref().map(AbortController::signal);
     let (address, inbox) = (address.to_owned(), inbox.clone());
     spawn_local(async move {
-        let result = get(&address, signal.as_ref(), &inbox).await;
+        let result = get(&address, &MOTION, signal.as_ref(), &inbox).await;
         if signal.is_some_and(|signal| signal.aborted()) {
             return;
         }
@@ -45,6 +46,20 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     spawn_local(async move {
         let result = bundled(&format!("samples/{}", sample.file)).await;
         inbox.push(Incoming::Sample { sample, result });
+    });
+}
+
+/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it.
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+    let (source, inbox) = (source.clone(), inbox.clone());
+    spawn_local(async move {
+        let result = match &source {
+            Source::BuiltIn(file) => bundled(&format!("lessons/{file}"))
+                .await
+                .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
+            Source::Web(address) => get(address, &LESSON, None, &inbox).await.map(Arc::from),
+        };
+        inbox.push(Incoming::Lesson { source, result });
     });
 }
 
@@ -69,6 +84,28 @@ async fn bundled(address: &str) -> Result<Arc<[u8]>, String> {
     }
 }
 
+/// What is asked for at an address.
+struct Wanted {
+    /// What it is.
+    what: &'static str,
+    /// The most bytes that are read.
+    most_bytes: u64,
+    /// What to do with a file that its server gives to nobody's page.
+    otherwise: &'static str,
+}
+
+const MOTION: Wanted = Wanted {
+    what: "a motion file",
+    most_bytes: MAX_FILE_BYTES,
+    otherwise: "Download the file and drop it here.",
+};
+
+const LESSON: Wanted = Wanted {
+    what: "a Markdown file",
+    most_bytes: MOST_BYTES as u64,
+    otherwise: "Put the lesson on a server that does, such as GitHub.",
+};
+
 async fn whole(response: &Response) -> Result<Vec<u8>, JsValue> {
     let buffer = JsFuture::from(response.array_buffer()?).await?;
     Ok(Uint8Array::new(&buffer).to_vec())
@@ -83,10 +120,10 @@ async fn request(address: &str, mode: RequestMode, signal: Option<&AbortSignal>)
     JsFuture::from(window.fetch_with_str_and_init(address, &init)).await?.dyn_into()
 }
 
-async fn get(address: &str, signal: Option<&AbortSignal>, inbox: &Inbox) -> Result<Vec<u8>, String> {
+async fn get(address: &str, wanted: &Wanted, signal: Option<&AbortSignal>, inbox: &Inbox) -> Result<Vec<u8>, String> {
     let name = file_name_of(address);
     let Ok(response) = request(address, RequestMode::Cors, signal).await else {
-        return Err(why_refused(address).await);
+        return Err(why_refused(address, wanted).await);
     };
     match response.status() {
         200..=299 => {}
@@ -108,17 +145,20 @@ async fn get(address: &str, signal: Option<&AbortSignal>, inbox: &Inbox) -> Resu
     let header = |key| response.headers().get(key).ok().flatten();
     if header("content-type").is_some_and(|kind| kind.starts_with("text/html")) {
         return Err(format!(
-            "{address} is a web page, not a motion file. Use the address of the file itself (on GitHub: Raw)."
+            "{address} is a web page, not {}. Use the address of the file itself (on GitHub: Raw).",
+            wanted.what
         ));
     }
     let total = header("content-length").and_then(|length| length.parse::<u64>().ok());
-    if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes)) {
+    if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, wanted.most_bytes)) {
         return Err(reason);
     }
-    read(&response, address, total, inbox).await.map_err(|error| match error {
-        Unread::TooLarge(reason) => reason,
-        Unread::Broken(error) => format!("The connection broke while {name} was loading: {}.", words_of(&error)),
-    })
+    read(&response, address, total, wanted.most_bytes, inbox)
+        .await
+        .map_err(|error| match error {
+            Unread::TooLarge(reason) => reason,
+            Unread::Broken(error) => format!("The connection broke while {name} was loading: {}.", words_of(&error)),
+        })
 }
 
 enum Unread {
@@ -133,7 +173,7 @@ impl From<JsValue> for Unread {
 }
 
 /// Reads an answer piece by piece. An answer without a length may be endless, so it is counted, not trusted.
-async fn read(response: &Response, address: &str, total: Option<u64>, inbox: &Inbox) -> Result<Vec<u8>, Unread> {
+async fn read(response: &Response, address: &str, total: Option<u64>, most_bytes: u64, inbox: &Inbox) -> Result<Vec<u8>, Unread> {
     let Some(stream) = response.body() else {
         return Ok(Vec::new());
     };
@@ -146,9 +186,11 @@ async fn read(response: &Response, address: &str, total: Option<u64>, inbox: &In
         }
         let piece: Uint8Array = Reflect::get(&chunk, &"value".into())?.dyn_into()?;
         let done = bytes.len() as u64 + u64::from(piece.length());
-        if done > MAX_FILE_BYTES {
+        if done > most_bytes {
             JsFuture::from(reader.cancel()).await.ok();
-            return Err(Unread::TooLarge(too_large(&file_name_of(address), done).unwrap_or_default()));
+            return Err(Unread::TooLarge(
+                too_large(&file_name_of(address), done, most_bytes).unwrap_or_default(),
+            ));
         }
         bytes.extend(piece.to_vec());
         // The length is that of what travels, packed; once there is more than that, it says nothing.
@@ -163,7 +205,7 @@ async fn read(response: &Response, address: &str, total: Option<u64>, inbox: &In
 
 /// A browser does not say why it refused. Asking again without wanting to read the answer tells apart a server that is not there from
 /// one that does not let other pages read.
-async fn why_refused(address: &str) -> String {
+async fn why_refused(address: &str, wanted: &Wanted) -> String {
     let host = host_of(address);
     let Some(window) = window() else { return String::new() };
     if !window.navigator().on_line() {
@@ -182,7 +224,7 @@ async fn why_refused(address: &str) -> String {
         controller.abort();
     }
     if there {
-        format!("{host} does not allow other pages to read its files (CORS). Download the file and drop it here.")
+        format!("{host} does not allow other pages to read its files (CORS). {}", wanted.otherwise)
     } else {
         format!("{host} cannot be reached. Check the address: {address}")
     }

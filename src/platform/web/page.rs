@@ -103,6 +103,12 @@ pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     listen(window(), "pagehide", move |_| on_hide());
 }
 
+/// Whether the user has asked their system for little motion.
+pub(crate) fn prefers_stillness() -> bool {
+    let asked = window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
+    asked.is_some_and(|query| query.matches())
+}
+
 /// Whether nothing is drawn because nobody could see it.
 pub(super) fn is_hidden() -> bool {
     document().is_some_and(|document| document.hidden())

@@ -6,7 +6,7 @@ use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
 use crate::ui::out::{Action, Out};
 use crate::ui::param_row::{Detail, param_row_ui};
-use crate::ui::state::{Layout, UiState};
+use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RichText, Ui};
@@ -24,7 +24,7 @@ pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut 
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
         note_ui(problem, palette.warning, ui);
     }
-    if state.layout != Layout::Desk {
+    if !state.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
     }
     clips_ui(session, out, ui);
@@ -37,7 +37,7 @@ pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut 
     ui.add_space(space::M);
     experiments_ui(session, out, ui);
     ui.add_space(space::M);
-    if state.layout != Layout::Desk || session.panes().len() < 2 {
+    if !state.has_map_panel || session.panes().len() < 2 {
         kit::folded_ui(text::NUMBERS, ui, |ui| table::table_ui(session, out, ui));
     }
     files_ui(session, out, ui);

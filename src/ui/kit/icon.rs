@@ -50,10 +50,14 @@ pub(crate) enum Icon {
     Info,
     /// Opens downward.
     ChevronDown,
-    /// Folded: opens downward when pressed.
+    /// Back by one.
+    ChevronLeft,
+    /// Folded: opens downward when pressed; on by one.
     ChevronRight,
     /// A picture of what is seen.
     Picture,
+    /// A page with lines: what is seen, written down.
+    Report,
     /// A film of what is seen.
     Record,
     /// To a file.
@@ -64,6 +68,8 @@ pub(crate) enum Icon {
     Folder,
     /// Exchange two.
     Swap,
+    /// Something to read.
+    Book,
     /// Settings.
     Sliders,
 }
@@ -109,6 +115,19 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             // A box and an upright: no font has to have it.
             pen.stroke(&[(2.5, 4.5), (13.5, 4.5), (13.5, 10.3), (2.5, 10.3), (2.5, 4.5)]);
             pen.stroke(&[(8.0, 1.5), (8.0, 14.5)]);
+        }
+        Icon::Book => {
+            // Two pages that lie open.
+            pen.stroke(&[(8.0, 4.2), (6.2, 3.0), (2.0, 3.0), (2.0, 12.2), (6.2, 12.2), (8.0, 13.4)]);
+            pen.stroke(&[
+                (8.0, 4.2),
+                (9.8, 3.0),
+                (14.0, 3.0),
+                (14.0, 12.2),
+                (9.8, 12.2),
+                (8.0, 13.4),
+                (8.0, 4.2),
+            ]);
         }
         Icon::Menu => {
             for y in [4.0, 8.0, 12.0] {
@@ -189,6 +208,7 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.disc(8.0, 5.0, 0.9);
         }
         Icon::ChevronDown => pen.stroke(&[(4.0, 6.2), (8.0, 10.2), (12.0, 6.2)]),
+        Icon::ChevronLeft => pen.stroke(&[(9.8, 4.0), (5.8, 8.0), (9.8, 12.0)]),
         Icon::ChevronRight => pen.stroke(&[(6.2, 4.0), (10.2, 8.0), (6.2, 12.0)]),
         Icon::Picture => {
             pen.closed(&[
@@ -202,6 +222,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 (2.0, 12.8),
             ]);
             pen.circle(8.0, 8.8, 2.3);
+        }
+        Icon::Report => {
+            pen.closed(&[(3.4, 2.2), (12.6, 2.2), (12.6, 13.8), (3.4, 13.8)]);
+            for y in [5.4, 8.0, 10.6] {
+                pen.stroke(&[(5.8, y), (10.2, y)]);
+            }
         }
         Icon::Record => {
             pen.circle(8.0, 8.0, 6.0);

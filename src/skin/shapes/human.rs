@@ -279,6 +279,7 @@ impl Human<'_> {
         for joint in below {
             self.covered[joint] = true;
             if has_fingers && let Some(parent) = self.skeleton.parent(joint) {
+                let before = self.shapes.len();
                 let (from, radius) = if parent == wrist {
                     (zero(wrist), 0.014)
                 } else {
@@ -287,6 +288,11 @@ impl Human<'_> {
                 self.add(from, radius, zero(joint), 0.0092);
                 if let Some(end) = self.skeleton.joints()[joint].end_site {
                     self.add(zero(joint), 0.0092, Anchor { joint, point: end }, 0.007);
+                }
+                // A finger is a shell of its own; what lies between wrist and finger is the palm.
+                let finger = self.ancestors(joint).take_while(|&j| j != wrist).last().unwrap_or(joint);
+                for shape in self.shapes.iter_mut().skip(before + usize::from(parent == wrist)) {
+                    shape.shell = finger;
                 }
             }
         }

@@ -1,0 +1,230 @@
+//! Lessons: the list of them, and the page that is open.
+
+mod prose;
+
+use super::kit::{self, Button, Icon, MenuItem};
+use super::language::tr;
+use super::out::Out;
+use super::state::{Layout, UiState};
+use super::text;
+use super::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, ScrollArea, Ui};
+use prose::{blocks_ui, spans_ui};
+use segue::session::lesson::{Block, CONTENTS, Page, Try};
+use segue::session::{Command, Key, Lesson, LessonPage, Session, Value};
+
+/// Whether there is a lesson to show.
+pub(super) fn is_open(session: &Session) -> bool {
+    !session.params().text(Key::Lesson).is_empty() && !session.params().is_on(Key::Embed)
+}
+
+/// Opens the list of lessons, or closes what is open.
+pub(super) fn toggle_lessons(session: &Session, out: &mut Out) {
+    go_to(if is_open(session) { "" } else { CONTENTS }, out);
+}
+
+/// The width of the panel beside the stage: as wide as a line reads well, less where the stage needs the room.
+pub(super) fn width(available: f32, scale: f32) -> f32 {
+    (0.29 * available).clamp(330.0 * scale, 460.0 * scale).round()
+}
+
+/// The button in the bar.
+pub(super) fn lessons_button_ui(session: &Session, layout: Layout, out: &mut Out, ui: &mut Ui) {
+    let button = match layout {
+        Layout::Desk => Button::new(text::LESSONS).icon(Icon::Book),
+        Layout::Tablet | Layout::Phone => Button::icon_only(Icon::Book, text::LESSONS),
+    };
+    if kit::button_ui(button.hint(text::LESSONS_HELP).selected(is_open(session)), ui).clicked() {
+        toggle_lessons(session, out);
+    }
+}
+
+/// Where a lesson and the parameters share one place: which of them is there.
+pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
+    let options = [(false, text::LESSON), (true, text::PARAMETERS)];
+    let picked = clear_of_bar_ui(ui, |ui| {
+        kit::segmented_ui(text::LESSON_OR_PARAMETERS, state.lesson_behind, &options, ui)
+    });
+    if let Some(behind) = picked {
+        state.lesson_behind = behind;
+    }
+    ui.add_space(space::XS);
+}
+
+/// The whole panel.
+pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let Some(lesson) = session.lesson() else { return };
+    let name = session.params().text(Key::Lesson);
+    if state.answered.as_ref().is_some_and(|answered| answered != name) {
+        state.answered = None;
+    }
+    clear_of_bar_ui(ui, |ui| header_ui(&lesson, out, ui));
+    ui.add_space(space::XS);
+    // Every page is scrolled for itself.
+    ScrollArea::vertical().id_salt(name).auto_shrink(false).show(ui, |ui| {
+        clear_of_bar_ui(ui, |ui| match &lesson {
+            Lesson::Contents(page) => contents_ui(page, out, ui),
+            Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
+            Lesson::Waiting => note_ui(text::LESSON_WAITING, false, ui),
+            Lesson::Failed(problem) => {
+                note_ui(problem, true, ui);
+                if kit::button_ui(Button::new(text::TRY_AGAIN).icon(Icon::Loop), ui).clicked() {
+                    out.commands.push(Command::Try(format!("{}={name}", Key::Lesson.param().name)));
+                }
+            }
+        });
+    });
+}
+
+/// Leaves the room in which the bar of what scrolls lies.
+fn clear_of_bar_ui<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let margin = Margin {
+        right: space::M as i8,
+        ..Margin::ZERO
+    };
+    Frame::new().inner_margin(margin).show(ui, content).inner
+}
+
+/// Back to the list, where one is, forth and back, and away.
+fn header_ui(lesson: &Lesson<'_>, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = space::XS;
+        if !matches!(lesson, Lesson::Contents(_)) && kit::icon_button_ui(Icon::Menu, text::ALL_LESSONS, ui).clicked() {
+            go_to(CONTENTS, out);
+        }
+        if let Lesson::Page(page) = lesson {
+            let words = RichText::new(tr(&text::page_of(page.number, page.of), ui));
+            ui.label(words.font(theme.font(Type::Small)).color(palette.muted));
+        }
+        ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
+            if kit::icon_button_ui(Icon::Close, text::CLOSE_LESSONS, ui).clicked() {
+                go_to("", out);
+            }
+            if let Lesson::Page(page) = lesson {
+                let ways = [
+                    (Icon::ChevronRight, text::NEXT_PAGE, &page.next),
+                    (Icon::ChevronLeft, text::PREVIOUS_PAGE, &page.previous),
+                ];
+                for (icon, words, to) in ways {
+                    ui.add_enabled_ui(to.is_some(), |ui| {
+                        if kit::icon_button_ui(icon, words, ui).clicked()
+                            && let Some(to) = to
+                        {
+                            go_to(to, out);
+                        }
+                    });
+                }
+            }
+        });
+    });
+}
+
+fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
+    title_ui(&page.title, ui);
+    let words = page.body.iter().take_while(|block| !matches!(block, Block::Item { .. })).count();
+    blocks_ui(page.body.get(..words).unwrap_or_default(), Type::Body, out, ui);
+    ui.add_space(space::XS);
+    for (index, entry) in page.entries().enumerate() {
+        let name = format!("{}. {}", index + 1, entry.label);
+        let item = MenuItem {
+            text: &name,
+            ..MenuItem::default()
+        };
+        if kit::menu_item_ui(item, ui).clicked() {
+            out.commands.push(Command::Try(entry.query.clone()));
+        }
+        ui.add_space(-space::S);
+        indented_ui(ui, |ui| spans_ui(&entry.about, Type::Small, true, out, ui));
+    }
+}
+
+fn page_ui(shown: &LessonPage<'_>, name: &str, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let page = shown.page;
+    title_ui(&page.title, ui);
+    if let Some(begin) = &page.state {
+        // The page's own state has no link laid over it.
+        try_ui(&begin.label, "", session, out, ui);
+    }
+    ui.add_space(space::S);
+    blocks_ui(&page.body, Type::Reading, out, ui);
+    if !page.tries.is_empty() {
+        ui.add_space(space::M);
+        kit::section_header_ui(text::TRY, ui);
+        for Try { label, query, about } in &page.tries {
+            try_ui(label, query, session, out, ui);
+            indented_ui(ui, |ui| spans_ui(about, Type::Reading, false, out, ui));
+            ui.add_space(space::XS);
+        }
+    }
+    if !page.question.is_empty() {
+        ui.add_space(space::M);
+        kit::section_header_ui(text::QUESTION, ui);
+        blocks_ui(&page.question, Type::Reading, out, ui);
+        answer_ui(page, name, state, out, ui);
+    }
+    if let Some(next) = &shown.next {
+        ui.add_space(space::L);
+        if kit::button_ui(Button::new(text::NEXT).trailing(Icon::ChevronRight), ui).clicked() {
+            go_to(next, out);
+        }
+    }
+}
+
+/// The answer, once it was asked for.
+fn answer_ui(page: &Page, name: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if page.answer.is_empty() {
+        return;
+    }
+    let was_shown = state.answered.is_some();
+    let words = if was_shown { text::HIDE_ANSWER } else { text::SHOW_ANSWER };
+    if kit::button_ui(Button::new(words).selected(was_shown), ui).clicked() {
+        state.answered = (!was_shown).then(|| name.to_owned());
+    }
+    if state.answered.is_some() {
+        let frame = Frame::new().fill(palette_of(ui).panel_raised).corner_radius(radius::M);
+        let shown = frame.inner_margin(Margin::same(space::M as i8)).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            blocks_ui(&page.answer, Type::Reading, out, ui);
+        });
+        if !was_shown {
+            shown.response.scroll_to_me(None);
+        }
+    }
+}
+
+/// A button that sets a state; the one whose state there is has a mark.
+fn try_ui(label: &str, query: &str, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let is_there = session.is_tried(query);
+    let icon = if is_there { Icon::Check } else { Icon::Play };
+    if kit::button_ui(Button::new(label).icon(icon).selected(is_there), ui).clicked() {
+        out.commands.push(Command::Try(query.to_owned()));
+    }
+}
+
+fn title_ui(title: &str, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    ui.label(RichText::new(title).font(theme.font(Type::Heading)).color(palette.text));
+    ui.add_space(space::XS);
+}
+
+fn note_ui(words: &str, is_problem: bool, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    let color = if is_problem { palette.warning } else { palette.muted };
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Body)).color(color));
+    ui.add_space(space::S);
+}
+
+/// Set in as far as the words of a button.
+fn indented_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    let margin = Margin {
+        left: space::M as i8,
+        ..Margin::ZERO
+    };
+    Frame::new().inner_margin(margin).show(ui, content);
+}
+
+/// Opens a lesson, a page, or nothing.
+fn go_to(lesson: &str, out: &mut Out) {
+    out.set_once(Key::Lesson, Value::Text(lesson.to_owned()));
+}

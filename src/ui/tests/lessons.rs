@@ -1,0 +1,192 @@
+//! The panel of lessons.
+
+use super::*;
+use crate::ui::Tongue;
+use eframe::egui::accesskit::Toggled;
+use segue::session::Lesson;
+use segue::session::lesson::Source;
+
+/// Brings the texts that are asked for, from the project's folder.
+fn deliver(session: &mut Session) {
+    for request in session.take_requests() {
+        if let segue::session::Request::Lesson(source) = request {
+            let text = match &source {
+                Source::BuiltIn(file) => {
+                    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lessons").join(file);
+                    std::fs::read(path).map_err(|error| error.to_string())
+                }
+                Source::Web(address) => Err(format!("There is no file at {address} (answer 404).")),
+            };
+            session.finish_lesson(&source, text.as_deref().map_err(Clone::clone));
+        }
+    }
+    while session.work() {}
+}
+
+fn lesson(link: &str) -> Page {
+    let mut page = page(link);
+    deliver(&mut page.session);
+    page
+}
+
+/// Presses something, and lets come what it asks for.
+fn go(label: &str, harness: &mut Harness<'_, Page>) {
+    press(label, harness);
+    deliver(&mut harness.state_mut().session);
+    harness.run();
+}
+
+#[test]
+fn a_lesson_is_read_tried_and_left() {
+    let mut harness = harness(DESK, DARK, page("lab=make&gait=run&play=off"));
+    let before = harness.state().session.query();
+    go(text::LESSONS, &mut harness);
+    picture("lessons-contents", &mut harness);
+    go("3. The blend window", &mut harness);
+    harness.get_by_label("3 of 14");
+    let params = |harness: &Harness<'_, Page>, key: Key| harness.state().session.params().text(key).to_owned();
+    assert_eq!(params(&harness, Key::Lab), "blend");
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
+    let is_marked = |label: &str, harness: &Harness<'_, Page>| {
+        let node = harness.get_by_label(label);
+        node.accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(is_marked("Full, half, a third", &harness) && !is_marked("One frame", &harness));
+    go("One frame", &mut harness);
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,1");
+    assert!(is_marked("One frame", &harness) && !is_marked("Full, half, a third", &harness));
+    harness.state_mut().session.apply(Command::Undo).expect("a step to take back");
+    harness.run();
+    assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
+    assert!(harness.query_by_label_contains("four times the acceleration").is_none());
+    press(text::SHOW_ANSWER, &mut harness);
+    harness.get_by_label_contains("four times the acceleration");
+    picture("lessons-answer", &mut harness);
+    go(text::NEXT, &mut harness);
+    harness.get_by_label("4 of 14");
+    harness.get_by_label(text::SHOW_ANSWER);
+    go(text::PREVIOUS_PAGE, &mut harness);
+    harness.get_by_label("3 of 14");
+    harness.key_press(Keyboard::Escape);
+    harness.run();
+    assert!(harness.state().session.lesson().is_none());
+    harness.key_press(Keyboard::N);
+    harness.run();
+    harness.get_by_label("3. The blend window");
+    // All that was done is taken back step by step.
+    while harness.state().session.can_undo() {
+        harness.state_mut().session.apply(Command::Undo).expect("a step to take back");
+    }
+    assert_eq!(harness.state().session.query(), before);
+}
+
+#[test]
+fn a_lesson_is_worked_by_the_keyboard() {
+    let mut harness = harness(DESK, LIGHT, lesson("lesson=foot_skate&lab=blend&play=off"));
+    let node = harness.get_by_label("Only foot lock");
+    node.focus();
+    harness.run();
+    harness.key_press(Keyboard::Enter);
+    harness.run();
+    assert!(harness.state().session.params().is_on(Key::FootLock));
+    harness.get_by_label(text::SHOW_ANSWER).focus();
+    harness.run();
+    harness.key_press(Keyboard::Enter);
+    harness.run();
+    harness.get_by_label_contains("30 cm at most");
+}
+
+#[test]
+fn a_lesson_that_does_not_come_says_why() {
+    let mut harness = harness(PHONE, DARK, lesson("lesson=https://example.org/steps.md"));
+    harness.get_by_label_contains("There is no file at https://example.org/steps.md");
+    press(text::TRY_AGAIN, &mut harness);
+    assert!(matches!(harness.state().session.lesson(), Some(Lesson::Waiting)));
+    picture("lessons-waiting", &mut harness);
+}
+
+#[test]
+fn lessons_look_well_everywhere() {
+    for (name, size, theme, link) in [
+        ("desk-dark", DESK, DARK, "lesson=alignment&play=off&t=2.5"),
+        ("desk-light", DESK, LIGHT, "lesson=half_life&play=off&t=2.5"),
+        ("desk-graph", DESK, DARK, "lesson=distance_matrix&play=off&t=4"),
+        ("desk-path", DESK, LIGHT, "lesson=path_editing&play=off&t=1"),
+        ("projector", vec2(1280.0, 720.0), HALL, "lesson=blend_window&play=off&t=2.3"),
+        ("projector-1920", vec2(1920.0, 1080.0), HALL, "lesson=slerp&play=off&t=2.3"),
+        ("tablet", vec2(900.0, 700.0), LIGHT, "lesson=edge_weights&play=off"),
+        ("phone-dark", PHONE, DARK, "lesson=foot_skate&play=off&t=1.4"),
+        ("phone-light", PHONE, LIGHT, "lesson=contents&play=off"),
+    ] {
+        for (language, tag) in [("en", ""), ("zh", "zh-Hant")] {
+            let mut page = page("lab=blend");
+            if !tag.is_empty() {
+                page.session.read_lessons_in("zh-Hant");
+            }
+            let named = link.split('&').next().unwrap_or_default();
+            for link in [named, link] {
+                page.session
+                    .apply(if link == named {
+                        Command::OpenLink(link.into())
+                    } else {
+                        Command::Set(rest_of(link))
+                    })
+                    .expect("a page as the tests need it");
+                deliver(&mut page.session);
+            }
+            let mut harness = if tag.is_empty() {
+                harness(size, theme, page)
+            } else {
+                harness_in_chinese(size, theme, page)
+            };
+            let said = |english: &'static str, chinese: &'static str| if tag.is_empty() { english } else { chinese };
+            harness.get_by_label(said(text::CLOSE_LESSONS, "關閉課程"));
+            picture(&format!("lessons-{name}-{language}"), &mut harness);
+            let show = said(text::SHOW_ANSWER, "顯示解答");
+            if harness.query_by_label(show).is_some() {
+                press(show, &mut harness);
+                picture(&format!("lessons-{name}-{language}-down"), &mut harness);
+            }
+        }
+    }
+}
+
+/// What a link says beside its lesson.
+fn rest_of(link: &str) -> Vec<(Key, Value)> {
+    let values = segue::session::link::read(link).values;
+    values.into_iter().filter(|(key, _)| *key != Key::Lesson).collect()
+}
+
+/// The page in Chinese. Its letters come with the second frame; until then there is nothing to set with them.
+fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
+    let file = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lang").join(name);
+        std::fs::read(path).expect("a language")
+    };
+    let tongue = Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language");
+    let link = page.session.query();
+    let mut harness = harness(size, theme, self::page("lab=make&play=off"));
+    tongue.teach(&harness.ctx);
+    harness.run();
+    tongue.speak(&harness.ctx);
+    *harness.state_mut() = page;
+    harness.run();
+    assert_eq!(harness.state().session.query(), link);
+    harness
+}
+
+#[test]
+fn every_letter_of_every_lesson_is_in_the_font() {
+    // A letter without a glyph ends the test: the harness does not draw boxes.
+    for name in segue::session::lesson::LESSONS {
+        let link = format!("lesson={name}&lab=make&play=off");
+        let size = vec2(1440.0, 4000.0);
+        let mut in_english = harness(size, LIGHT, lesson(&link));
+        press(text::SHOW_ANSWER, &mut in_english);
+        in_english.get_by_label(text::HIDE_ANSWER);
+        let mut page = lesson(&link);
+        page.session.read_lessons_in("zh-Hant");
+        deliver(&mut page.session);
+        press("顯示解答", &mut harness_in_chinese(size, LIGHT, page));
+    }
+}
