@@ -39,6 +39,8 @@ pub(crate) const TAKE_TAG_AWAY: &str = "Take this tag away";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
+/// Behind the sign 中.
+pub(crate) const OR_ENGLISH: &str = "/ EN";
 pub(crate) const IN_CHINESE: &str = "Interface in Chinese";
 pub(crate) const IN_ENGLISH: &str = "Interface in English";
 pub(crate) const HELP: &str = "Shortcuts";

@@ -75,8 +75,10 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::icon_button_ui(Icon::Contrast, text::THEME, ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
-    if kit::icon_button_ui(Icon::Language, language_switch(state.language).1, ui).clicked() {
-        out.set_once(Key::Lang, language_switch(state.language).0);
+    let (language, words) = language_switch(state.language);
+    let switch = Button::new(text::OR_ENGLISH).name(words).hint(words).icon(Icon::Language).quiet();
+    if kit::button_ui(switch, ui).clicked() {
+        out.set_once(Key::Lang, language);
     }
     let projector = session.params().is_on(Key::Projector);
     if kit::button_ui(

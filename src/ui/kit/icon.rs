@@ -18,7 +18,7 @@ pub(crate) enum Icon {
     Loop,
     /// Dark or light.
     Contrast,
-    /// Another language: 中 / EN.
+    /// 中: another language.
     Language,
     /// More, behind three lines.
     Menu,
@@ -112,11 +112,9 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.fill(&arc.collect::<Vec<_>>());
         }
         Icon::Language => {
-            // 中 is a box and an upright: no font has to have it.
-            pen.stroke(&[(2.0, 3.6), (9.0, 3.6), (9.0, 7.8), (2.0, 7.8), (2.0, 3.6)]);
-            pen.stroke(&[(5.5, 1.2), (5.5, 11.4)]);
-            pen.stroke(&[(14.0, 9.0), (11.0, 9.0), (11.0, 14.6), (14.0, 14.6)]);
-            pen.stroke(&[(11.0, 11.7), (13.6, 11.7)]);
+            // A box and an upright: no font has to have it.
+            pen.stroke(&[(2.5, 4.5), (13.5, 4.5), (13.5, 10.3), (2.5, 10.3), (2.5, 4.5)]);
+            pen.stroke(&[(8.0, 1.5), (8.0, 14.5)]);
         }
         Icon::Book => {
             // Two pages that lie open.
