@@ -158,7 +158,8 @@ impl Session {
         // What did not come may come now.
         self.shelf.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
         let alone = values.into_iter().all(is_about_the_reader);
-        self.shelf.to_set_up = alone.then(|| self.params.text(Key::Lesson).to_owned());
+        let lesson = self.params.text(Key::Lesson);
+        self.shelf.to_set_up = (alone && !lesson.is_empty()).then(|| lesson.to_owned());
         self.set_up();
     }
 
