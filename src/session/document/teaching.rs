@@ -103,7 +103,7 @@ impl Session {
 
     /// Takes the text of a lesson, or why it did not come. A text that nobody waits for is kept.
     pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], String>) {
-        let read = text.and_then(|bytes| parse(bytes).map_err(|error| self.say_unread(source, &error)));
+        let read = text.and_then(|bytes| parse(bytes).map_err(|error| unread(source, &error)));
         let text = match read {
             Ok(pages) => Text::Here(Arc::from(pages)),
             Err(problem) => Text::Failed(problem),
@@ -114,12 +114,6 @@ impl Session {
             self.begin_anew();
         }
         self.revision += 1;
-    }
-
-    /// A sentence on a file that is no lesson.
-    fn say_unread(&self, source: &Source, error: &LessonError) -> String {
-        let (Source::BuiltIn(name) | Source::Web(name)) = source;
-        format!("{name} is no lesson: {error}.")
     }
 
     /// From now on, the lessons that come with Segue are those in this language: a folder of theirs, `en` or `zh-Hant`.
@@ -243,6 +237,12 @@ impl Session {
         }
         self.grapher.stop(false);
     }
+}
+
+/// A sentence on a file that is no lesson.
+fn unread(source: &Source, error: &LessonError) -> String {
+    let (Source::BuiltIn(name) | Source::Web(name)) = source;
+    format!("{name} is no lesson: {error}.")
 }
 
 /// What a link of a lesson sets even where it does not name it: what makes the result.
