@@ -11,6 +11,8 @@ use std::sync::Arc;
 pub(super) struct Spoken {
     language: Language,
     has_letters: bool,
+    /// What the page around it was told.
+    told: Option<Language>,
 }
 
 #[derive(Debug)]
@@ -57,11 +59,10 @@ impl Speech {
     /// Before a frame: asks for the language that is wanted, or speaks it. Returns the one that is spoken.
     pub(super) fn tend(&mut self, session: &Session, spoken: &mut Spoken, inbox: &Inbox, ctx: &Context) -> Language {
         let wanted = Language::of(session, self.preferred);
-        let before = spoken.language;
         match (wanted, &self.chinese) {
             (Language::English, Lesson::Failed) => self.chinese = Lesson::NotBegun,
             (Language::English, _) => {
-                if before != wanted {
+                if spoken.language != wanted {
                     speak_english(ctx);
                     spoken.language = wanted;
                 }
@@ -76,13 +77,13 @@ impl Speech {
                     tongue.teach(ctx);
                     spoken.has_letters = true;
                     ctx.request_repaint();
-                } else if before != wanted {
+                } else if spoken.language != wanted {
                     tongue.speak(ctx);
                     spoken.language = wanted;
                 }
             }
         }
-        if spoken.language != before {
+        if spoken.told.replace(spoken.language) != Some(spoken.language) {
             platform::tell_language(spoken.language.tag());
         }
         spoken.language

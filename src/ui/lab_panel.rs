@@ -170,7 +170,7 @@ pub(super) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
         let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui)).font(theme_of(ui).font(Type::Small));
         let line = ui.label(words.color(palette_of(ui).muted));
         if !retargeted.unmatched.is_empty() {
-            line.on_hover_text(retargeted.unmatched.join(", "));
+            line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
         }
     }
     ui.add_space(space::S);

@@ -15,6 +15,7 @@ use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+mod chinese;
 mod drive;
 mod lessons;
 mod path;

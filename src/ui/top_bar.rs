@@ -4,7 +4,7 @@ use super::cycle_panels::{compare_loops, compare_speeds};
 use super::drive::compare_hysteresis;
 use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
-use super::language::Language;
+use super::language::{Language, tr};
 use super::lessons_panel::{lessons_button_ui, toggle_lessons};
 use super::out::{Action, Out};
 use super::path_panel::compare_points;
@@ -38,7 +38,7 @@ fn logo_ui(layout: Layout, ui: &mut Ui) {
         let (rect, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         kit::paint_logo(rect, palette.a, palette.b, ui.painter());
     }
-    ui.label(RichText::new(text::APP).font(theme.font(Type::Title)).color(palette.text));
+    ui.label(RichText::new(tr(text::APP, ui)).font(theme.font(Type::Title)).color(palette.text));
     ui.add_space(space::S);
 }
 

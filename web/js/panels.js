@@ -1,48 +1,63 @@
-// What the page says when the app cannot: plain HTML over whatever is left of the picture.
+// What the page says when the app cannot: plain HTML over whatever is left of the picture, in the language of the page.
+
+const ENGLISH = {
+  unsupported: "This browser offers neither WebGPU nor WebGL2",
+  unsupportedText: "Segue draws with one of the two. A current Chrome, Edge, Firefox or Safari has them; if yours is current, " +
+    "hardware acceleration may be switched off in its settings.",
+  download: "Segue could not be downloaded",
+  downloadText: "The connection may have been interrupted. Nothing is lost: the link holds the state.",
+  start: "Segue could not start",
+  startText: "The graphics could not be set up.",
+  lost: "The graphics device was lost",
+  lostText: "It may have been reset or taken by another program. Reloading brings back this state.",
+  panic: "Segue has stopped",
+  panicText: "This is a mistake in Segue, not in your files. Reloading brings back this state; the report helps to mend it.",
+  again: "Try again",
+  reload: "Reload with this state",
+  report: "Copy a report",
+  copied: "Copied",
+};
+const CHINESE = {
+  unsupported: "這個瀏覽器沒有 WebGPU，也沒有 WebGL2",
+  unsupportedText: "Segue 需要其中一種才能繪圖。新版的 Chrome、Edge、Firefox 或 Safari 都有；如果已是新版，可能是設定裡關閉了硬體加速。",
+  download: "無法下載 Segue",
+  downloadText: "連線可能中斷了。不會遺失任何內容：連結裡有完整的狀態。",
+  start: "Segue 無法啟動",
+  startText: "無法設定繪圖功能。",
+  lost: "失去了繪圖裝置",
+  lostText: "裝置可能被重設，或被其他程式占用。重新載入即可回到現在的狀態。",
+  panic: "Segue 已停止運作",
+  panicText: "這是 Segue 的錯誤，不是你的檔案有問題。重新載入即可回到現在的狀態；附上報告有助於修正。",
+  again: "再試一次",
+  reload: "重新載入並保留狀態",
+  report: "複製報告",
+  copied: "已複製",
+};
+
+/** The words of the page's language, which the app may have changed meanwhile. */
+const words = () => (document.documentElement.lang === "zh-Hant" ? CHINESE : ENGLISH);
 
 export function showUnsupported() {
-  show({
-    title: "This browser offers neither WebGPU nor WebGL2",
-    text: "Segue draws with one of the two. A current Chrome, Edge, Firefox or Safari has them; if yours is current, " +
-      "hardware acceleration may be switched off in its settings.",
-  });
+  show({ title: words().unsupported, text: words().unsupportedText });
 }
 
 export function showDownloadFailed(reason) {
-  show({
-    title: "Segue could not be downloaded",
-    text: "The connection may have been interrupted. Nothing is lost: the link holds the state.",
-    detail: reason,
-    buttons: [["Try again", reload]],
-  });
+  show({ title: words().download, text: words().downloadText, detail: reason, buttons: [[words().again, reload]] });
 }
 
 export function showStartFailed(reason, facts) {
-  show({
-    title: "Segue could not start",
-    text: "The graphics could not be set up.",
-    detail: reason,
-    buttons: [["Try again", reload], ["Copy a report", (button) => copy(report(reason, facts), button)]],
-  });
+  show({ title: words().start, text: words().startText, detail: reason, buttons: [[words().again, reload], copyReport(reason, facts)] });
 }
 
 export function showLost(reason, facts) {
-  show({
-    title: "The graphics device was lost",
-    text: "It may have been reset or taken by another program. Reloading brings back this state.",
-    detail: reason,
-    buttons: [["Reload with this state", reload], ["Copy a report", (button) => copy(report(reason, facts), button)]],
-  });
+  show({ title: words().lost, text: words().lostText, detail: reason, buttons: [[words().reload, reload], copyReport(reason, facts)] });
 }
 
 export function showPanic(summary, facts) {
-  show({
-    title: "Segue has stopped",
-    text: "This is a mistake in Segue, not in your files. Reloading brings back this state; the report helps to mend it.",
-    detail: summary,
-    buttons: [["Reload with this state", reload], ["Copy a report", (button) => copy(report(summary, facts), button)]],
-  });
+  show({ title: words().panic, text: words().panicText, detail: summary, buttons: [[words().reload, reload], copyReport(summary, facts)] });
 }
+
+const copyReport = (text, facts) => [words().report, (button) => copy(report(text, facts), button)];
 
 /** The link holds the state, so the same address is the same state. */
 function reload() {
@@ -65,7 +80,7 @@ function report(text, { version, backend } = {}) {
 async function copy(text, button) {
   const done = await navigator.clipboard?.writeText(text).then(() => true, () => false);
   if (done) {
-    button.textContent = "Copied";
+    button.textContent = words().copied;
     return;
   }
   // No clipboard here (an insecure address, or a frame without the permission): show it, selected, to copy by hand.

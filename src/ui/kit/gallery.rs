@@ -198,12 +198,12 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
         clip_row_ui(
             ClipRow {
                 name,
+                own: false,
                 detail,
                 part,
                 warning,
                 selected: index == 2,
                 actions: &actions,
-                own: false,
             },
             ui,
         );

@@ -86,6 +86,13 @@ impl Catalogue {
         found
     }
 
+    /// What was asked so far, with what was found.
+    #[cfg(all(test, feature = "ui-tests"))]
+    pub(crate) fn asked(&self) -> Vec<(String, Option<Arc<str>>)> {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        known.iter().map(|(text, found)| (text.clone(), found.clone())).collect()
+    }
+
     fn look_up(&self, text: &str, depth: usize) -> Option<String> {
         if depth > DEEPEST || !has_word(text) {
             return None;

@@ -27,6 +27,12 @@ impl Tongue {
         Ok(Self { catalogue, face })
     }
 
+    /// What was asked of it so far, with what was found.
+    #[cfg(all(test, feature = "ui-tests"))]
+    pub(crate) fn asked(&self) -> Vec<(String, Option<Arc<str>>)> {
+        self.catalogue.asked()
+    }
+
     /// Gives a context the letters. They can be written with from the next frame on.
     pub(crate) fn teach(&self, ctx: &Context) {
         crate::ui::theme::add_face("Noto Sans TC", FontData::from_owned(self.face.to_vec()), ctx);

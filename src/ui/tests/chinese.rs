@@ -1,0 +1,114 @@
+//! The interface in Chinese: every lab, and what of it has stayed English.
+
+use super::*;
+use std::collections::BTreeSet;
+use std::fs;
+
+const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
+
+/// Names, units and keys that are written so in Chinese, too.
+const AS_IT_IS: [&str; 36] = [
+    "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab",
+    "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ", "ZXY", "YXZ",
+    "English",
+];
+
+fn tongue() -> Tongue {
+    let file =
+        |name: &str| fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lang/").to_owned() + name).expect("a file of the language");
+    Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language")
+}
+
+/// A page that speaks Chinese.
+fn chinese(size: Vec2, theme: Theme, link: &str, tongue: &Tongue) -> Harness<'static, Page> {
+    let mut page = page(link);
+    page.state.language = Language::Chinese;
+    let mut harness = harness(size, theme, page);
+    tongue.teach(&harness.ctx);
+    harness.run();
+    tongue.speak(&harness.ctx);
+    harness.run();
+    harness
+}
+
+/// The words of a text that are neither Chinese nor written so everywhere.
+fn english_in(text: &str) -> Vec<&str> {
+    text.split(|letter: char| !letter.is_ascii_alphanumeric())
+        .filter(|word| word.bytes().filter(u8::is_ascii_alphabetic).count() > 1 && !AS_IT_IS.contains(word))
+        .collect()
+}
+
+#[test]
+fn every_lab_is_in_chinese() {
+    let tongue = tongue();
+    let rich = "lab=graph&play=off&t=12";
+    for (name, size, theme, link) in [
+        ("zh-view", DESK, DARK, "lab=view&play=off&t=1"),
+        ("zh-make", DESK, LIGHT, "lab=make&play=off&t=1"),
+        ("zh-blend", DESK, DARK, "lab=blend&play=off&t=1&compare=blend_window:30,15,10"),
+        ("zh-transition", DESK, LIGHT, "lab=transition&play=off&t=1&mistake=hemisphere"),
+        ("zh-speed", DESK, DARK, "lab=speed&play=off&t=1&speed=5"),
+        ("zh-loop", DESK, LIGHT, "lab=loop&play=off&t=1"),
+        ("zh-layers", DESK, DARK, "lab=layers&play=off&t=1&layer_mode=additive"),
+        ("zh-register", DESK, LIGHT, "lab=register&play=off&t=1"),
+        ("zh-path", DESK, DARK, "lab=path&play=off&t=1"),
+        ("zh-graph", DESK, LIGHT, rich),
+        ("zh-match", DESK, DARK, "lab=match&scenario=left&play=off&t=2"),
+        ("zh-hall-blend", HALL_SIZE, HALL, "lab=blend&play=off&t=1"),
+        ("zh-hall-match", HALL_SIZE, HALL, "lab=match&scenario=left&play=off&t=2"),
+        ("zh-phone-blend", PHONE, DARK, "lab=blend&play=off&t=1"),
+        ("zh-phone-transition", PHONE, LIGHT, "lab=transition&play=off&t=1"),
+        ("zh-phone-register", PHONE, DARK, "lab=register&play=off&t=1"),
+        ("zh-phone-path", PHONE, LIGHT, "lab=path&play=off&t=1"),
+        ("zh-phone-match", PHONE, DARK, "lab=match&scenario=left&play=off&t=2"),
+        ("zh-phone-graph", PHONE, LIGHT, rich),
+    ] {
+        let mut harness = chinese(size, theme, link, &tongue);
+        picture(name, &mut harness);
+    }
+    let left: BTreeSet<String> = (tongue.asked().into_iter())
+        .filter_map(|(text, found)| {
+            let shown = found.as_deref().unwrap_or(&text);
+            let words = english_in(shown);
+            (!words.is_empty()).then(|| format!("{words:?} in {shown:?}, of {text:?}"))
+        })
+        .collect();
+    assert!(left.is_empty(), "{}", left.into_iter().collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
+    let tongue = tongue();
+    let mut harness = chinese(DESK, DARK, "lab=blend&play=off", &tongue);
+    harness.get_by_label("複製連結");
+    harness.get_by_label("介面改用英文").click();
+    harness.run();
+    assert_eq!(harness.state().session.params().text(Key::Lang), "en");
+    crate::ui::speak_english(&harness.ctx);
+    harness.state_mut().state.language = Language::English;
+    harness.run();
+    harness.get_by_label(text::COPY_LINK);
+    harness.get_by_label(text::IN_CHINESE).click();
+    harness.run();
+    assert_eq!(harness.state().session.params().text(Key::Lang), "zh-Hant");
+}
+
+/// What the catalogue and the lessons are written with can be set: the letters are in one of the fonts.
+#[test]
+fn every_character_is_in_the_fonts() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/");
+    let mut texts = vec![fs::read_to_string(root.to_owned() + "lang/zh-Hant.json").expect("the catalogue")];
+    for entry in fs::read_dir(root.to_owned() + "lessons/zh-Hant").into_iter().flatten().flatten() {
+        texts.push(fs::read_to_string(entry.path()).expect("a lesson is text"));
+    }
+    let mut harness = chinese(PHONE, DARK, "lab=view&play=off", &tongue());
+    harness.run();
+    let missing: BTreeSet<char> = harness.ctx.fonts_mut(|fonts| {
+        let font = DARK.font(theme::Type::Body);
+        let letters = texts.iter().flat_map(|text| text.chars()).filter(|letter| !letter.is_control());
+        letters.filter(|&letter| !fonts.has_glyph(&font, letter)).collect()
+    });
+    assert!(missing.is_empty(), "run assets/fonts/subset_zh.py again for {missing:?}");
+    let bytes = fs::metadata(root.to_owned() + "lang/zh-Hant.otf").expect("the font").len();
+    assert!(bytes <= 300 * 1024, "{bytes} bytes");
+}

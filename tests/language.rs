@@ -1,0 +1,447 @@
+//! Every sentence that reaches the screen has a Chinese one in `assets/lang/zh-Hant.json`, and every entry there is one that the program
+//! says. Read from the text of the sources, so that a new sentence cannot be forgotten.
+
+use segue::session::{Kind, PARAMS};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// Where no sentence is for the screen: what is drawn is named for graphics tools there, files get their keywords and names, the page's API and
+/// the programs that test it are spoken to in English.
+const NOT_SHOWN: [&str; 12] = [
+    "src/app/api.rs",
+    "src/formats/bvh/write.rs",
+    "src/graph/export.rs",
+    "src/lib.rs",
+    "src/main.rs",
+    "src/platform/vault.rs",
+    "src/platform/native/reader.rs",
+    "src/platform/web/handle.rs",
+    "src/render/pipelines.rs",
+    "src/render/renderer.rs",
+    "src/render/targets.rs",
+    "src/ui/language/tongue.rs",
+];
+
+/// Where words stand alone: elsewhere a word without a space is taken for a key.
+const WORDS: [&str; 3] = ["src/ui/text.rs", "src/ui/kit/words.rs", "src/session/params.rs"];
+
+/// What stands before a literal that nobody sees: reasons for the next programmer, the log, names of widgets.
+const UNSEEN: [&str; 17] = [
+    "reason = ",
+    "expect(",
+    "unreachable!(",
+    "debug_assert!(",
+    "assert!(",
+    "Id::unique(",
+    "Id::new(",
+    "Grid::new(",
+    "Plot::new(",
+    "Panel::top(",
+    "Panel::left(",
+    "Panel::right(",
+    "Panel::bottom(",
+    "id_salt(",
+    "label: Some(",
+    "feature = ",
+    "include_str!(",
+];
+
+/// Literals that look like sentences and are none: keywords of files, names of files, and what is made of parts that have their own entries.
+const NO_SENTENCE: [&str; 24] = [
+    "{} units tall, {} {}: {} m; {}",
+    "variety",
+    "End Site",
+    "Library/Application Support",
+    "motion graph.json",
+    "motion graph.dot",
+    "graph drawn",
+    "held pin",
+    "matrix tiles",
+    "curve menu",
+    "Inter SemiBold",
+    "{} {:.0} %",
+    "{}, {}.",
+    "{} {} {}",
+    "{} {}",
+    "{} m, {} m",
+    "{}: {}",
+    "{} {}…",
+    "p {}",
+    "BTreeMap<Role, Assigned>",
+    "{} {}: {}",
+    "Noto Sans TC",
+    "segue tongue",
+    "LargeFile({} bytes)",
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The catalogue's text, and its entries.
+fn catalogue() -> (String, BTreeMap<String, String>) {
+    let text = fs::read_to_string(root().join("assets/lang/zh-Hant.json")).expect("the catalogue is there");
+    let sections: BTreeMap<String, BTreeMap<String, String>> = serde_json::from_str(&text).expect("the catalogue is JSON");
+    (text, sections.into_values().flatten().collect())
+}
+
+/// A key or a literal in the form in which they are compared: every placeholder is `{}`, nothing stands around.
+fn plain(text: &str) -> String {
+    let mut plain = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(['{', '}']) {
+        plain.push_str(&rest[..at]);
+        let sign = &rest[at..];
+        if let Some(after) = sign.strip_prefix("{{") {
+            plain.push('{');
+            rest = after;
+        } else if let Some(after) = sign.strip_prefix("}}") {
+            plain.push('}');
+            rest = after;
+        } else if let Some((_, after)) = sign.strip_prefix('{').and_then(|inside| inside.split_once('}')) {
+            plain.push_str("{}");
+            rest = after;
+        } else {
+            plain.push_str(&sign[..1]);
+            rest = &sign[1..];
+        }
+    }
+    plain.push_str(rest);
+    plain.trim().to_owned()
+}
+
+/// A string literal: what stands before it, what it says, what stands behind it.
+struct Literal<'a> {
+    before: &'a str,
+    text: String,
+    after: &'a str,
+}
+
+/// The string literals of a source, without those of comments and tests.
+fn literals(source: &str) -> Vec<Literal<'_>> {
+    let mut found = Vec::new();
+    let bytes = source.as_bytes();
+    let mut at = 0;
+    while at < bytes.len() {
+        let rest = &source[at..];
+        if rest.starts_with("//") {
+            at += rest.find('\n').unwrap_or(rest.len());
+        } else if bytes[at] == b'"' {
+            let (text, end) = quoted(source, at + 1);
+            found.push(Literal {
+                before: &source[..at],
+                text,
+                after: &source[end..],
+            });
+            at = end;
+        } else if bytes[at] == b'\'' {
+            // A letter, not a lifetime.
+            let letter = rest[1..].chars().next();
+            let closes = |skip: usize| rest[skip..].find('\'').filter(|&close| close <= 10);
+            at += match letter {
+                Some('\\') => 2 + closes(2).map_or(0, |close| close + usize::from(rest[2..].starts_with('\'')) + 1),
+                Some(letter) if rest[1 + letter.len_utf8()..].starts_with('\'') => 2 + letter.len_utf8(),
+                _ => 1,
+            };
+        } else {
+            at += rest.chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    found
+}
+
+/// The text of the literal that begins at a byte, and where it is over.
+fn quoted(source: &str, from: usize) -> (String, usize) {
+    let mut text = String::new();
+    let mut letters = source[from..].char_indices();
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '"' => return (text, from + at + 1),
+            '\\' => match letters.next().map(|(_, letter)| letter) {
+                Some('\n') => {
+                    while letters.clone().next().is_some_and(|(_, letter)| letter.is_whitespace()) {
+                        letters.next();
+                    }
+                }
+                Some('n') => text.push('\n'),
+                Some(letter) => text.push(letter),
+                None => break,
+            },
+            letter => text.push(letter),
+        }
+    }
+    panic!("a literal without an end at byte {from}");
+}
+
+/// A source without its items for tests; its other lines stay as they are.
+fn without_tests(source: &str) -> String {
+    let mut code = String::new();
+    let mut end: Option<String> = None;
+    let mut for_tests = false;
+    for line in source.lines() {
+        let item = line.trim_start();
+        if let Some(last) = &end {
+            if line == last {
+                end = None;
+            }
+        } else if item.starts_with("#[cfg(test)]") || item.starts_with("#[cfg(all(test,") {
+            for_tests = true;
+        } else if for_tests {
+            if !item.starts_with("#[") {
+                for_tests = false;
+                end = line.ends_with('{').then(|| format!("{}}}", &line[..line.len() - item.len()]));
+            }
+        } else {
+            code.push_str(line);
+            code.push('\n');
+        }
+    }
+    code
+}
+
+/// The sources of the program, by their paths; not those for tests.
+fn sources() -> Vec<(String, String)> {
+    let mut open = vec![root().join("src")];
+    let mut found = Vec::new();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            let name = path
+                .strip_prefix(root())
+                .expect("below the root")
+                .to_string_lossy()
+                .replace('\\', "/");
+            if path.is_dir() {
+                if !["tests", "fixtures"].iter().any(|part| name.ends_with(part)) {
+                    open.push(path);
+                }
+            } else if !["tests.rs", "fixtures.rs", "gallery.rs", ".wgsl"]
+                .iter()
+                .any(|end| name.ends_with(end))
+            {
+                found.push((name, without_tests(&fs::read_to_string(&path).expect("a source is text"))));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn is_two_letters(text: &str) -> bool {
+    text.as_bytes().windows(2).any(|pair| pair.iter().all(u8::is_ascii_alphabetic))
+}
+
+/// The sentences and words of a source that reach the screen.
+fn shown(path: &str, source: &str) -> Vec<String> {
+    let words = WORDS.contains(&path);
+    literals(source)
+        .into_iter()
+        .filter_map(|literal| {
+            let text = plain(&literal.text);
+            let before = literal.before.trim_end();
+            let is_key = || {
+                let next = literal.after.trim_start();
+                next.starts_with("=>") || next.starts_with('|') || before.ends_with('|')
+            };
+            let is_error = before.ends_with("#[error(");
+            let is_sentence = text.contains(' ') || is_error;
+            let is_query = text.contains(['_', '=', '&', '\n']) || text.contains(':') && !text.contains(' ');
+            let is_word = words && !is_query && !is_key();
+            let unseen = || {
+                let start = before.len() - before.char_indices().rev().take(24).last().map_or(0, |(at, _)| before.len() - at);
+                let near = &literal.before[start..];
+                UNSEEN.iter().any(|sign| near.ends_with(sign) || near.trim_end().ends_with(sign)) || in_log(literal.before)
+            };
+            let seen = is_two_letters(&text.replace("{}", "")) && (is_sentence || is_word) && !unseen();
+            (seen && !NO_SENTENCE.iter().any(|none| plain(none) == text)).then_some(text)
+        })
+        .collect()
+}
+
+/// Whether what comes next is inside of a call of the log or of an assertion.
+fn in_log(before: &str) -> bool {
+    let statement = before.rfind([';', '{', '}']).map_or(before, |at| &before[at..]);
+    ["log::", "debug_assert"].iter().any(|call| statement.contains(call))
+}
+
+#[test]
+fn every_sentence_has_its_translation() {
+    let (_, entries) = catalogue();
+    let keys: BTreeSet<String> = entries.keys().map(|key| plain(key)).collect();
+    let mut missing = BTreeSet::new();
+    let mut seen = 0;
+    for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
+        if path == "src/session/params.rs" {
+            continue;
+        }
+        for text in shown(path, source) {
+            seen += 1;
+            if !keys.contains(&text) {
+                missing.insert(format!("{path}: {text:?}"));
+            }
+        }
+    }
+    for param in PARAMS {
+        let choices = if let Kind::Choice(choices) = param.kind { choices } else { &[] };
+        let texts = [param.label, param.help, param.unit].into_iter();
+        for text in texts.chain(choices.iter().map(|choice| choice.label)) {
+            if is_two_letters(text) && !keys.contains(text) {
+                missing.insert(format!("{}: {text:?}", param.name));
+            }
+        }
+    }
+    assert!(seen > 700, "only {seen} sentences found");
+    assert!(
+        missing.is_empty(),
+        "{} of them:\n{}",
+        missing.len(),
+        missing.into_iter().collect::<Vec<_>>().join("\n")
+    );
+}
+
+#[test]
+fn no_translation_is_of_something_that_is_not_said() {
+    let (text, entries) = catalogue();
+    let mut said: BTreeSet<String> = BTreeSet::new();
+    for (_, source) in sources() {
+        said.extend(literals(&source).into_iter().map(|literal| plain(&literal.text)));
+    }
+    // What is put together from several literals.
+    said.extend(MADE.map(plain));
+    let unused: Vec<&String> = entries.keys().filter(|key| !said.contains(&plain(key))).collect();
+    assert!(unused.is_empty(), "nothing says {unused:#?}");
+    let forgotten: Vec<&&str> = MADE.iter().filter(|key| !entries.contains_key(**key)).collect();
+    assert!(forgotten.is_empty(), "no entries: {forgotten:?}");
+    let lines = text.lines().filter(|line| line.starts_with("    \"")).count();
+    assert_eq!(lines, entries.len(), "an entry stands in two sections");
+}
+
+/// Sentences that are made of several literals: their whole is an entry, because it cannot be told from its parts.
+const MADE: [&str; 16] = [
+    "{#} units tall, read as {}: {#} m; {}",
+    "{#} units tall, set to {}: {#} m; {}",
+    "Found automatically: best match of both windows, {#} cm.",
+    "{} CHANNELS lines give numbers that disagree",
+    "of {} or `auto`",
+    "Leave out {}",
+    "{#} transitions, {}",
+    "1 transition, {}",
+    "{}, mirrored",
+    "{}, mirrored · {#} s",
+    "live",
+    "{} {#} %",
+    "{} found",
+    "left arm",
+    "right arm",
+    "chest",
+];
+
+#[test]
+fn placeholders_agree() {
+    let (_, entries) = catalogue();
+    for (english, translation) in entries {
+        let count = english.matches("{}").count() + english.matches("{#}").count();
+        let numbered: Vec<usize> = (0..9).filter(|index| translation.contains(&format!("{{{index}}}"))).collect();
+        let in_order = translation.matches("{}").count();
+        assert!(
+            in_order == 0 || numbered.is_empty(),
+            "{english:?} is translated with both kinds of placeholders"
+        );
+        assert!(numbered.iter().all(|&index| index < count), "{english:?} has no such placeholder");
+        assert!(
+            in_order == 0 || in_order == count,
+            "{english:?} has {count} placeholders, its translation {in_order}"
+        );
+        assert!(
+            count == 0 || in_order > 0 || !numbered.is_empty(),
+            "{english:?} loses what it tells"
+        );
+    }
+}
+
+/// Characters and words of Simplified Chinese or of the mainland's usage, which a reader in Taiwan stumbles over.
+#[test]
+fn the_translation_is_taiwanese() {
+    const ELSEWHERE: [&str; 26] = [
+        "幀",
+        "鼠標",
+        "文件夾",
+        "加載",
+        "鏈接",
+        "默認",
+        "設置",
+        "窗口",
+        "屏幕",
+        "質量",
+        "項目",
+        "插值",
+        "優化",
+        "數據",
+        "視頻",
+        "信息",
+        "軟件",
+        "网",
+        "动",
+        "为",
+        "这",
+        "过",
+        "时",
+        "数据",
+        "实时",
+        "菜單",
+    ];
+    let (_, entries) = catalogue();
+    for (english, translation) in entries {
+        let found = ELSEWHERE.iter().find(|word| translation.contains(**word));
+        assert_eq!(found, None, "{english:?} is translated as {translation:?}");
+    }
+}
+
+/// Whatever sets text by itself asks for the translation: the kit does for all that it is given.
+#[test]
+fn nothing_is_shown_past_the_catalogue() {
+    let sinks = [
+        "RichText::new(",
+        "on_hover_text(",
+        "hint_text(",
+        "LayoutJob::single_section(",
+        "LayoutJob::simple(",
+        "on_disabled_hover_text(",
+    ];
+    let mut slips = Vec::new();
+    for (path, source) in sources().iter().filter(|(path, _)| path.starts_with("src/ui")) {
+        for sink in sinks {
+            for (at, _) in source.match_indices(sink) {
+                let after = source[at + sink.len()..].trim_start();
+                if !after.starts_with("tr(") && after != ")" {
+                    let line = source[..at].matches('\n').count() + 1;
+                    slips.push(format!("{path}, about line {line}: `{sink}` without `tr(`"));
+                }
+            }
+        }
+        for (at, _) in source.match_indices("painter.text(") {
+            if !source[at..].split(';').next().is_some_and(|call| call.contains("tr(")) {
+                slips.push(format!("{path}: `painter.text(` without `tr(`"));
+            }
+        }
+        if source.contains("ui.button(") || source.contains("ui.heading(") || source.contains("ui.checkbox(") {
+            slips.push(format!("{path}: a widget of egui's own, which knows no language"));
+        }
+    }
+    assert!(slips.is_empty(), "{}", slips.join("\n"));
+}
+
+#[test]
+fn what_is_missing_is_seen() {
+    let source = "/// \"A comment.\"\n#[error(\"lost: {0}\")]\nfn f() { log::warn!(\"not shown at all\"); say(\"It is \\\n    so {much:.1}.\"); g('\"', \"x\") }\n#[cfg(test)]\nmod tests {\n    \"In a test.\"\n}\n";
+    assert_eq!(shown("src/a.rs", &without_tests(source)), ["lost: {}", "It is so {}."]);
+    assert_eq!(
+        shown(
+            "src/ui/text.rs",
+            "const A: &str = \"Word\"; match a { \"key\" => \"a_key\", _ => \"p:1\" }"
+        ),
+        ["Word"]
+    );
+    assert_eq!(plain(" {a}{{b}} {0:.1} "), "{}{b} {}");
+}
