@@ -136,3 +136,6 @@ impl SkinnedMesh {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
