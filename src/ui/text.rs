@@ -83,6 +83,7 @@ pub(crate) const JOINT_TREE: &str = "Joints of the clip";
 pub(crate) const ROOT: &str = "Root";
 pub(crate) const POSITION: &str = "position";
 pub(crate) const ROTATION: &str = "rotation";
+pub(crate) const MADE_BODY: &str = "made around the bones";
 pub(crate) const BODY_PARTS: &str = "Body parts";
 pub(crate) const BODY_PARTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
 pub(crate) const UNIT: &str = "Unit";
