@@ -37,6 +37,9 @@ pub(crate) fn location_query() -> String {
         .map_or_else(String::new, |query| address::state_of(&query))
 }
 
+/// A window's widgets are known to the system's screen reader by themselves.
+pub(crate) fn announce(_words: &str) {}
+
 /// Desktops tell a window nothing of the kind.
 pub(crate) fn prefers_stillness() -> bool {
     false
