@@ -3,7 +3,7 @@
 use super::page::{document, listen, window};
 use super::reader::LargeFile;
 use super::words_of;
-use crate::platform::{Inbox, Incoming, too_large};
+use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, too_large};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue::session::reading::LARGE_BYTES;
