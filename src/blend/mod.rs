@@ -1,12 +1,33 @@
-//! From one clip to another, and one over another: weights, placing one motion on another, the dissolve, and layers.
+//! From one clip to another, and one over another: weights, placing one motion on another, the dissolve, registered blends, and layers.
+//!
+//! # The idea
 //!
 //! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in which
-//! `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`: the convention of [`crate::registration`].
+//! `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`. In frame p of the window:
+//!
+//! ```text
+//! α = 2t³ - 3t² + 1,  t = (p + 1)/k            weight of A: 1 before the window, 0 in its last frame
+//! pose  = α A[i + p] + (1 - α) B[j + p]        angles slerp the shorter way, lengths lerp
+//! frame = frame before · (α a + (1 - α) b)     a, b: the characters' own steps, α at the step's middle
+//! ```
+//!
+//! Poses are blended as each character sees its own body, and the way over the ground is made of blended *steps*: forward, sideways, turn. Picture two people who walk side by side in
+//! step while the camera goes over from one to the other; it does not matter where either walked before. Blended in the world ([`RootBlend::World`]) the
+//! character is pulled from one way to the other.
+//!
+//! [`registered_blend`] plays both clips along a timewarp, so that like meets like for as long as the clips last. A [`layer`] puts a part of one body over another, or adds what a
+//! motion does beyond a reference pose:
+//!
+//! ```text
+//! in place:   slerp(base, over, mask · weight)          added:   base · exp(w · log(reference⁻¹ · over))
+//! ```
+//!
+//! # Example
 //!
 //! ```
-//! use segue::blend::{DissolveOptions, Source, dissolve};
+//! use segue::blend::{BodyPart, DissolveOptions, LayerOptions, Source, dissolve, layer};
 //! use segue::registration::{SearchOptions, best_transition, limb_weights};
-//! use segue::{skeleton::Roles, synth};
+//! use segue::{skeleton::{Role, Roles}, synth};
 //! use std::sync::Arc;
 //!
 //! let [walk, run] = [synth::Action::Walk, synth::Action::Run].map(|action| synth::synthesize(&synth::Params::new(action)));
@@ -18,12 +39,35 @@
 //! let height = f64::from(roles.body_height(walk.skeleton()));
 //! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
 //!
-//! let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(run, &roles));
+//! let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
 //! let out = dissolve(&a, found.leave, &b, found.enter, &DissolveOptions { window: 30, ..DissolveOptions::default() })?;
 //! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
 //! assert_eq!(out.transition, found.leave..found.leave + 30);
+//! // Behind the window B plays as it is, somewhere else on the ground.
+//! let (there, own) = (out.clip.world_pose(out.transition.end), run.world_pose(found.enter + 30));
+//! assert!(there.positions.iter().zip(&own.positions).all(|(p, q)| p.distance(out.world_from_b.apply(*q)) < 1e-5));
+//!
+//! // The arms of the run over the legs of the walk: knees are the walk's, bit for bit.
+//! let mixed = layer(&walk, &roles, &run, &LayerOptions { parts: vec![BodyPart::UpperBody], ..LayerOptions::default() })?;
+//! let [knee, elbow] = [Role::LeftShin, Role::LeftForearm].map(|role| roles.get(role).unwrap_or_default());
+//! assert_eq!(mixed.rotations(40)[knee], walk.rotations(40)[knee]);
+//! assert!(mixed.rotations(40)[elbow].angle_between(run.rotations(40)[elbow]) < 1e-3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Accuracy and cost
+//!
+//! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less than 0.2 mm. Between two straight walks no turn appears that neither has, and speeds
+//! stay between both. Dissolves are held to NumPy, layers to SciPy. O(frames × joints).
+//!
+//! # What it does not do
+//!
+//! It does not plant feet: a foot that stands in A and swings in B slides, and [`crate::transition::foot_lock`] repairs that. Two poses that are far apart have a mean that
+//! neither clip has; search a better place first. Nothing is retargeted or resampled on the way: [`BlendError`] asks for it.
+//!
+//! # Sources
+//!
+//! Kovar, Gleicher, Pighin 2002, section 4.2 (window and weight). Kovar, Gleicher 2003, section 5 (registered blends). Perlin 2002 ([`WeightLaw::Smoother`]).
 
 mod assembly;
 mod concatenation;
