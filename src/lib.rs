@@ -1,15 +1,15 @@
 //! Segue's motion core: clips, the skeletons they move, and what is made from them.
 //!
-//! The core is pure and deterministic. It knows no screen, no file system, no clock and no threads: data goes in, data
-//! comes out, chance is a seed and time is a parameter. The app (`src/main.rs`, feature `app`) is built on top of it.
+//! The core is pure and deterministic. It knows no screen, no file system, no clock and no threads: data goes in, data comes out, chance is
+//! a seed and time is a parameter. The app (`src/main.rs`, feature `app`) is built on top of it.
 //!
-//! These pages are a small textbook as well. A module is a chapter: the idea, the formula, an example that runs, how exact it is and what it costs,
-//! what it does not do, and whose work it stands on.
+//! These pages are a small textbook as well. A module is a chapter: the idea, the formula, an example that runs, how exact it is and what it
+//! costs, what it does not do, and whose work it stands on.
 //!
 //! # A first example
 //!
-//! A walk goes over into a run, the result is measured, and a file is written. [`synth`] makes both clips, so that the example needs no file;
-//! [`formats::import`] would read them from one.
+//! A walk goes over into a run, the result is measured, and a file is written. [`synth`] makes both clips, so that the example needs no
+//! file; [`formats::import`] would read them from one.
 //!
 //! ```
 //! use segue::blend::{Concatenation, DissolveOptions, Source, dissolve};
@@ -95,18 +95,19 @@
 //!
 //! # Conventions
 //!
-//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else (`dt_secs`, `rms_cm`, `spin_deg`). Every rate is per
-//!   second at the clip's own frame rate.
-//! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces +Z and has its left at +X;
-//!   positive yaw turns it left (about +Y). A point of the ground is (x, z).
-//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that interpolates first brings both into one hemisphere.
+//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else (`dt_secs`, `rms_cm`, `spin_deg`). Every
+//!   rate is per second at the clip's own frame rate.
+//! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces +Z and has its left at +X; positive yaw
+//!   turns it left (about +Y). A point of the ground is (x, z).
+//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that interpolates first brings both into one
+//!   hemisphere.
 //! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`. `a_world_from_b_world` lays clip B on clip A.
 //! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation is the identity.
-//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over `B[j..j + k)`,
-//!   in search, blend and picture alike.
-//! - *Numbers* are stored in `f32`; sums that run long, and ways over the ground, are `f64`.
+//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over `B[j..j
+//!   + k)`, in search, blend and picture alike.
+//! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are `f64`.
 //! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides when to stop for a frame of the screen.
-//! - *Errors* are values that say what was found and what would do. Nothing that comes from outside can panic.
+//! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can make the library panic.
 
 pub mod blend;
 pub mod clip;

@@ -2,21 +2,21 @@
 //!
 //! # The idea
 //!
-//! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each cell, and beside it the root's way through the world.
-//! Everything else is derived from the table:
+//! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each cell, and beside it the root's way
+//! through the world. Everything else is derived from the table:
 //!
 //! ```text
 //! pose(t)       between frames ⌊t·fps⌋ and the next: positions lerp, rotations slerp
 //! velocity(f)   (x[f + 1] - x[f - 1]) / 2dt        angular: log(q[f + 1] · q[f - 1]⁻¹) / 2dt
 //! facing        across × up, across = from right to left over hips and shoulders
-//! speed         length of the way of the hips over the ground / duration
+//! speed         length of the root's way over the ground / duration
 //! ```
 //!
-//! Facing comes from where joints are and never from an Euler angle, which jumps where the body does not. Place and facing together are the character's frame
-//! ([`character_frames`]): whatever blends or compares clips first looks at them from there.
+//! Facing comes from where joints are and never from an Euler angle, which jumps where the body does not. Place and facing together are the
+//! character's frame ([`character_frames`]): whatever blends or compares clips first looks at them from there.
 //!
-//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Both limits are double, one to come down and a looser one to leave, as a thermostat has
-//! two temperatures: a foot that trembles about one limit would flicker.
+//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one to come down and a looser one to leave, as
+//! a thermostat has two temperatures: about a single limit a trembling foot would flicker.
 //!
 //! # Example
 //!
@@ -46,17 +46,18 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice, likewise. Contacts do not change with the height of the capture's
-//! floor or the size of the character, and with the frame rate only by about a frame. Everything is O(frames × joints).
+//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice, likewise. Contacts do not change with the height
+//! of the capture's floor or the size of the character, and with the frame rate by at most 2.5 of the coarser frames. Everything is one pass
+//! over frames × joints, but for the sorting of heights in contacts.
 //!
 //! # What it does not do
 //!
-//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. Who lies on the side has no facing and keeps that of the nearest frame
-//! that has one.
+//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. Who lies on the side has no
+//! facing and keeps that of the nearest frame that has one.
 //!
 //! # Sources
 //!
-//! Angular velocities: Holden, "Joint limits, quaternions and angular velocity".
+//! Angular velocities: Holden, "Joint limits, quaternions and angular velocity". Cubic interpolation: Catmull and Rom, on rotation vectors.
 
 mod contacts;
 mod curves;

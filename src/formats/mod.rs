@@ -1,8 +1,8 @@
 //! Motion files: from bytes to clips and back.
 //!
-//! [`import`] reads whatever it is given, by content rather than by name. Everything with a sensible reading is read, and what was odd about it
-//! comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
-//! that are there, never a number in a header.
+//! [`import`] reads whatever it is given, by content rather than by name. Everything with a sensible reading is read, and what was odd about
+//! it comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the
+//! bytes that are there, never a number in a header.
 //!
 //! # The idea
 //!
@@ -14,8 +14,8 @@
 //!       → metres, Y up, parents first → Clip
 //! ```
 //!
-//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and feet tell which way is down. Where that is wrong,
-//! [`ImportOptions`] say better.
+//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and how the body stands tells which way is up. Where
+//! that is wrong, [`ImportOptions`] say better.
 //!
 //! | | read | written |
 //! |---|---|---|
@@ -51,13 +51,13 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its channels and rotation orders. Reading takes memory of at most three
-//! times the file's size, and time by its length. Any bytes are read or refused, none panic.
+//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its channels and rotation orders. Reading a
+//! BVH file takes memory of at most three times its size, and time by its length. Any bytes are read or refused, none panic.
 //!
 //! # What it does not do
 //!
-//! No FBX, no meshes, no materials. [`import`] does not open archives and does not look for a second file: who holds the files does
-//! ([`crate::session`]), and hands AMC files over with their skeleton.
+//! No FBX, no meshes, no materials. [`import`] neither opens archives nor looks for a second file: whoever holds the files does, and hands
+//! an AMC file over with its skeleton ([`acclaim::read_motion`]).
 //!
 //! # Sources
 //!

@@ -1,9 +1,11 @@
-//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows look alike. A walk through the graph is a motion without end.
+//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows look alike. A walk through the graph is a
+//! motion without end.
 //!
 //! # The idea
 //!
-//! Lay all clips end to end and compare every window with every other. Where the distance ([`crate::registration`]) is small, one may go over. Picture a railway map:
-//! stretches of clips are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a switch throws a die.
+//! Lay all clips end to end and compare every window with every other. Where the distance ([`crate::registration`]) is small, one may go
+//! over. Picture a railway map: stretches of clips are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a
+//! switch throws a die.
 //!
 //! ```text
 //! p(the clip goes on) = c                       c: continuity
@@ -11,12 +13,14 @@
 //! mean run            = 1 / (1 - c) stretches   before the next jump
 //! ```
 //!
-//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`]) every stretch can be reached from every other, for ever.
+//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`]) every stretch can be reached from every
+//! other, for ever.
 //!
 //! A [`FrameSet`] is what the graph is made of. [`AllPairs`] compares all its windows, [`Candidates`] are the places where one may go over
-//! into another, a [`MotionGraph`] is made of them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the graph
-//! by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the one before it, and can be done again
-//! alone: a new blend window needs new running sums, a new threshold new candidates, another weight law other choices. [`follow`] searches a walk along a line on the ground.
+//! into another, a [`MotionGraph`] is made of them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the
+//! graph by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the one before it, and can be done again
+//! alone: a new blend window needs new running sums, a new threshold new candidates, another weight law other choices. [`follow`] searches a
+//! walk along a line on the ground.
 //!
 //! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave + window)` and `B[enter..enter + window)`
 //! overlap. Distances are root-mean-square distances per point, centimetres on the reference body.
@@ -59,22 +63,23 @@
 //!
 //! # Accuracy and cost
 //!
-//! Graph and walk are those of a NumPy program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and
-//! 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
+//! Graph and walk are those of a NumPy program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to 5
+//! %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
 //!
-//! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are the same on every machine;
-//! distances are rounded to 0.001 cm, probabilities are whole numbers, and chance is a generator (PCG) of whole numbers. Trigonometry, which
-//! differs in its last digit from machine to machine, places bodies but decides nothing.
+//! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are
+//! the same on every machine; distances are rounded to 0.001 cm, probabilities are whole numbers, and chance is a generator (PCG) of whole
+//! numbers. Trigonometry, which differs in its last digit from machine to machine, places bodies but decides nothing.
 //!
 //! # What it does not do
 //!
-//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not reached, and [`GraphError`] says what would do. It does not know what a clip means: an idle stretch is as good a place
-//! to stay as any. It reacts at the next switch, not at once; for that see [`crate::matching`].
+//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not reached, and [`GraphError`] says what
+//! would do. It does not know what a clip means: an idle stretch is as good a place to stay as any. It reacts at the next switch, not at
+//! once; for that see [`crate::matching`].
 //!
 //! # Sources
 //!
-//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002. Lee, Chai, Reitsma, Hodgins, Pollard, "Interactive Control of Avatars Animated with Human Motion Data", 2002, section 4.1 (the
-//! exponential weights).
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002. Lee, Chai, Reitsma, Hodgins, Pollard, "Interactive Control of Avatars Animated with Human
+//! Motion Data", 2002, section 4.1 (the exponential weights).
 
 mod build;
 mod candidates;

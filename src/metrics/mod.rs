@@ -2,8 +2,9 @@
 //!
 //! # The idea
 //!
-//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much for a spine and little for a runner's knee, so everything is measured
-//! *beyond what is usual*: the 99th percentile of that joint in its own clip, or what the clip does in that very frame. What a [`Profile`] knows of a clip is measured once.
+//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much for a spine and little for a runner's
+//! knee, so everything is measured *beyond what is usual*: the 99th percentile of that joint in its own clip, or what the clip does in that
+//! very frame. What a [`Profile`] knows of a clip is measured once.
 //!
 //! | | unit | what is told |
 //! |---|---|---|
@@ -21,7 +22,8 @@
 //! slide     = max over a stance of  |Σ step of the foot's stillest point|
 //! ```
 //!
-//! A foot that rolls from heel to toe moves everywhere but has a point that stands: that one is followed.
+//! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed. [`foot_slide_cm`] does so for a whole
+//! clip.
 //!
 //! # Example
 //!
@@ -58,13 +60,14 @@
 //!
 //! # Accuracy and cost
 //!
-//! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to slide by 5 cm slides 5 cm. A clip that goes on as itself has no artefact.
-//! A transition costs O(its frames × joints) and half a second to either side, a profile O(frames × joints) once.
+//! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to slide by 5 cm slides 5 cm. A clip that goes
+//! on as itself has no artefact. A transition costs O(its frames × joints) and half a second to either side, a profile O(frames × joints)
+//! once.
 //!
 //! # What it does not do
 //!
-//! No number says whether a motion is beautiful, or in character. Limbs that pass through each other are not seen. What is usual in a trembling capture hides a trembling seam. Feet are planted
-//! where the *sources* say so: a wrong contact is measured as a slide.
+//! No number says whether a motion is beautiful, or in character. Limbs that pass through each other are not seen. What is usual in a
+//! trembling capture hides a trembling seam. Feet are planted where the *sources* say so: a wrong contact is measured as a slide.
 //!
 //! # Sources
 //!

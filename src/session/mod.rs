@@ -8,12 +8,12 @@
 //! link, slider, page's API → Command → Session::apply → recipe (inputs → clip and numbers) → panes → scene
 //! ```
 //!
-//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps, defaults and help. Sliders, link, API, comparison and undo come from
-//! it. A *recipe* is a pure function of clips and parameters; its inputs are remembered with its result, so that what did not change is not computed again. Picture a spreadsheet: a cell is touched,
-//! and only what hangs on it is reckoned anew.
+//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps, defaults and help. Sliders, link, API,
+//! comparison and undo come from it. A *recipe* is a pure function of clips and parameters; its inputs are remembered with its result, so
+//! that what did not change is not computed again. Picture a spreadsheet: a cell is touched, and only what hangs on it is reckoned anew.
 //!
-//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs from outside, a file or an address, it asks for ([`Request`]) and is handed; nothing here
-//! knows a screen, a file system or a clock. Time comes in by [`Session::tick`].
+//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs from outside, a file or an address, it
+//! asks for ([`Request`]) and is handed; nothing here knows a screen, a file system or a clock. Time comes in by [`Session::tick`].
 //!
 //! # Example
 //!
@@ -46,12 +46,13 @@
 //!
 //! # Accuracy and cost
 //!
-//! The same link gives the same motion; numbers in it are whole multiples of their parameter's step. A change costs what the recipe costs that depends on it: a camera that turns makes
-//! nothing anew.
+//! The same link gives the same motion; numbers in it are whole multiples of their parameter's step. A change costs what the recipe costs
+//! that depends on it: a camera that turns makes nothing anew.
 //!
 //! # What it does not do
 //!
-//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it names a file by its digest, and who opens it must have the file.
+//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it
+//! names a file, with the first digits of its SHA-256, and who opens the link must have that file.
 
 mod command;
 mod compare;

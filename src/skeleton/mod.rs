@@ -2,8 +2,8 @@
 //!
 //! # The idea
 //!
-//! A joint is a pivot that hangs on its parent by an offset. A [`Pose`] turns every joint against its parent; forward kinematics ([`world_pose`]) adds
-//! that up from the root outwards. Since parents stand before their children, one pass does it:
+//! A joint is a pivot that hangs on its parent by an offset. A [`Pose`] turns every joint against its parent; forward kinematics
+//! ([`world_pose`]) adds that up from the root outwards. Since parents stand before their children, one pass does it:
 //!
 //! ```text
 //! rotation(j) = rotation(parent) · local(j)                       world_from_joint
@@ -12,9 +12,9 @@
 //!
 //! So a turn of the hip carries the whole leg along, and no bone changes its length.
 //!
-//! Files name joints as they like. [`Roles`] say which joint is the left knee, by its name, else by the shape at rest, else by hand; from there on nobody
-//! asks for names. With roles known on both sides a pose moves to another body ([`Retargeting`]): a joint takes the *world* rotation of the joint that drives it,
-//! corrected by how the two bones differ at rest.
+//! Files name joints as they like. [`Roles`] say which joint is the left knee, by its name, else by the shape at rest, else by hand; from
+//! there on nobody asks for names. With roles known on both sides a pose moves to another body ([`Retargeting`]): a joint takes the *world*
+//! rotation of the joint that drives it, corrected by how the two bones differ at rest.
 //!
 //! ```text
 //! world_target = world_source · C      C takes the target's bone at rest to the source's
@@ -53,8 +53,9 @@
 //!
 //! # Accuracy and cost
 //!
-//! Kinematics agree with 4 × 4 matrices to 2e-6 of a point's distance. Between any two of eleven kinds of rig, limbs point where the source's do, within the 2° below which
-//! rest poses count as the same; mirroring twice gives the pose back to 1e-5. Kinematics and retargeting are O(joints) for a pose.
+//! Kinematics agree with 4 × 4 matrices to 2e-6 of a point's distance. Between any two of eleven kinds of rig, limbs point where the
+//! source's do, within the 2° below which rest poses count as the same; mirroring twice gives the pose back to 1e-5. Kinematics and
+//! retargeting are O(joints) for a pose.
 //!
 //! # What it does not do
 //!
