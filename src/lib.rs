@@ -42,14 +42,15 @@
 //! };
 //! let (blend, cut) = (blended(30)?, blended(0)?);
 //!
-//! // Measure: how far does a joint jump in one frame, beyond what it does in its own clip?
-//! let jump_deg = |out: &Concatenation| {
+//! // Measure: how far do joints and character jump in one frame, beyond what they do in their own clips?
+//! let measured = |out: &Concatenation| {
 //!     let (start, end) = (out.transition.start, out.transition.end);
 //!     let (handover, enter) = (out.handover, found.enter);
 //!     let subject = Subject { result: &out.clip, start, end, handover, enter, a: &a, b: &b, roles: &roles, ground_m: 0.0 };
-//!     TransitionMetrics::measure(&subject).seam_deg.unwrap_or(f64::NAN)
+//!     TransitionMetrics::measure(&subject)
 //! };
-//! assert!(jump_deg(&cut) > 60.0 && jump_deg(&blend) < 5.0);
+//! assert!(measured(&cut).seam_deg.is_some_and(|jump| jump > 60.0));
+//! assert!(measured(&blend).seam_deg.is_some_and(|jump| jump < 5.0) && measured(&blend).jump_cm.is_some_and(|jump| jump < 0.1));
 //!
 //! // Export, and read it back.
 //! let text = bvh::write(&blend.clip, &bvh::WriteOptions::default());
@@ -103,8 +104,8 @@
 //!   hemisphere.
 //! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`. `a_world_from_b_world` lays clip B on clip A.
 //! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation is the identity.
-//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over `B[j..j
-//!   + k)`, in search, blend and picture alike.
+//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over
+//!   `B[j..j + k)`, in search, blend and picture alike.
 //! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are `f64`.
 //! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides when to stop for a frame of the screen.
 //! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can make the library panic.

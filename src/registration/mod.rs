@@ -24,8 +24,8 @@
 //! # Windows and units
 //!
 //! One convention holds for search, blending and pictures. A transition from clip A to clip B *leaves* A at frame `i`, *enters* B at frame
-//! `j` and overlaps `k` frames: the source window runs forward from `i`, `A[i..i + k)`; the target window runs forward from `j`, `B[j..j +
-//! k)`. A window never crosses the end of its clip. Distances are root-mean-square distances per point, scaled to a body of
+//! `j` and overlaps `k` frames: the source window runs forward from `i`, `A[i..i + k)`; the target window runs forward from `j`,
+//! `B[j..j + k)`. A window never crosses the end of its clip. Distances are root-mean-square distances per point, scaled to a body of
 //! [`REFERENCE_HEIGHT_M`] and given in centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
 //!
 //! # Example
