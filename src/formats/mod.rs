@@ -28,6 +28,7 @@
 //! # Example
 //!
 //! ```
+//! use segue::clip::Clip;
 //! use segue::formats::{ImportOptions, bvh, import};
 //! use segue::synth::{Action, Params, synthesize};
 //!
@@ -38,8 +39,11 @@
 //! // There and back: every joint is where it was, and the centimetres were found by the height.
 //! let file = read(&text)?;
 //! let back = &file.clips[0].clip;
-//! let apart = walk.world_positions(0..walk.frames()).into_iter().zip(back.world_positions(0..back.frames())).map(|(a, b)| a.distance(b));
-//! assert!(apart.fold(0.0, f32::max) < 1e-5 && file.clips[0].measure.unit_detected && file.warnings.is_empty());
+//! let everywhere = |clip: &Clip| clip.world_positions(0..clip.frames());
+//! let (there, here) = (everywhere(&walk), everywhere(back));
+//! assert_eq!(there.len(), here.len());
+//! assert!(there.iter().zip(&here).all(|(p, q)| p.distance(*q) < 1e-5));
+//! assert!(file.clips[0].measure.unit_detected && file.warnings.is_empty());
 //!
 //! // A row that is cut off is told and left out; a slip of the pen is told with its place.
 //! let shorter = read(&text[..text.len() - 40])?;

@@ -38,7 +38,7 @@
 //! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;
 //! assert!(jog.facts.weight > 0.4 && jog.facts.weight < 0.6 && !jog.facts.extrapolated);
-//! // What was asked for is what is made, and both strides and steps are between those of the gaits.
+//! // What was asked for is made; its strides and its cadence lie between those of the gaits.
 //! let measured = ground_speed(&character_frames(&jog.clip, &roles), jog.clip.fps());
 //! assert!((measured - 2.5).abs() < 0.02 * 2.5);
 //! let [walk, run] = blend.speeds_mps().map(|speed| blend.facts(speed));
@@ -55,11 +55,12 @@
 //! # What it does not do
 //!
 //! Feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock) with the contacts that come along cleans
-//! up the rest. Gaits need both feet in turn: who limps on one leg, or crawls, has no cycle here.
+//! up the rest. Gaits need both feet in turn: whoever hops on one leg, or crawls, has no cycle here.
 //!
 //! # Sources
 //!
-//! Blending two cycles by speed is a classic exercise of animation courses; clocks for single legs are Segue's own.
+//! Blending two cycles by speed is a classic exercise of animation courses. How each leg gets a clock of its own is told at
+//! [`PhaseAlignment`].
 
 mod cycle;
 mod phase;

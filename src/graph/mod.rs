@@ -9,7 +9,7 @@
 //!
 //! ```text
 //! p(the clip goes on) = c                       c: continuity
-//! p(jump k)           = (1 - c) · w_k / Σ w     w = 1/D, exp(-(D - D₀)/σ), 1, or (the mistake) D
+//! p(jump k)           = (1 - c) · w_k / Σ w     w = 1/D, exp(-(D - D₀)/σ), 1, or (wrong) D
 //! mean run            = 1 / (1 - c) stretches   before the next jump
 //! ```
 //!
@@ -29,11 +29,13 @@
 //!
 //! ```
 //! use segue::blend::Source;
-//! use segue::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph, Stitcher, StitchOptions, Walker, WeightOptions};
-//! use segue::{skeleton::Roles, synth};
+//! use segue::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
+//! use segue::graph::{StitchOptions, Stitcher, Walker, WeightOptions};
+//! use segue::skeleton::Roles;
+//! use segue::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
 //!
-//! let [walk, run] = [synth::Action::Walk, synth::Action::Run].map(|action| synth::synthesize(&synth::Params::new(action)));
+//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
 //! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
 //! let roles = Roles::detect(walk.skeleton());
 //! let height = f64::from(roles.body_height(walk.skeleton()));
@@ -42,14 +44,15 @@
 //!
 //! let mut all = AllPairs::new(Arc::clone(&set))?;
 //! while !all.advance(100_000).is_complete() {}
-//! let options = GraphOptions { blend_window: 12, edge_threshold_cm: 20.0, ..GraphOptions::default() };
-//! let candidates = Candidates::find(&all, &all.distances(options.blend_window)?, &options)?;
+//! let window = 12;
+//! let options = GraphOptions { blend_window: window, edge_threshold_cm: 20.0, ..Default::default() };
+//! let candidates = Candidates::find(&all, &all.distances(window)?, &options)?;
 //! let graph = Arc::new(MotionGraph::new(&set, &candidates, &options)?.pruned()?);
 //! assert!(graph.dead_ends().is_empty() && graph.jumps().len() > 20);
 //!
 //! let choices = Arc::new(Choices::new(&graph, &WeightOptions::default())?);
 //! let mut walker = Walker::new(Arc::clone(&graph), choices, 7);
-//! let mut stitcher = Stitcher::new(Arc::clone(&set), &StitchOptions::dissolve(options.blend_window));
+//! let mut stitcher = Stitcher::new(Arc::clone(&set), &StitchOptions::dissolve(window));
 //! let (mut secs, mut jumps) = (0.0, 0);
 //! while secs < 20.0 {
 //!     let stay = walker.next_stay().ok_or("a pruned graph has no dead end")?;
@@ -63,8 +66,8 @@
 //!
 //! # Accuracy and cost
 //!
-//! Graph and walk are those of a NumPy program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to 5
-//! %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
+//! Graph and walk are those of a NumPy program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
+//! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
 //!
 //! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are
 //! the same on every machine; distances are rounded to 0.001 cm, probabilities are whole numbers, and chance is a generator (PCG) of whole

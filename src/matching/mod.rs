@@ -23,20 +23,24 @@
 //!
 //! ```
 //! use segue::matching::search::{Question, scan};
-//! use segue::matching::{Control, Controller, ControllerOptions, Database, DatabaseOptions, MatchClip, TagFilter, Weights};
-//! use segue::{math::Planar, skeleton::Roles, synth};
+//! use segue::matching::{Control, Controller, ControllerOptions, Database, DatabaseOptions};
+//! use segue::matching::{MatchClip, TagFilter, Weights};
+//! use segue::math::Planar;
+//! use segue::skeleton::Roles;
+//! use segue::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
 //!
 //! let mut clips = Vec::new();
-//! for action in [synth::Action::Idle, synth::Action::Start, synth::Action::Walk, synth::Action::Stop] {
-//!     let clip = Arc::new(synth::synthesize(&synth::Params::new(action))?.clip);
+//! for action in [Action::Idle, Action::Start, Action::Walk, Action::Stop] {
+//!     let clip = Arc::new(synthesize(&Params::new(action))?.clip);
 //!     let roles = Roles::detect(clip.skeleton());
 //!     clips.push(MatchClip::new(clip, roles));
 //! }
 //! let database = Arc::new(Database::new(clips, &DatabaseOptions::default())?);
 //!
 //! // Three seconds of "walk ahead at 1.4 m/s", from standing.
-//! let mut character = Controller::new(Arc::clone(&database), ControllerOptions::default(), &Planar::IDENTITY)?;
+//! let options = ControllerOptions::default();
+//! let mut character = Controller::new(Arc::clone(&database), options, &Planar::IDENTITY)?;
 //! for _ in 0..180 {
 //!     character.tick(&Control::new(glam::DVec2::new(0.0, 1.4), None));
 //! }
@@ -44,9 +48,11 @@
 //!
 //! // The boxes find what the scan finds, and look at fewer frames.
 //! let weights = Weights::default().spread(database.features().layout());
-//! let query: Vec<f32> = database.features().row(700).ok_or("no such frame")?.iter().map(|x| x + 0.02).collect();
+//! let row = database.features().row(700).ok_or("no such frame")?;
+//! let query: Vec<f32> = row.iter().map(|x| x + 0.02).collect();
 //! let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
-//! let (slow, fast) = (scan(&database.candidates(), &question), database.index().search(database.masks(), &question, None));
+//! let slow = scan(&database.candidates(), &question);
+//! let fast = database.index().search(database.masks(), &question, None);
 //! assert!(slow.best == fast.best && fast.visited < slow.visited / 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

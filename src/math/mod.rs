@@ -40,11 +40,13 @@
 //! let step = Planar::new(FRAC_PI_2, 0.0, 1.0);
 //! let here = (0..4).fold(Planar::IDENTITY, |here, _| here.after(&step));
 //! assert!(here.shift.length() < 1e-12);
-//! // From rest a spring has 59.7 % left after one half-life, and half of it after 1.211. Twelve short steps are one long one.
+//! // From rest a spring has 59.7 % left after one half-life, and half of it after 1.211.
 //! let (left, _) = spring::response(0.2, 0.2).of(1.0, 0.0);
-//! assert!((left - 0.597).abs() < 1e-3 && (spring::secs_until(0.2, 0.5) - 0.2 * 1.211).abs() < 1e-4);
-//! let stepped = (0..12).fold((1.0, 0.0), |(x, v), _| spring::towards(x, v, 0.0, 0.2, 0.2 / 12.0));
-//! assert!((stepped.0 - left).abs() < 1e-12);
+//! assert!((left - 0.597).abs() < 1e-3);
+//! assert!((spring::secs_until(0.2, 0.5) - 0.2 * 1.211).abs() < 1e-4);
+//! // Twelve short steps are one long one.
+//! let step = |(x, v), _| spring::towards(x, v, 0.0, 0.2, 0.2 / 12.0);
+//! assert!(((0..12).fold((1.0, 0.0), step).0 - left).abs() < 1e-12);
 //! ```
 //!
 //! # Accuracy and cost

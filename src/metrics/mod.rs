@@ -47,13 +47,23 @@
 //! };
 //! let (a, b) = (profile(&walk), profile(&run));
 //! let spin_deg = |out: &Concatenation| {
-//!     let (start, end, handover) = (out.transition.start, out.transition.end, out.handover);
-//!     let subject = Subject { result: &out.clip, start, end, handover, enter: 20, a: &a, b: &b, roles: &roles, ground_m: 0.0 };
+//!     let subject = Subject {
+//!         result: &out.clip,
+//!         start: out.transition.start,
+//!         end: out.transition.end,
+//!         handover: out.handover,
+//!         enter: 20,
+//!         a: &a,
+//!         b: &b,
+//!         roles: &roles,
+//!         ground_m: 0.0,
+//!     };
 //!     TransitionMetrics::measure(&subject).spin_deg.unwrap_or(f64::NAN)
 //! };
 //! let options = TransitionOptions::new(Method::Dissolve { window: 30, law: Default::default() });
 //! let right = concatenate(a.source(), 100, b.source(), 20, &options)?;
-//! let wrong = concatenate_mistaken(a.source(), 100, b.source(), 20, &options, Mistake::AtanForAtan2)?;
+//! let mistake = Mistake::AtanForAtan2;
+//! let wrong = concatenate_mistaken(a.source(), 100, b.source(), 20, &options, mistake)?;
 //! assert!(spin_deg(&right) < 1.0 && spin_deg(&wrong) > 90.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

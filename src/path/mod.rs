@@ -7,8 +7,10 @@
 //! path's moving frame: +Z along the path, +X to its left.
 //!
 //! ```text
-//! fit       min  mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²      Δ: change of slope of the control polygon
-//! carry     new(k) = new path(v_k) · path(u_k)⁻¹ · character(k)      v_k: the place on the new path, by Timing
+//! fit     min  mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²
+//!         Δ: change of slope of the control polygon, h: spacing of its points
+//! carry   new(k) = new path(v_k) · path(u_k)⁻¹ · character(k)
+//!         v_k: the place on the new path, by Timing
 //! ```
 //!
 //! Picture a tram with a dancer in it: bend the rails, and the dance goes along. When the path changes, every frame is moved with the frame
@@ -21,6 +23,7 @@
 //! ```
 //! use glam::DVec2;
 //! use segue::blend::Source;
+//! use segue::clip::Clip;
 //! use segue::path::{CarryOptions, FitOptions, FittedPath, PathEdit, Pins, Road, carry};
 //! use segue::skeleton::Roles;
 //! use segue::synth::{Action, Params, synthesize};
@@ -34,15 +37,16 @@
 //!
 //! // On its own path the walk is itself.
 //! let same = carry(&path, path.road(), &CarryOptions::default())?.clip;
-//! assert!(same.root_translations().iter().zip(walk.root_translations()).all(|(p, q)| p.distance(*q) < 1e-4));
+//! let mut pairs = same.root_translations().iter().zip(walk.root_translations());
+//! assert!(pairs.all(|(p, q)| p.distance(*q) < 1e-4));
 //!
-//! // The fourth control point half a metre to the left: the walk takes a bow, as long as before in frames.
+//! // The fourth control point half a metre to the left: the walk takes a bow.
 //! let spline = path.road().spline();
 //! let to = spline.points()[3] + DVec2::new(0.5, 0.0);
 //! let bow = spline.edited(&PathEdit::Move { index: 3, to }, Pins::default())?;
 //! let out = carry(&path, &Road::new(bow)?, &CarryOptions::default())?.clip;
-//! let farthest = |clip: &segue::clip::Clip| clip.root_translations().iter().map(|p| p.x).fold(0.0, f32::max);
-//! assert!(out.frames() == walk.frames() && farthest(&walk) < 0.05 && farthest(&out) > 0.25);
+//! let left = |clip: &Clip| clip.root_translations().iter().map(|p| p.x).fold(0.0, f32::max);
+//! assert!(left(&walk) < 0.05 && left(&out) > 0.25 && out.frames() == walk.frames());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -55,8 +59,8 @@
 //! # What it does not do
 //!
 //! It bends motions, and neither invents steps nor takes them away: a path of twice the length is walked halfway, or with strides twice as
-//! long, as [`Timing`] says. A motion that stays in place has no path. Balance is not looked after: who is sent around a hairpin does not
-//! lean.
+//! long, as [`Timing`] says. A motion that stays in place has no path. Balance is not looked after: whoever is sent around a hairpin does
+//! not lean.
 //!
 //! # Sources
 //!

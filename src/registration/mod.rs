@@ -8,8 +8,8 @@
 //! it lies best on the first, and measure what is left. There is a closed form; with weights w, W = Σw and bars for weighted sums:
 //!
 //! ```text
-//! A = Σw(x z' - x' z) - (x̄ z̄' - x̄' z̄)/W        θ = atan2(A, B)
-//! B = Σw(x x' + z z') - (x̄ x̄' + z̄ z̄')/W        D = S + S' - 2·hypot(A, B) + Σw(y - y')²
+//! A = Σw(x z' - x' z) - (x̄ z̄' - x̄' z̄)/W       θ = atan2(A, B)
+//! B = Σw(x x' + z z') - (x̄ x̄' + z̄ z̄')/W       D = S + S' - 2·hypot(A, B) + Σw(y - y')²
 //! ```
 //!
 //! S and S' are the centred spreads of both clouds over the ground. `atan(A / B)` in place of `atan2` lands half a turn off for half of all
@@ -35,14 +35,15 @@
 //! use segue::registration::{PairTerms, Registration, RegistrationOptions, align, limb_weights};
 //! use segue::synth::{Action, Params, synthesize};
 //!
-//! let [slow, fast] = [1.0, 1.6].map(|speed_mps| synthesize(&Params { speed_mps, ..Params::new(Action::Walk) }));
-//! let (slow, fast) = (slow?, fast?);
+//! let walk = |speed_mps| synthesize(&Params { speed_mps, ..Params::new(Action::Walk) });
+//! let (slow, fast) = (walk(1.0)?, walk(1.6)?);
 //! let (a, b) = (&slow.clip, &fast.clip);
 //! let weights = limb_weights(a.skeleton());
 //!
 //! // Moved over the ground a motion is still the same, and alignment finds the way back.
 //! let moved = Planar::new(2.5, 3.0, -2.0);
-//! let found = align(&a.world_positions(0..10), &a.transformed(&moved).world_positions(0..10), &weights, 0.0)?;
+//! let there = a.transformed(&moved);
+//! let found = align(&a.world_positions(0..10), &there.world_positions(0..10), &weights, 0.0)?;
 //! assert!(found.rms_m() < 1e-5 && found.transform.after(&moved).shift.length() < 1e-5);
 //!
 //! // A slow walk and a fast one: a cycle of the one is registered to a cycle of the other.
@@ -65,8 +66,8 @@
 //!
 //! # What it does not do
 //!
-//! It compares where joints are, neither forces nor meanings. Turns are about the vertical alone: who climbs is not laid on who walks.
-//! Heights are compared, but never shifted. Clips must have one skeleton and one frame rate.
+//! It compares where joints are, neither forces nor meanings. Turns are about the vertical alone: a climb is not laid on a walk. Heights are
+//! compared, but never shifted. Clips must have one skeleton and one frame rate.
 //!
 //! # Sources
 //!

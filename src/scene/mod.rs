@@ -14,7 +14,7 @@
 //! ```
 //!
 //! At yaw 0 it sees the face of a character that faces +Z, whose left hand is then on the right of the picture. A [`CameraRig`] draws it to
-//! its goal by a critically damped spring ([`crate::math::spring`]).
+//! its goal as a critically damped spring does.
 //!
 //! Colours here are `[red, green, blue, alpha]` in 0–1 as written in a palette (sRGB-encoded, alpha straight); see [`rgb`].
 //!
@@ -38,12 +38,14 @@
 //! pane.camera.frame(&bounds, viewport.aspect());
 //! let size = viewport.size();
 //! let is_seen = |at: Vec2| at.cmpge(Vec2::ZERO).all() && at.cmple(size).all();
-//! assert!(pose.positions.iter().all(|&point| pane.camera.project(point, size).is_some_and(is_seen)));
+//! let seen_at = |&point: &Vec3| pane.camera.project(point, size).is_some_and(is_seen);
+//! assert!(pose.positions.iter().all(seen_at));
 //!
 //! // A place on the ground, to its pixel and back.
 //! let place = Vec3::new(0.3, 0.0, 0.2);
 //! let pixel = pane.camera.project(place, size).ok_or("behind the camera")?;
-//! assert!(pane.camera.ray(pixel, size).ground_hit().is_some_and(|hit| hit.distance(place) < 1e-3));
+//! let hit = pane.camera.ray(pixel, size).ground_hit().ok_or("no ground there")?;
+//! assert!(hit.distance(place) < 1e-3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

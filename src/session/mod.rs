@@ -5,7 +5,7 @@
 //! There is one way in and one way out, and both are data:
 //!
 //! ```text
-//! link, slider, page's API → Command → Session::apply → recipe (inputs → clip and numbers) → panes → scene
+//! link, slider, API → Command → Session::apply → recipe (inputs → clip, numbers) → panes → scene
 //! ```
 //!
 //! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps, defaults and help. Sliders, link, API,
@@ -23,21 +23,24 @@
 //! // What a first visitor sees: one blend in three panes, with windows of 30, 15 and 10 frames.
 //! let mut session = Session::new();
 //! while session.work() {}
-//! assert_eq!((session.panes().len(), session.query().as_str()), (3, "compare=blend_window:30,15,10"));
+//! assert_eq!(session.panes().len(), 3);
+//! assert_eq!(session.query(), "compare=blend_window:30,15,10");
 //!
+//! let window = |frames| Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]);
 //! session.apply(Command::OpenLink("blend_window=24".into()))?;
-//! session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(12.0))]))?;
-//! let window = session.main_outcome().and_then(|outcome| outcome.transition).map(|transition| transition.window_frames);
-//! assert_eq!((window, session.query().as_str()), (Some(12), "blend_window=12"));
+//! session.apply(window(12.0))?;
+//! let transition = session.main_outcome().and_then(|outcome| outcome.transition);
+//! assert_eq!(transition.map(|transition| transition.window_frames), Some(12));
+//! assert_eq!(session.query(), "blend_window=12");
 //!
 //! // What does not fit is refused with a sentence, and changes nothing.
-//! let error = session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(1000.0))])).err().ok_or("it was taken")?;
+//! let error = session.apply(window(1000.0)).err().ok_or("it was taken")?;
 //! assert!(error.to_string().contains("1 to 240") && session.query() == "blend_window=12");
 //!
 //! // The link is the state: another session makes the same motion of it. And there is a way back.
 //! let mut other = Session::new();
 //! other.apply(Command::OpenLink(session.query()))?;
-//! let clip = |session: &Session| session.main_outcome().map(|outcome| outcome.motion.clip.clone());
+//! let clip = |session: &Session| session.main_outcome().map(|made| made.motion.clip.clone());
 //! assert!(clip(&session).is_some() && clip(&session) == clip(&other));
 //! session.apply(Command::Undo)?;
 //! assert_eq!(session.query(), "blend_window=24");

@@ -31,8 +31,13 @@
 //!
 //! let body = humanoid(1.75)?;
 //! let roles = Roles::detect(&body);
-//! let [hip, knee, ankle] = [Role::LeftThigh, Role::LeftShin, Role::LeftFoot].map(|role| roles.get(role).unwrap_or_default());
-//! let standing = Pose { root_translation: body.joints()[0].offset, rotations: vec![Quat::IDENTITY; body.len()], translations: vec![] };
+//! let joint = |role| roles.get(role).ok_or("not found");
+//! let (hip, knee, ankle) = (joint(Role::LeftThigh)?, joint(Role::LeftShin)?, joint(Role::LeftFoot)?);
+//! let standing = Pose {
+//!     root_translation: body.joints()[0].offset,
+//!     rotations: vec![Quat::IDENTITY; body.len()],
+//!     translations: vec![],
+//! };
 //! let mut kicking = standing.clone();
 //! kicking.rotations[hip] = Quat::from_rotation_x(-0.5);
 //!
@@ -42,11 +47,12 @@
 //!
 //! // A child kicks as far in proportion, and in a mirror the right foot kicks.
 //! let child = humanoid(1.2)?;
-//! let smaller = Retargeting::new(&body, &roles, &child, &Roles::detect(&child)).ok_or("no joint in common")?;
+//! let child_roles = Roles::detect(&child);
+//! let smaller = Retargeting::new(&body, &roles, &child, &child_roles).ok_or("nothing in common")?;
 //! let kicks = world_pose(&child, &smaller.pose(&kicking));
 //! assert!((kicks.positions[ankle] * (1.75 / 1.2)).distance(after.positions[ankle]) < 1e-5);
 //! let mirrored = world_pose(&body, &Mirror::of(&body, &roles)?.pose(&kicking));
-//! let other = roles.get(Role::RightFoot).ok_or("no right foot")?;
+//! let other = joint(Role::RightFoot)?;
 //! assert!((mirrored.positions[other].z - after.positions[ankle].z).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
