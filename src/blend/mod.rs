@@ -64,7 +64,7 @@
 //! # Accuracy and cost
 //!
 //! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less than 0.2 mm. Between two straight walks
-//! no turn appears that neither has, and but for the sway of a stride speeds stay between both. Dissolves and layers agree with SciPy.
+//! no turn appears that neither has, and but for the sway of a stride speeds stay between both. Dissolves and layers agree with `SciPy`.
 //! O(frames × joints).
 //!
 //! # What it does not do

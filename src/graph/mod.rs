@@ -66,7 +66,7 @@
 //!
 //! # Accuracy and cost
 //!
-//! Graph and walk are those of a NumPy program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
+//! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
 //! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
 //!
 //! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are

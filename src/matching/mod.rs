@@ -59,9 +59,9 @@
 //!
 //! # Accuracy and cost
 //!
-//! The three searches agree, frame and cost, on 10,000 random questions. Features, roots and steering are those of an oracle in NumPy and
-//! SciPy. A recording replays bit for bit, at any rate of the screen. In the recorded scenarios the character stays within 10 cm of where it
-//! should be in the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick without a search O(joints).
+//! The three searches agree, frame and cost, on 10,000 random questions. Features, roots and steering are those of an oracle in `NumPy` and
+//! `SciPy`. A recording replays bit for bit, at any rate of the screen. In the recorded scenarios the character stays within 10 cm of where
+//! it should be in the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick without a search O(joints).
 //!
 //! # What it does not do
 //!

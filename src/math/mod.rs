@@ -51,7 +51,7 @@
 //!
 //! # Accuracy and cost
 //!
-//! Decays agree with SciPy to 1e-10. `log` undoes `exp` to 2e-5 radians up to nearly half a turn, and rotations of a millionth of a radian
+//! Decays agree with `SciPy` to 1e-10. `log` undoes `exp` to 2e-5 radians up to nearly half a turn, and rotations of a millionth of a radian
 //! keep their digits: logarithms do not go through `acos`, which loses half of them near the identity. Everything but curves through points
 //! and percentiles is O(1).
 //!

@@ -53,7 +53,7 @@
 //! # Accuracy and cost
 //!
 //! A path that is not edited gives its motion back to 1e-4 m and 1e-4 radians, and one that is moved rigidly moves it rigidly. Control
-//! points are those of SciPy's least squares to 1e-9 m. Joints of one frame keep their distances whatever is done to the path, until feet
+//! points are those of `SciPy`'s least squares to 1e-9 m. Joints of one frame keep their distances whatever is done to the path, until feet
 //! are planted. A fit is O(frames + control points), a carried motion O(frames × joints).
 //!
 //! # What it does not do

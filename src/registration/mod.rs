@@ -59,7 +59,7 @@
 //!
 //! # Accuracy and cost
 //!
-//! Alignments agree with SciPy's least squares to 1e-9 of the distance, and with a search through 20,000 turns. The fast distances differ
+//! Alignments agree with `SciPy`'s least squares to 1e-9 of the distance, and with a search through 20,000 turns. The fast distances differ
 //! from the definition ([`distances_directly`]) by less than 3e-7 m² in the mean square. Paths are the cheapest of *all* paths, tried one by
 //! one on small matrices. The search over a coarse grid comes within 5 % or 0.2 cm of the best pair of all frames. Cost for N frames, J
 //! joints, windows of K: O(N²J) once and O(N²) per window, in place of O(N²JK).

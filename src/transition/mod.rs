@@ -72,10 +72,10 @@
 //!
 //! # Accuracy and cost
 //!
-//! Decaying rotations agree with SciPy to 2e-5 radians; velocities stay continuous over every jump, also over one that comes while the last
-//! is still dying away (the quintic may brake hard: it must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and 0.001 cm, and
-//! a hundred cycles do not drift. The foot lock takes nine tenths of the slide from made walks and runs that go over into each other. Making
-//! is O(frames × joints), searching more.
+//! Decaying rotations agree with `SciPy` to 2e-5 radians; velocities stay continuous over every jump, also over one that comes while the
+//! last is still dying away (the quintic may brake hard: it must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and
+//! 0.001 cm, and a hundred cycles do not drift. The foot lock takes nine tenths of the slide from made walks and runs that go over into each
+//! other. Making is O(frames × joints), searching more.
 //!
 //! # What it does not do
 //!
