@@ -59,7 +59,7 @@
 //!     secs += stitcher.stitch(&graph, &stay)?.clip.frames() as f64 / set.fps();
 //!     jumps += usize::from(stay.jump.is_some());
 //! }
-//! // Twenty seconds of motion from two clips of three.
+//! // Twenty seconds of motion, from two clips of about three seconds.
 //! assert!(jumps > 5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
