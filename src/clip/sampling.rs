@@ -11,7 +11,8 @@ pub enum Interpolation {
     /// Positions on the straight line, rotations on the great circle (slerp).
     #[default]
     Linear,
-    /// Catmull-Rom on positions; on rotations the same in the tangent space of the nearer frame (C¹ velocity).
+    /// Catmull-Rom on positions (C¹); on rotations the same in the tangent space of the frame before, whose velocity is continuous where the axis
+    /// stays, and nearly so where steps are small.
     Cubic,
 }
 

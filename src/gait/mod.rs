@@ -1,16 +1,27 @@
 //! Gaits by speed: a walk and a run become every speed between, and a little beyond.
 //!
-//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts of the feet and closed ([`GaitCycle`]). Both are laid
-//! on one phase, so that strikes meet strikes and lifts meet lifts, and blended pose by pose ([`SpeedBlend`]): with speeds `v₁` and
-//! `v₂` the weight of the second is `w = (v - v₁)/(v₂ - v₁)`, the stride `(1 - w) v₁T₁ + w v₂T₂`, and the time of a cycle that stride over `v`. The way
-//! over the ground is made of the cycles' own steps in the character's frame.
+//! # The idea
 //!
-//! What it does not do: feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock) with the
-//! contacts that come along cleans up the rest.
+//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts of the feet and closed ([`GaitCycle`]).
+//! Both are laid on one phase, so that strikes meet strikes and lifts meet lifts, and blended pose by pose ([`SpeedBlend`]). Faster means
+//! two things at once, longer strides and more of them:
+//!
+//! ```text
+//! w = (v - v₁)/(v₂ - v₁)                    weight of the second gait
+//! stride = (1 - w) v₁T₁ + w v₂T₂            T: the time of a cycle
+//! T = stride / v
+//! ```
+//!
+//! In a walk a foot lifts after the other one has struck, in a run before. No single phase fits both legs, so each leg follows a clock of
+//! its own events ([`PhaseAlignment::Feet`]). Picture two wheels with spokes of uneven spacing, bent until the spokes lie on each other. The
+//! way over the ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets the speed be dragged while it plays:
+//! the phase goes on whatever the speed does.
+//!
+//! # Example
 //!
 //! ```
 //! use segue::blend::Source;
-//! use segue::clip::{ContactOptions, Contacts};
+//! use segue::clip::{ContactOptions, Contacts, character_frames, ground_speed};
 //! use segue::gait::{GaitCycle, SpeedBlend, SpeedOptions};
 //! use segue::skeleton::Roles;
 //! use segue::synth::{Action, Params, synthesize};
@@ -26,9 +37,30 @@
 //! }
 //! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;
-//! assert!((jog.facts.speed_mps - 2.5).abs() < 0.01 && jog.facts.weight > 0.4 && !jog.facts.extrapolated);
+//! assert!(jog.facts.weight > 0.4 && jog.facts.weight < 0.6 && !jog.facts.extrapolated);
+//! // What was asked for is made; its strides and its cadence lie between those of the gaits.
+//! let measured = ground_speed(&character_frames(&jog.clip, &roles), jog.clip.fps());
+//! assert!((measured - 2.5).abs() < 0.02 * 2.5);
+//! let [walk, run] = blend.speeds_mps().map(|speed| blend.facts(speed));
+//! assert!(walk.stride_m < jog.facts.stride_m && jog.facts.stride_m < run.stride_m);
+//! assert!(walk.cadence_spm < jog.facts.cadence_spm && jog.facts.cadence_spm < run.cadence_spm);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Accuracy and cost
+//!
+//! From walk to run the measured speed is the one asked for to 2 %. At its own speed each gait comes out as it is, to 1e-5 radians. A
+//! hundred cycles do not drift. Weights go from -0.25 to 1.25; beyond the two gaits the result is marked as a guess. A pose is O(joints).
+//!
+//! # What it does not do
+//!
+//! Feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock) with the contacts that come along cleans
+//! up the rest. Gaits need both feet in turn: whoever hops on one leg, or crawls, has no cycle here.
+//!
+//! # Sources
+//!
+//! Blending two cycles by speed is a classic exercise of animation courses. How each leg gets a clock of its own is told at
+//! [`PhaseAlignment`].
 
 mod cycle;
 mod phase;

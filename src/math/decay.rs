@@ -53,7 +53,7 @@ pub enum Decay {
     /// acceleration, and does not overshoot.
     ///
     /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most `5 |x| / closing speed`, and a first
-    /// acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve has a fourfold root at its end. Bollo
+    /// acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve is `(1 - t/T)⁵`. Bollo
     /// works on the offset's length and drops the velocity across it and away from 0. Here the whole vector is kept, so that the
     /// velocity stays continuous: the limits are those of the part along the offset, and they hold for the way along it. An offset near 0 with
     /// a high closing speed ends nearly at once, as Bollo's does.

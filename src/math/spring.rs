@@ -1,8 +1,8 @@
 //! Critically damped springs by half-life, and what a half-life means in seconds and frames.
 //!
-//! The half-life is a knob with a unit that a person can feel. It is the time in which a spring that started *in motion* (with the velocity of
-//! plain exponential decay) loses half of its way; from rest it takes 1.21 half-lives to lose half (Holden, "Spring-It-On: The Game Developer's
-//! Spring-Roll-Call", 2021). [`secs_until`] and [`alike_window_secs`] say what that comes to.
+//! The half-life is a knob with a unit that a person can feel. It is a half-life by convention: the damping is `2y = 4 ln 2 / h` (Holden,
+//! "Spring-It-On: The Game Developer's Spring-Roll-Call", 2021). From rest 59.7 % are left after one half-life, and half after 1.21.
+//! [`secs_until`] and [`alike_window_secs`] say what that comes to.
 
 use super::{Response, quat};
 use glam::{Quat, Vec3};

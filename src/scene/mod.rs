@@ -1,9 +1,63 @@
 //! What is to be seen, as plain data: cameras, limbs, lines and rings. It knows no GPU; the renderer knows no session.
 //!
-//! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a [`Camera`] and lists what it shows. Every
-//! skeleton has a [`Body`] from its bones' lengths alone, so that whatever loads can be seen at once.
+//! # The idea
+//!
+//! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a [`Camera`] and lists what it shows; the
+//! [`Director`] makes the list from a [`crate::session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths alone, a
+//! rounded cone along each bone, so that whatever loads can be seen at once.
+//!
+//! The camera goes round its target on a globe: yaw along the equator, pitch up to the pole.
+//!
+//! ```text
+//! eye   = target + distance · (sin yaw cos pitch, sin pitch, cos yaw cos pitch)
+//! pixel → ray from the eye → ground:  t = -origin.y / direction.y
+//! ```
+//!
+//! At yaw 0 it sees the face of a character that faces +Z, whose left hand is then on the right of the picture. A [`CameraRig`] draws it to
+//! its goal as a critically damped spring does.
 //!
 //! Colours here are `[red, green, blue, alpha]` in 0–1 as written in a palette (sRGB-encoded, alpha straight); see [`rgb`].
+//!
+//! # Example
+//!
+//! ```
+//! use glam::{Vec2, Vec3};
+//! use segue::scene::{Body, Bounds, Pane, Viewport, rgb};
+//! use segue::synth::{Action, Params, synthesize};
+//!
+//! let walk = synthesize(&Params::new(Action::Walk))?.clip;
+//! let (body, pose) = (Body::new(walk.skeleton(), None), walk.world_pose(0));
+//! let viewport = Viewport { x: 0, y: 0, width: 640, height: 360 };
+//! let mut pane = Pane { viewport, ..Pane::default() };
+//! pane.add_body(&body, &pose, rgb(0x00d9_c8b4));
+//! assert_eq!(pane.limbs.len(), body.limb_count());
+//!
+//! // The whole body in the picture.
+//! let mut bounds = Bounds::EMPTY;
+//! bounds.include_pose(&pose);
+//! pane.camera.frame(&bounds, viewport.aspect());
+//! let size = viewport.size();
+//! let is_seen = |at: Vec2| at.cmpge(Vec2::ZERO).all() && at.cmple(size).all();
+//! let seen_at = |&point: &Vec3| pane.camera.project(point, size).is_some_and(is_seen);
+//! assert!(pose.positions.iter().all(seen_at));
+//!
+//! // A place on the ground, to its pixel and back.
+//! let place = Vec3::new(0.3, 0.0, 0.2);
+//! let pixel = pane.camera.project(place, size).ok_or("behind the camera")?;
+//! let hit = pane.camera.ray(pixel, size).ground_hit().ok_or("no ground there")?;
+//! assert!(hit.distance(place) < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! The ray through a pixel comes back to that pixel within a tenth of one; a framed box fills the picture with a margin of 6 %; the rig's
+//! way does not depend on the frame rate. A stage is O(limbs shown) per frame.
+//!
+//! # What it does not do
+//!
+//! No meshes of its own: limbs are rounded cones. No light and no shadows are computed here: a [`Figure`] only says how strongly it darkens
+//! the ground.
 
 mod body;
 mod bounds;

@@ -67,7 +67,7 @@ fn read(text: &str, name: &str, expected: &str, most: usize) -> Result<Vec<(usiz
     Ok(pairs)
 }
 
-/// Writes pairs as [`read_pins`] and [`read_weights`] read them, in the order of the first.
+/// Writes pairs as the parameters `pins` and `warp_curve` hold them, as in `12-30,50-71`: in the order of the first, each once.
 #[must_use]
 pub fn write_pairs(pairs: &[(usize, usize)]) -> String {
     let mut pairs = pairs.to_vec();
