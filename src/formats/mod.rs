@@ -72,9 +72,9 @@ pub struct ImportedClip {
 }
 
 impl ImportedClip {
-    fn with_mesh(self, mesh: &Option<Arc<SkinnedMesh>>) -> Self {
+    fn with_mesh(self, mesh: Option<&Arc<SkinnedMesh>>) -> Self {
         Self {
-            mesh: mesh.clone(),
+            mesh: mesh.cloned(),
             ..self
         }
     }

@@ -305,7 +305,12 @@ impl Frame {
     /// Adds all solid figures in skins: those that share one follow each other, and are drawn at once.
     fn add_solid_skins(&mut self, pane: &Pane) -> Range<usize> {
         let first = self.solid_skins.len();
-        let solids = || pane.figures.iter().filter(|figure| !figure.ghost).filter_map(|figure| figure.skin.as_ref());
+        let solids = || {
+            pane.figures
+                .iter()
+                .filter(|figure| !figure.ghost)
+                .filter_map(|figure| figure.skin.as_ref())
+        };
         for skin in solids() {
             let mesh = self.mesh(&skin.mesh);
             if self.solid_skins[first..].iter().any(|draw| draw.mesh == mesh) {
@@ -352,7 +357,9 @@ impl Frame {
                 }
                 let start = self.limbs.len() as u32;
                 if shades {
-                    let low = limbs.iter().filter(|limb| !only_low || limb.a.y.min(limb.b.y) < LOW_SHADOW_HEIGHT_M);
+                    let low = limbs
+                        .iter()
+                        .filter(|limb| !only_low || limb.a.y.min(limb.b.y) < LOW_SHADOW_HEIGHT_M);
                     self.limbs.extend(low.filter_map(|limb| limb_instance(limb, figure.shadow)));
                 }
                 draw.casting = start..self.limbs.len() as u32;
@@ -362,7 +369,9 @@ impl Frame {
                     draw.casting = 0..0;
                 } else if only_low && draw.fine.is_empty() {
                     let start = draw.limbs().start;
-                    let low = self.limbs[start as usize..].iter().take_while(|limb| lowest(limb) < LOW_SHADOW_HEIGHT_M);
+                    let low = self.limbs[start as usize..]
+                        .iter()
+                        .take_while(|limb| lowest(limb) < LOW_SHADOW_HEIGHT_M);
                     draw.casting = start..start + low.count() as u32;
                 }
             }

@@ -10,6 +10,8 @@ pub(super) const MAP_SIZE: u32 = 2048;
 pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 /// A body farther than this from the middle of the picture casts no shadow: the others' would get coarse, metres.
 const FARTHEST: f32 = 16.0;
+/// From higher up no shadow reaches the ground: the map's depths would get coarse, metres.
+const HIGHEST: f32 = 30.0;
 /// About every body, for what its limbs do not tell of its skin, metres.
 const MARGIN: f32 = 0.08;
 
@@ -73,7 +75,7 @@ impl LightBox {
                     (low, high) = (low.min(on_map - reach), high.max(on_map + reach));
                     near = near.max(along + reach);
                     // From the ball's lower end along the light to the ground.
-                    far = far.min(along - reach - (point.y + reach).max(0.0) / key.y.max(0.1));
+                    far = far.min(along - reach - (point.y + reach).clamp(0.0, HIGHEST) / key.y.max(0.1));
                 }
             }
         }
@@ -81,8 +83,7 @@ impl LightBox {
         if !(half.is_finite() && near > far) {
             return None;
         }
-        let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5)
-            .exp2();
+        let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5).exp2();
         let texel = 2.0 * half_width / texels.max(1) as f32;
         let middle = ((low + high) * (0.5 / texel)).round() * texel;
         // Depths are of the texture's steps, not of the texels': they need not be snapped, but a still body's must stay.
@@ -215,7 +216,11 @@ mod tests {
     fn tiles_lie_side_by_side() {
         assert_eq!(tile(0, 1).width, MAP_SIZE);
         let tiles: Vec<_> = (0..4).map(|index| tile(index, 4)).collect();
-        assert!(tiles.iter().all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE));
+        assert!(
+            tiles
+                .iter()
+                .all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE)
+        );
         assert_eq!((tiles[3].x, tiles[3].y), (MAP_SIZE / 2, MAP_SIZE / 2));
     }
 }

@@ -14,7 +14,11 @@ use wgpu::Face::{Back, Front};
 /// The shaders as they are compiled: what all share comes first.
 pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("limb.wgsl"));
 pub(super) const SKIN: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("skin.wgsl"));
-pub(super) const KEY_SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("key_shadow.wgsl"));
+pub(super) const KEY_SHADOW: &str = concat!(
+    include_str!("view.wgsl"),
+    include_str!("light.wgsl"),
+    include_str!("key_shadow.wgsl")
+);
 pub(super) const SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("shadow.wgsl"));
 pub(super) const GROUND: &str = concat!(include_str!("view.wgsl"), include_str!("ground.wgsl"));
 pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("line.wgsl"));
@@ -517,11 +521,7 @@ fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat)
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("stage composite"),
         entries: &[
-            texture_entry(
-                0,
-                wgpu::ShaderStages::FRAGMENT,
-                wgpu::TextureSampleType::Float { filterable: true },
-            ),
+            texture_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::TextureSampleType::Float { filterable: true }),
             sampler_entry(1, wgpu::SamplerBindingType::Filtering),
         ],
     });

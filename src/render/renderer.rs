@@ -408,9 +408,15 @@ impl StageRenderer {
             pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
             let figures = view.drawn.figures.get(pane.figures.clone()).unwrap_or_default();
             let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
-            let glass = figures.iter().filter(|figure| figure.in_light).filter_map(|figure| figure.skin.as_ref());
+            let glass = figures
+                .iter()
+                .filter(|figure| figure.in_light)
+                .filter_map(|figure| figure.skin.as_ref());
             if let (Some(limbs), Some(pipeline)) = (
-                view.limbs.buffer.as_ref().filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
+                view.limbs
+                    .buffer
+                    .as_ref()
+                    .filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
                 self.pipelines.get(Brush::Cast),
             ) {
                 pass.set_pipeline(pipeline);
@@ -568,8 +574,13 @@ impl StageRenderer {
         for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
             if let Some(skin) = &figure.skin {
-                for brush in [Brush::SkinFront, Brush::SkinGhost] {
-                    if take(pass, brush) {
+                // Glass has an outline, too.
+                for (brush, wanted) in [
+                    (Brush::SkinFront, true),
+                    (Brush::SkinGhost, true),
+                    (Brush::SkinEdge, figure.in_light && has_edges),
+                ] {
+                    if wanted && take(pass, brush) {
                         self.draw_skin(pass, view, skin);
                     }
                 }

@@ -37,7 +37,13 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
         let weights = mesh.weights.get(index).copied().unwrap_or_default();
         let tint = mesh.colors.get(index).copied().unwrap_or([1.0; 4]);
         SkinVertex {
-            position: mesh.positions.get(index).copied().filter(|p| p.is_finite()).unwrap_or_default().to_array(),
+            position: mesh
+                .positions
+                .get(index)
+                .copied()
+                .filter(|p| p.is_finite())
+                .unwrap_or_default()
+                .to_array(),
             normal: normal.extend(0.0).to_array().map(|part| (part.clamp(-1.0, 1.0) * 32_767.0) as i16),
             joints: joints.map(|joint| joint.min(last_joint)),
             weights: weights.map(|weight| (weight.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16),

@@ -1,6 +1,6 @@
+use super::dress::Wardrobe;
 use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
-use super::dress::Wardrobe;
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::graph::Place;

@@ -75,9 +75,10 @@ impl Wardrobe {
 
     /// A mesh for a skeleton: the same for all skeletons that are equal, so that they are drawn together.
     fn mesh(&self, skeleton: &Arc<Skeleton>, roles: &Roles, build: Build) -> Arc<SkinnedMesh> {
-        let alike = self.bodies.iter().find(|(other, others_roles, _)| {
-            others_roles == roles && other.upgrade().is_some_and(|other| *other == **skeleton)
-        });
+        let alike = self
+            .bodies
+            .iter()
+            .find(|(other, others_roles, _)| others_roles == roles && other.upgrade().is_some_and(|other| *other == **skeleton));
         match alike.and_then(|(.., body)| body.skin()) {
             Some(mesh) => Arc::clone(mesh),
             None => Arc::new(SkinnedMesh::around(skeleton, roles, build)),

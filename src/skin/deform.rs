@@ -105,8 +105,8 @@ pub fn dual_quaternion(mesh: &SkinnedMesh, world_from_bind: &[RigidTransform], p
             let rotation = quat::renormalize(transform.rotation);
             let first = *pivot.get_or_insert(RigidTransform { rotation, ..transform });
             let rotation = quat::in_hemisphere_of(rotation, first.rotation);
-            real = real + rotation * weight;
-            dual = dual + dual_part(rotation, transform.translation) * weight;
+            real += rotation * weight;
+            dual += dual_part(rotation, transform.translation) * weight;
         }
         let Some(pivot) = pivot else { return (position, normal) };
         let length = real.length();

@@ -17,6 +17,14 @@ struct Canvas {
     pixels: Vec<u8>,
 }
 
+/// From where a mesh is seen: turned by `yaw` about the vertical through `middle`, which comes to the pixel `center`; `scale` in pixels per metre.
+struct View {
+    yaw: f32,
+    middle: Vec3,
+    center: [f32; 2],
+    scale: f32,
+}
+
 impl Canvas {
     fn new(width: usize, height: usize) -> Self {
         Self {
@@ -27,8 +35,14 @@ impl Canvas {
         }
     }
 
-    /// Draws a mesh turned by `yaw` about the vertical through `middle`, which comes to the pixel `center`.
-    fn draw(&mut self, positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], yaw: f32, middle: Vec3, center: [f32; 2], scale: f32) {
+    /// Draws a mesh whose vertices are `positions` and `normals`, as `view` sees it.
+    fn draw(&mut self, positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], view: &View) {
+        let View {
+            yaw,
+            middle,
+            center,
+            scale,
+        } = *view;
         let turn = Quat::from_rotation_x(0.12) * Quat::from_rotation_y(yaw);
         let light = Vec3::new(-0.45, 0.7, 0.55).normalize_or_zero();
         for triangle in triangles {
@@ -114,7 +128,13 @@ fn picture(name: &str, mesh: &SkinnedMesh, poses: &[WorldPose]) {
         let scale = (cell[0] * 0.96 / wide).min(cell[1] * 0.92 / (high - low).y.max(1e-3));
         for (column, yaw) in views.into_iter().enumerate() {
             let center = [cell[0] * (column as f32 + 0.5), cell[1] * (row as f32 + 0.5)];
-            canvas.draw(&positions, &normals, &mesh.triangles, yaw, (low + high) * 0.5, center, scale);
+            let view = View {
+                yaw,
+                middle: (low + high) * 0.5,
+                center,
+                scale,
+            };
+            canvas.draw(&positions, &normals, &mesh.triangles, &view);
         }
     }
     std::fs::write(folder.join(format!("{name}.png")), canvas.png()).unwrap();

@@ -101,12 +101,12 @@ impl SkinnedMesh {
     /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind pose that follows this joint alone. Joints that the
     /// pose does not have stay where the bind pose is.
     pub fn world_from_bind(&self, world: &WorldPose) -> impl Iterator<Item = RigidTransform> {
-        self.bind.iter().enumerate().map(|(joint, joint_from_bind)| {
-            match (world.positions.get(joint), world.rotations.get(joint)) {
+        self.bind.iter().enumerate().map(
+            |(joint, joint_from_bind)| match (world.positions.get(joint), world.rotations.get(joint)) {
                 (Some(&translation), Some(&rotation)) => RigidTransform { rotation, translation } * *joint_from_bind,
                 _ => RigidTransform::IDENTITY,
-            }
-        })
+            },
+        )
     }
 
     /// The same in a list that is overwritten.

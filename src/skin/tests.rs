@@ -1,4 +1,4 @@
-//! Skinning against numbers of NumPy and SciPy and closed forms; bodies against what every body must be.
+//! Skinning against numbers of another program and closed forms; bodies against what every body must be.
 
 use super::*;
 use crate::math::quat;

@@ -558,7 +558,10 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
-        (Key::CameraDistance, Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0))),
+        (
+            Key::CameraDistance,
+            Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0)),
+        ),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

@@ -211,7 +211,7 @@ impl Context<'_> {
             let raw = self.sampled(character, motion)?;
             clips.push(
                 self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?
-                    .with_mesh(&skin),
+                    .with_mesh(skin.as_ref()),
             );
         }
         if clips.len() == before {
@@ -219,7 +219,7 @@ impl Context<'_> {
             let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
             clips.push(
                 self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?
-                    .with_mesh(&skin),
+                    .with_mesh(skin.as_ref()),
             );
         }
         Ok(())

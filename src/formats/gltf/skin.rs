@@ -253,12 +253,12 @@ impl Part {
             self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
         let computed = crate::skin::normals(&self.positions, &self.triangles);
-        if !has_normals {
-            self.normals = computed;
-        } else {
+        if has_normals {
             for (normal, computed) in self.normals.iter_mut().zip(computed) {
                 *normal = normal.try_normalize().unwrap_or(computed);
             }
+        } else {
+            self.normals = computed;
         }
         Ok(())
     }
@@ -304,8 +304,10 @@ fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
 
 /// A part of a linear colour as written in a palette (IEC 61966-2-1).
 fn encoded(linear: f32) -> f32 {
-    let linear = if linear.is_finite() { linear.clamp(0.0, 1.0) } else { 1.0 };
-    if linear <= 0.003_130_8 {
+    if !linear.is_finite() || linear >= 1.0 {
+        1.0
+    } else if linear <= 0.003_130_8 {
+        let linear = linear.max(0.0);
         linear * 12.92
     } else {
         1.055 * linear.powf(1.0 / 2.4) - 0.055

@@ -156,7 +156,14 @@ fn a_clip_comes_back_from_its_file() {
         }
     }
     // At another rate, and without frames.
-    let half = write_glb(&clip, &GlbOptions { fps: Some(60.0) }).unwrap();
+    let half = write_glb(
+        &clip,
+        &GlbOptions {
+            fps: Some(60.0),
+            ..GlbOptions::default()
+        },
+    )
+    .unwrap();
     assert_eq!(
         only(&read("x.glb", &half, &|_| None, &ImportOptions::default()).unwrap()).frames(),
         79

@@ -1,3 +1,4 @@
+use super::bones::Bones;
 use crate::clip::{Clip, Interpolation, resample};
 use crate::skeleton::{Joint, Roles, Skeleton};
 use crate::skin::{Build, SkinnedMesh};
@@ -13,6 +14,9 @@ pub(super) const GENERATOR: &str = "Segue ";
 pub struct GlbOptions {
     /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
     pub fps: Option<f64>,
+    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around`] instead of simple bones: about half a megabyte.
+    #[serde(default)]
+    pub smooth: bool,
 }
 
 /// Why a clip is no `.glb` file.
@@ -26,8 +30,8 @@ pub enum GlbError {
     TooManyJoints(usize),
 }
 
-/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with the smooth body that
-/// [`SkinnedMesh::around`] makes, and an animation with the rotations of all joints and the translations of the root and of joints that move.
+/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body, and an
+/// animation with the rotations of all joints and the translations of the root and of joints that move.
 ///
 /// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
 /// (metres) and rotations (radians) are the same to 1e-5.
@@ -47,7 +51,13 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     let mut nodes = nodes(skeleton);
     let body = nodes.len();
     nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
-    let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default());
+    let mesh = if options.smooth {
+        SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default())
+    } else {
+        let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
+        let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();
+        Bones::around(skeleton, &positions).into_mesh(&positions)
+    };
     let inverse_bind: Vec<f32> = (mesh.bind.iter())
         .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
         .collect();
@@ -117,7 +127,7 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize) -> Value {
         json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
     );
     let corners = mesh.triangles.as_flattened();
-    let (component, indices): (u32, Vec<u8>) = if count <= usize::from(u16::MAX) {
+    let (component, indices): (u32, Vec<u8>) = if u16::try_from(count).is_ok() {
         (
             UNSIGNED_SHORT,
             corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect(),

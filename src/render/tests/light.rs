@@ -83,7 +83,10 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
     let reach = [edge - 0.05, edge + 0.05];
     let (low, high) = (light(0.45, &reach), light(1.3, &reach));
     let (low, high) = (low[1] - low[0], high[1] - high[0]);
-    assert!(low > high + 8 && high > 0, "over 10 cm {low} levels below a low ball, {high} below a high one");
+    assert!(
+        low > high + 8 && high > 0,
+        "over 10 cm {low} levels below a low ball, {high} below a high one"
+    );
 }
 
 #[test]
@@ -119,9 +122,18 @@ fn a_figure_on_all_stages() {
     let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
     for (name, look, theme) in [("dark", Look::DARK, 0), ("light", Look::LIGHT, 1), ("paper", Look::PAPER, 1)] {
         for (scene, link) in [
-            ("blend", "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4"),
-            ("limbs", "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4&look=limbs"),
-            ("both", "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4&look=both"),
+            (
+                "blend",
+                "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4",
+            ),
+            (
+                "limbs",
+                "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4&look=limbs",
+            ),
+            (
+                "both",
+                "lab=blend&a=walk&b=run&compare=blend_window:30,15,10&t=2.9&camera_distance=4&look=both",
+            ),
         ] {
             if scene != "blend" && name == "light" {
                 continue;

@@ -111,7 +111,12 @@ fn the_gpu_skins_as_the_plain_sums_do() {
         assert!(wrong < 40, "{name}: {wrong} pixels differ");
         pictures.push(image);
     }
-    let differ = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|(a, b)| a.abs_diff(**b) > 30).count();
+    let differ = pictures[0]
+        .rgba
+        .iter()
+        .zip(&pictures[1].rgba)
+        .filter(|(a, b)| a.abs_diff(**b) > 30)
+        .count();
     assert!(differ > 1_000, "a candy wrapper is to be seen");
 }
 
@@ -149,12 +154,16 @@ fn session(link: &str) -> Session {
 fn a_twisted_forearm_in_both_ways_of_skinning() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1200, 700];
-    let session = session("lab=view&a=idle&t=0.4&compare=skinning:dual,linear&twist=170&camera_distance=1.3&follow_joint=left%20hand&trail=off");
+    let session =
+        session("lab=view&a=idle&t=0.4&compare=skinning:dual,linear&twist=170&camera_distance=1.3&follow_joint=left%20hand&trail=off");
     let panes = session.panes().len();
     assert_eq!(panes, 2);
     let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
     let stage = Director::default().stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
-    assert_eq!(stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(), [Skinning::Dual, Skinning::Linear]);
+    assert_eq!(
+        stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(),
+        [Skinning::Dual, Skinning::Linear]
+    );
     gpu.draw("twist", &stage, size);
 }
 
@@ -164,12 +173,10 @@ fn statures() {
     let size = [1400, 560];
     let viewports: Vec<Viewport> = Viewport::columns(size[0], size[1], 4, 1).collect();
     let mut all = Stage::default();
-    for (viewport, stature) in viewports.into_iter().zip([
-        "figure_height=1",
-        "figure_height=0.6",
-        "figure_build=0.7",
-        "figure_build=1.5",
-    ]) {
+    for (viewport, stature) in viewports
+        .into_iter()
+        .zip(["figure_height=1", "figure_height=0.6", "figure_build=0.7", "figure_build=1.5"])
+    {
         let session = session(&format!("lab=view&a=walk&t=1.2&{stature}"));
         let stage = Director::default().stage(&session, &[(0, viewport)], 1.0, Look::LIGHT, &colors(1), 0.0);
         // The world about a figure of 60 % is shown smaller by as much: from so much farther off, and with wider cells.
@@ -208,11 +215,16 @@ fn a_hundred_characters() {
         let made = Instant::now();
         frame.build(&stage, size, size, Quality::Full);
         let built = Instant::now();
-        let mut encoder = gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
         gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, &stage, size);
         if round == 0 {
             // One draw for all of them.
-            assert_eq!((stage.panes[0].figures.len(), frame.solid_skins.len(), frame.meshes.len()), (100, 1, 1));
+            assert_eq!(
+                (stage.panes[0].figures.len(), frame.solid_skins.len(), frame.meshes.len()),
+                (100, 1, 1)
+            );
             continue;
         }
         scene += (made - start).as_secs_f64();
@@ -249,7 +261,9 @@ fn time_in_software() {
                 session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
                 let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
                 let start = Instant::now();
-                let mut encoder = gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+                let mut encoder = gpu
+                    .device
+                    .create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
                 gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 9, &stage, size);
                 let submitted = gpu.queue.submit([encoder.finish()]);
                 let wait = eframe::wgpu::PollType::Wait {

@@ -5,8 +5,8 @@ mod tests;
 
 use super::{Color, Limb};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
-use crate::skin::{Character, Drive, SkinnedMesh};
 use crate::skin::shapes::{Placed, Shape, shapes};
+use crate::skin::{Character, Drive, SkinnedMesh};
 use std::sync::Arc;
 
 /// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.

@@ -211,7 +211,14 @@ fn person(frames: usize) -> Arc<[u8]> {
     let walk = crate::synth::synthesize(&crate::synth::Params::new(crate::synth::Action::Walk))
         .unwrap()
         .clip;
-    let mut bytes = write_glb(&walk.crop(0..frames).unwrap(), &GlbOptions::default()).unwrap();
+    let mut bytes = write_glb(
+        &walk.crop(0..frames).unwrap(),
+        &GlbOptions {
+            smooth: true,
+            ..GlbOptions::default()
+        },
+    )
+    .unwrap();
     let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
     bytes[at..at + 5].copy_from_slice(b"Other");
     bytes.into()
