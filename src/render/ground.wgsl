@@ -58,5 +58,7 @@ fn fs_ground(in: Pixel) -> @location(0) vec4f {
 // Once more in full shadow, blended by what the shadows left of the target's alpha.
 @fragment
 fn fs_shade(in: Pixel) -> @location(0) vec4f {
-    return vec4f(ground_color(in) * (1.0 - view.focus.w * vec3f(1.0, 0.97, 0.90)) + dither(in.clip.xy), 1.0);
+    // From below the ground is not seen, nor what lies on it.
+    let dark = view.focus.w * f32(view.eye.y > 0.0);
+    return vec4f(ground_color(in) * (1.0 - dark * vec3f(1.0, 0.97, 0.90)) + dither(in.clip.xy), 1.0);
 }

@@ -10,6 +10,8 @@ pub(super) const MAP_SIZE: u32 = 2048;
 pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 /// A body farther than this from the middle of the picture casts no shadow: the others' would get coarse, metres.
 const FARTHEST: f32 = 16.0;
+/// From higher up no shadow reaches the ground: the map's depths would get coarse, metres.
+const HIGHEST: f32 = 30.0;
 /// About every body, for what its limbs do not tell of its skin, metres.
 const MARGIN: f32 = 0.08;
 
@@ -73,7 +75,7 @@ impl LightBox {
                     (low, high) = (low.min(on_map - reach), high.max(on_map + reach));
                     near = near.max(along + reach);
                     // From the ball's lower end along the light to the ground.
-                    far = far.min(along - reach - (point.y + reach).max(0.0) / key.y.max(0.1));
+                    far = far.min(along - reach - (point.y + reach).clamp(0.0, HIGHEST) / key.y.max(0.1));
                 }
             }
         }

@@ -574,8 +574,13 @@ impl StageRenderer {
         for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
             if let Some(skin) = &figure.skin {
-                for brush in [Brush::SkinFront, Brush::SkinGhost] {
-                    if take(pass, brush) {
+                // Glass has an outline, too.
+                for (brush, wanted) in [
+                    (Brush::SkinFront, true),
+                    (Brush::SkinGhost, true),
+                    (Brush::SkinEdge, figure.in_light && has_edges),
+                ] {
+                    if wanted && take(pass, brush) {
                         self.draw_skin(pass, view, skin);
                     }
                 }

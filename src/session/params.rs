@@ -475,9 +475,9 @@ parameters! {
     Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
     Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
-    FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.01), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
-    Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once. Twist a forearm: linear blend wraps it like a candy, dual quaternions keep its girth.";
-    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does: a test of the skin.";
+    FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.05), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
+    Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once: twist a forearm to see the difference.";
+    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does. Linear blend wraps the wrist like a candy, dual quaternions keep it round.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
     Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";

@@ -330,7 +330,8 @@ fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mu
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
             if matches!(param.kind, Kind::Choice(choices) if choices.len() <= 4) {
-                ui.label(egui::RichText::new(tr(param.label, ui)).font(theme_of(ui).font(Type::Label)));
+                ui.label(egui::RichText::new(tr(param.label, ui)).font(theme_of(ui).font(Type::Label)))
+                    .on_hover_text(tr(param.help, ui));
             }
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
