@@ -21,7 +21,6 @@ use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
-use segue::scene::Look;
 use segue::session::reading::{Content, LARGE_BYTES};
 use segue::session::{Command, CommandError, Key, Lesson, Level, Request, Session, Value, link};
 use speech::{Speech, Spoken};
@@ -106,6 +105,8 @@ pub(crate) struct Segue {
     picture: Picture,
     /// What is said when the clipboard has taken what it was given.
     copied: &'static str,
+    /// Whether the work and the link were here once.
+    has_begun: bool,
     speech: Speech,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
@@ -188,6 +189,7 @@ impl Segue {
             picture: Picture::default(),
             film: None,
             copied: ui::LINK_COPIED,
+            has_begun: false,
             speech: Speech::new(),
         }
     }
@@ -231,6 +233,13 @@ impl Segue {
         self.session.apply(command)
     }
 
+    /// What happens once, when the work and the link are here: who wants little motion starts it by hand.
+    fn begin(&mut self) {
+        if platform::prefers_stillness() && self.session.params().is_on(Key::Play) {
+            self.obey(Command::TogglePlay);
+        }
+    }
+
     fn tick(&mut self) -> bool {
         let now_ms = platform::now_ms();
         let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
@@ -254,6 +263,9 @@ impl Segue {
         }
         if self.keeper.is_waiting() {
             return true;
+        }
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.begin();
         }
         self.send_requests();
         let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
@@ -289,6 +301,12 @@ impl Segue {
                 self.begin_reading(&name, file);
             }
             Incoming::Reading { task, news } => self.hear_of_reading(task, news),
+            Incoming::Picture(picture) => {
+                self.copied = ui::REPORT_COPIED;
+                if let Some(ctx) = self.inbox.ctx() {
+                    platform::copy_text(self.report(picture.as_deref()), &ctx, &self.inbox);
+                }
+            }
             Incoming::Copied => self.session.say(Level::Info, self.copied),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
@@ -469,6 +487,10 @@ impl Segue {
             secs: self.film.as_ref().map(platform::Film::secs),
         };
         let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
+        let said = ui.ctx().output(egui::PlatformOutput::events_description);
+        if !said.is_empty() {
+            platform::announce(&said);
+        }
         for command in out.commands {
             self.obey(command);
         }
@@ -476,8 +498,8 @@ impl Segue {
             self.act(&action, ui.ctx());
         }
         // Only now: what a slider has just changed is in this picture, not in the next.
-        let theme = ui::theme::theme_of(ui);
-        let look = if theme.dark { Look::DARK } else { Look::LIGHT };
+        let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
+        let look = ui::stage_look(&self.session, theme);
         self.picture.mark_joint(self.panels.joints_open);
         self.picture.show_pair(self.panels.hovered_pair);
         self.picture.mark_path(self.panels.path_marks(&self.session));
@@ -500,6 +522,9 @@ impl Segue {
         let theme = ui::theme(&self.session, system_dark);
         if self.window.theme != Some(theme) {
             theme.install(ctx);
+            if platform::prefers_stillness() {
+                ctx.all_styles_mut(|style| style.animation_time = 0.0);
+            }
             ui::kit::ENGLISH.install(ctx);
             self.window.theme = Some(theme);
         }
@@ -517,6 +542,11 @@ impl Segue {
             Action::CopyText(text) => {
                 self.copied = ui::TABLE_COPIED;
                 platform::copy_text(text.clone(), ctx, &self.inbox);
+            }
+            Action::CopyReport => {
+                if let Some(stage) = self.picture.place() {
+                    platform::take_picture(stage, &self.inbox);
+                }
             }
             Action::SaveText { name, mime, text } => platform::download(name, mime, text.as_bytes(), &self.inbox),
             Action::Save { which, how } => match self.export_as(which, how) {

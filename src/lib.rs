@@ -24,5 +24,6 @@ pub mod registration;
 pub mod scene;
 pub mod session;
 pub mod skeleton;
+pub mod skin;
 pub mod synth;
 pub mod transition;

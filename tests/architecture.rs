@@ -6,11 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of the library, each with those that its code may name beside itself.
-const LIBRARY: [(&str, &str); 15] = [
+const LIBRARY: [(&str, &str); 16] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
-    ("formats", "math skeleton clip"),
+    ("skin", "math skeleton clip"),
+    ("formats", "math skeleton clip skin"),
     ("synth", "math skeleton clip"),
     ("registration", "math skeleton clip"),
     ("transition", "math skeleton clip registration blend"),
@@ -34,16 +35,17 @@ const APP: [(&str, &str); 5] = [
 ];
 
 const MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics";
-const ALL_MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics graph path matching";
+const ALL_MOTION: &str = "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching";
 const ALL_MOTION_AND_SESSION: &str =
-    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session";
+    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session";
 const LIBRARY_WITHOUT_SESSION: &str =
-    "math skeleton clip formats synth registration transition gait blend metrics graph path matching scene";
-const WHOLE_LIBRARY: &str = "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene";
+    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching scene";
+const WHOLE_LIBRARY: &str =
+    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene";
 const WHOLE_LIBRARY_AND_APP: &str =
-    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene app";
+    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene app";
 const EVERYTHING: &str =
-    "math skeleton clip formats synth registration transition gait blend metrics graph path matching session scene render ui platform";
+    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene render ui platform";
 
 /// What the library never names: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 13] = [

@@ -148,7 +148,17 @@ fn files_for_other_readers() {
         };
         let save = |ending: &str, bytes: &[u8]| fs::write(folder.join(format!("{name}.{ending}")), bytes).unwrap();
         save("bvh", write(&clip, &options).as_bytes());
-        save("glb", &write_glb(&clip, &GlbOptions { fps: options.fps }).unwrap());
+        save(
+            "glb",
+            &write_glb(
+                &clip,
+                &GlbOptions {
+                    fps: options.fps,
+                    smooth: true,
+                },
+            )
+            .unwrap(),
+        );
         save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
         writeln!(list, "{name} {}", unit(&clip, &options)).unwrap();
     }

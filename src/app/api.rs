@@ -10,7 +10,9 @@ use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
 use segue::session::export::{ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
-use segue::session::{ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, Outcome, PARAMS, Pane, Param, Value, frame_at};
+use segue::session::{
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, Outcome, PARAMS, Pane, Param, ReportFacts, Value, frame_at, report,
+};
 use segue::skeleton::Side;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -240,6 +242,16 @@ impl Segue {
     /// The link that restores this state.
     pub(crate) fn url(&self) -> String {
         platform::full_link(&link_query(&self.session))
+    }
+
+    /// What is shown, in Markdown. `picture` is an address, such as one that is the picture itself.
+    pub(crate) fn report(&self, picture: Option<&str>) -> String {
+        let facts = ReportFacts {
+            link: &self.url(),
+            picture,
+            backend: self.window.backend,
+        };
+        report(&self.session, &facts)
     }
 
     /// Plays or pauses.

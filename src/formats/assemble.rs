@@ -54,6 +54,7 @@ pub(super) fn assemble(
             t_pose_first_row,
             t_pose_dropped: dropped,
             measure,
+            mesh: None,
         });
     }
     Ok(clips)

@@ -24,6 +24,8 @@ pub use measure::{CMU_METRES_PER_UNIT, Measure};
 pub use warning::{ImportWarning, WarningKind};
 
 use crate::clip::{Clip, UpAxis};
+use crate::skin::SkinnedMesh;
+use std::sync::Arc;
 
 /// What a person may know better than the file.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -65,6 +67,17 @@ pub struct ImportedClip {
     pub t_pose_dropped: bool,
     /// The unit and up axis that were found or given; its text is a note for people.
     pub measure: Measure,
+    /// The character's own mesh, bound to the clip's skeleton; all clips of one character share it.
+    pub mesh: Option<Arc<SkinnedMesh>>,
+}
+
+impl ImportedClip {
+    fn with_mesh(self, mesh: Option<&Arc<SkinnedMesh>>) -> Self {
+        Self {
+            mesh: mesh.cloned(),
+            ..self
+        }
+    }
 }
 
 /// What a file holds.

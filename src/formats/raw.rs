@@ -129,6 +129,9 @@ fn y_up_from_z_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }
 
+/// The same as a rotation.
+pub(super) const Y_UP_FROM_Z_UP: Quat = Quat::from_xyzw(-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
+
 fn with_end_sites(joints: &[Joint], world: WorldPose) -> Vec<Vec3> {
     let ends = joints
         .iter()

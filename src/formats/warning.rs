@@ -134,6 +134,15 @@ pub enum WarningKind {
     },
     /// No unit of length makes this skeleton the size of a person: centimetres are taken.
     UnknownUnit,
+    /// Images of materials: the colour without them is taken.
+    Textures,
+    /// Meshes that change their shape by morph targets: they keep the one they have.
+    MorphTargets,
+    /// Meshes with a skin that cannot be read: left out.
+    BrokenMesh {
+        /// Why the first of them cannot be read.
+        why: String,
+    },
 }
 
 /// One line on one kind of oddity.
@@ -280,6 +289,11 @@ impl fmt::Display for ImportWarning {
                 metres.abs() * 100.0,
                 if *metres > 0.0 { "above" } else { "below" }
             ),
+            WarningKind::Textures => write!(f, "{} left out; the plain colour was taken", n("texture")),
+            WarningKind::MorphTargets => write!(f, "{} with morph targets; they keep their shape", n("surface")),
+            WarningKind::BrokenMesh { why } => {
+                write!(f, "{} left out; the first has {why}", n("surface"))
+            }
             WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
         }
     }

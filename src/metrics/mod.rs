@@ -1,14 +1,17 @@
 //! Artefacts as numbers with a unit: what a viewer would point at, measured.
 
 mod deviation;
+mod lowest;
 mod profile;
 mod slide;
 mod transition;
+mod whole;
 
 pub use deviation::deviations;
 pub use profile::Profile;
 pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
 pub use transition::{Subject, TransitionMetrics};
+pub use whole::{ClipMeter, ClipMetrics};
 
 /// Which way a number should go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

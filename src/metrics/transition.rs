@@ -1,4 +1,5 @@
 use super::Metric;
+use super::lowest::LowPoints;
 use super::profile::{Profile, turn};
 use crate::clip::{Clip, facing, stillest_step, turn_change};
 use crate::math::{Planar, wrap_angle};
@@ -206,13 +207,7 @@ impl Around {
         let frames =
             subject.start.saturating_sub(margin.max(1)).min(clip.frames())..steps.end().saturating_add(margin + 1).min(clip.frames());
         let points = Side::BOTH.map(|side| subject.roles.foot_points(clip.skeleton(), side));
-        let tips: Vec<(usize, Vec3)> = clip
-            .skeleton()
-            .joints()
-            .iter()
-            .enumerate()
-            .filter_map(|(joint, j)| j.end_site.map(|end| (joint, end)))
-            .collect();
+        let low_points = LowPoints::of(clip.skeleton());
         let motion_root = subject.a.source.motion_root().max(subject.b.source.motion_root());
         let mut around = Self {
             frames: frames.clone(),
@@ -235,10 +230,7 @@ impl Around {
                 feet.push(points.iter().map(|&(joint, point)| world.point(joint, point)).collect());
             }
             if (subject.start.saturating_sub(1)..=*steps.end()).contains(&frame) {
-                let joints = world.positions.iter().map(|p| p.y);
-                let low = joints
-                    .chain(tips.iter().map(|&(joint, end)| world.point(joint, end).y))
-                    .min_by(f32::total_cmp);
+                let low = low_points.lowest(&world);
                 around.lowest = around.lowest.into_iter().chain(low).min_by(f32::total_cmp);
             }
         }

@@ -37,6 +37,8 @@ pub(crate) enum Incoming {
     },
     /// The text that was to be copied is in the clipboard.
     Copied,
+    /// The picture that was asked for, as an address that is the picture itself; `None` where none could be taken.
+    Picture(Option<String>),
     /// A bundled take.
     Sample {
         /// Which.

@@ -1,9 +1,12 @@
 //! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
 
+use super::light::{self, LightBox, MAP_SIZE};
 use super::renderer::Quality;
-use glam::{Vec3, Vec4};
-use segue::scene::{Color, Figure, Layer, Lens, Limb, Pane, Ring, Stage, Stroke, Viewport};
+use glam::Vec4;
+use segue::scene::{Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport};
+use segue::skin::SkinnedMesh;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Limbs of one body that melt into the others and shade them.
 const NEIGHBOURS: usize = 48;
@@ -24,7 +27,20 @@ pub(super) struct LimbInstance {
     flat: [f32; 4],
     color: [u8; 4],
     near: [u8; NEAREST],
+    shadow: f32,
 }
+
+/// A figure in its skin.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct SkinInstance {
+    /// The first of its joints; where its colour is from, as in skin.wgsl.
+    figure: [u32; 2],
+    color: [u8; 4],
+}
+
+/// Two texels of a joint: see skin.wgsl.
+pub(super) type JointTexels = [[f32; 4]; 2];
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -60,6 +76,12 @@ pub(super) struct ViewUniform {
     grid: Color,
     edge: Color,
     style: [f32; 4],
+    light_center: [f32; 4],
+    light_right: [f32; 4],
+    light_up: [f32; 4],
+    light_tile: [f32; 4],
+    light_tile_metres: [f32; 4],
+    more: [f32; 4],
 }
 
 impl ViewUniform {
@@ -67,9 +89,30 @@ impl ViewUniform {
     pub(super) fn has_edges(&self) -> bool {
         self.edge[3] > 0.0 && self.style[0] > 0.0
     }
+
+    /// Fits the light map's part to the bodies of a pane; `false` where none casts a shadow.
+    fn add_light(&mut self, pane: &Pane, look: &Look, tile: Viewport) -> bool {
+        let key = Vec4::from(self.key).truncate();
+        let Some(fit) = LightBox::about(pane, key, tile.width) else {
+            return false;
+        };
+        let texel = 2.0 * fit.half_width / tile.width as f32;
+        self.light_center = fit.center.extend(fit.half_width).to_array();
+        self.light_right = fit.right.extend(fit.half_depth).to_array();
+        self.light_up = fit.up.extend(1.0).to_array();
+        self.light_tile = [tile.x, tile.y, tile.width, tile.height].map(|texels| texels as f32 / MAP_SIZE as f32);
+        let [spread, widest] = if look.flat { [0.0, 0.0] } else { [SPREAD, WIDEST_M] };
+        self.light_tile_metres = [texel, spread, widest, look.key_shadow];
+        true
+    }
 }
 
-/// `Figure` of limb.wgsl and shadow.wgsl.
+/// The main light's radius over its distance: how much wider the edge of a shadow gets with every metre.
+const SPREAD: f32 = 0.055;
+/// The widest that the edge of a shadow gets to either side, metres.
+const WIDEST_M: f32 = 0.13;
+
+/// `Figure` of limb.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct FigureUniform {
@@ -77,15 +120,45 @@ pub(super) struct FigureUniform {
     neighbours: [[f32; 4]; 3 * NEIGHBOURS],
 }
 
-/// One body in the instance buffers.
+/// One body in the instance buffers: of limbs, or in a skin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FigureDraw {
+    /// Its block of [`Frame::figure_uniforms`], where it is of limbs.
+    pub(super) uniform: usize,
+    pub(super) skin: Option<SkinDraw>,
     pub(super) fine: Range<u32>,
     pub(super) coarse: Range<u32>,
     /// The limbs whose shadow is drawn.
     pub(super) casting: Range<u32>,
     pub(super) ghost: bool,
+    /// Whether it keeps the main light off.
+    pub(super) in_light: bool,
     depth: f32,
+}
+
+impl FigureDraw {
+    /// Its limbs.
+    pub(super) fn limbs(&self) -> Range<u32> {
+        self.fine.start..self.coarse.end
+    }
+}
+
+/// Figures in the same skin, one instance each.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SkinDraw {
+    /// Into [`Frame::meshes`].
+    pub(super) mesh: usize,
+    pub(super) instances: Range<u32>,
+}
+
+/// A mesh: itself, and no other that is alike.
+#[derive(Clone)]
+pub(super) struct Mesh(pub(super) Arc<SkinnedMesh>);
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 /// One pane in the instance buffers.
@@ -94,9 +167,13 @@ pub(super) struct PaneDraw {
     pub(super) viewport: Viewport,
     /// Into [`Frame::figures`]: solid ones first, then ghosts from far to near.
     pub(super) figures: Range<usize>,
+    /// Into [`Frame::solid_skins`]: all solid figures in skins.
+    pub(super) solid_skins: Range<usize>,
     /// Strokes on the ground, in space, and over everything.
     pub(super) strokes: [Range<u32>; 3],
     pub(super) rings: Range<u32>,
+    /// The pane's part of the light map, where it has bodies that cast shadows.
+    pub(super) lit: Option<Viewport>,
 }
 
 /// A stage, ready for the GPU.
@@ -107,6 +184,10 @@ pub(super) struct Frame {
     pub(super) figures: Vec<FigureDraw>,
     pub(super) figure_uniforms: Vec<FigureUniform>,
     pub(super) limbs: Vec<LimbInstance>,
+    pub(super) skins: Vec<SkinInstance>,
+    pub(super) solid_skins: Vec<SkinDraw>,
+    pub(super) joints: Vec<JointTexels>,
+    pub(super) meshes: Vec<Mesh>,
     pub(super) strokes: Vec<StrokeInstance>,
     pub(super) rings: Vec<RingInstance>,
     pub(super) panes: Vec<PaneDraw>,
@@ -147,6 +228,10 @@ impl Frame {
         self.figures.clear();
         self.figure_uniforms.clear();
         self.limbs.clear();
+        self.skins.clear();
+        self.solid_skins.clear();
+        self.joints.clear();
+        self.meshes.clear();
         self.strokes.clear();
         self.rings.clear();
         self.panes.clear();
@@ -155,7 +240,8 @@ impl Frame {
             if viewport.width == 0 || viewport.height == 0 {
                 continue;
             }
-            let figures = self.add_figures(pane, viewport, quality);
+            let solid_skins = self.add_solid_skins(pane);
+            let figures = self.add_figures(pane, viewport, stage.look.flat, quality);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
                 self.strokes
@@ -164,90 +250,183 @@ impl Frame {
             });
             let rings = self.rings.len() as u32;
             self.rings.extend(pane.rings.iter().filter_map(ring_instance));
-            self.views
-                .push(view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32));
+            let mut view = view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32);
+            let tile = light::tile(self.panes.len(), stage.panes.len());
+            let lit = quality == Quality::Full && view.add_light(pane, &stage.look, tile);
+            self.views.push(view);
             self.panes.push(PaneDraw {
                 viewport,
                 figures,
+                solid_skins,
                 strokes,
                 rings: rings..self.rings.len() as u32,
+                lit: lit.then_some(tile),
             });
         }
     }
 
-    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, quality: Quality) -> Range<usize> {
+    /// The number of a mesh in this frame.
+    fn mesh(&mut self, mesh: &Arc<SkinnedMesh>) -> usize {
+        let known = self.meshes.iter().position(|known| Arc::ptr_eq(&known.0, mesh));
+        known.unwrap_or_else(|| {
+            self.meshes.push(Mesh(Arc::clone(mesh)));
+            self.meshes.len() - 1
+        })
+    }
+
+    /// Adds a figure in its skin; the number of its instance.
+    fn add_skin(&mut self, pane: &Pane, skin: &Skin, ghost: bool) -> u32 {
+        let first = self.joints.len() as u32;
+        let transforms = pane.joints.get(skin.joints.clone()).unwrap_or_default();
+        let colors = pane.joint_colors.get(skin.joints.clone()).unwrap_or_default();
+        self.joints.extend(transforms.iter().enumerate().map(|(index, transform)| {
+            let [red, green, blue, _] = bytes(colors.get(index).copied().unwrap_or(skin.color)).map(f32::from);
+            let shift = transform.translation.extend(red + 256.0 * green + 65_536.0 * blue);
+            [transform.rotation.to_array(), shift.to_array()]
+        }));
+        // A joint that is no number takes its vertices nowhere.
+        for [rotation, shift] in self.joints.iter_mut().skip(first as usize) {
+            if !rotation.iter().chain(shift.iter()).all(|part| part.is_finite()) {
+                (*rotation, *shift) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4]);
+            }
+        }
+        let color_from = match (skin.colored, ghost || skin.mesh.colors.is_empty()) {
+            (true, _) => 1,
+            (false, true) => 0,
+            (false, false) => 2,
+        };
+        self.skins.push(SkinInstance {
+            figure: [first, color_from],
+            color: bytes(skin.color),
+        });
+        self.skins.len() as u32 - 1
+    }
+
+    /// Adds all solid figures in skins: those that share one follow each other, and are drawn at once.
+    fn add_solid_skins(&mut self, pane: &Pane) -> Range<usize> {
+        let first = self.solid_skins.len();
+        let solids = || {
+            pane.figures
+                .iter()
+                .filter(|figure| !figure.ghost)
+                .filter_map(|figure| figure.skin.as_ref())
+        };
+        for skin in solids() {
+            let mesh = self.mesh(&skin.mesh);
+            if self.solid_skins[first..].iter().any(|draw| draw.mesh == mesh) {
+                continue;
+            }
+            let start = self.skins.len() as u32;
+            for alike in solids().filter(|other| Arc::ptr_eq(&other.mesh, &skin.mesh)) {
+                self.add_skin(pane, alike, false);
+            }
+            let instances = start..self.skins.len() as u32;
+            self.solid_skins.push(SkinDraw { mesh, instances });
+        }
+        first..self.solid_skins.len()
+    }
+
+    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, flat: bool, quality: Quality) -> Range<usize> {
         let first = self.figures.len();
-        let height = viewport.height as f32;
         let [_, _, back] = pane.camera.axes();
+        let plain = quality == Quality::Plain;
+        // Where the main light's shadow is all there is to be, none is soft.
+        let soft = plain || !flat;
+        // The shadows of high limbs are as wide as the body and hardly seen: where every pixel costs, only what is low casts one.
+        let only_low = plain || pane.figures.len() > MANY_FIGURES;
         for figure in &pane.figures {
             let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
                 continue;
             };
-            let plain = quality == Quality::Plain;
-            let is_fine = |limb: &Limb| {
-                !plain
-                    && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+            let shades = soft && figure.shadow > 0.0 && !(plain && figure.ghost);
+            let mut draw = FigureDraw {
+                uniform: 0,
+                skin: None,
+                fine: 0..0,
+                coarse: 0..0,
+                casting: 0..0,
+                ghost: figure.ghost,
+                in_light: light::keeps_off_light(figure),
+                depth: 0.0,
             };
-            let start = self.limbs.len() as u32;
-            self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(limb_instance));
-            let middle = self.limbs.len() as u32;
-            self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(limb_instance));
-            // The shadows of high limbs are as wide as the body and hardly seen: where every pixel costs, only what is low casts one.
-            let casting = if figure.shadow <= 0.0 || (plain && figure.ghost) {
-                start..start
-            } else if plain {
-                self.limbs[start as usize..].sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
-                let low = self.limbs[start as usize..]
-                    .iter()
-                    .take_while(|limb| lowest(limb) < PLAIN_SHADOW_HEIGHT_M)
-                    .count();
-                start..start + low as u32
+            if let Some(skin) = &figure.skin {
+                if figure.ghost {
+                    let (mesh, instance) = (self.mesh(&skin.mesh), self.add_skin(pane, skin, true));
+                    let instances = instance..instance + 1;
+                    draw.skin = Some(SkinDraw { mesh, instances });
+                }
+                let start = self.limbs.len() as u32;
+                if shades {
+                    let low = limbs
+                        .iter()
+                        .filter(|limb| !only_low || limb.a.y.min(limb.b.y) < LOW_SHADOW_HEIGHT_M);
+                    self.limbs.extend(low.filter_map(|limb| limb_instance(limb, figure.shadow)));
+                }
+                draw.casting = start..self.limbs.len() as u32;
             } else {
-                start..self.limbs.len() as u32
-            };
-            // Nobody sees how limbs melt in a body that is small all over.
-            if quality == Quality::Full && middle > start {
-                let bodys_own = &mut self.limbs[start as usize..];
-                find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own, figure.ghost);
+                self.add_limbs(limbs, figure, pane, viewport, quality, &mut draw);
+                if !shades {
+                    draw.casting = 0..0;
+                } else if only_low && draw.fine.is_empty() {
+                    let start = draw.limbs().start;
+                    let low = self.limbs[start as usize..]
+                        .iter()
+                        .take_while(|limb| lowest(limb) < LOW_SHADOW_HEIGHT_M);
+                    draw.casting = start..start + low.count() as u32;
+                }
             }
             // Limbs come with the biggest first: the trunk says where the body is.
             let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
-            self.figures.push(FigureDraw {
-                fine: start..middle,
-                coarse: middle..self.limbs.len() as u32,
-                casting,
-                ghost: figure.ghost,
-                depth: if depth.is_finite() { depth } else { 0.0 },
-            });
-            self.figure_uniforms.push(figure_uniform(limbs, figure));
+            draw.depth = if depth.is_finite() { depth } else { 0.0 };
+            self.figures.push(draw);
         }
-        self.sort_figures(first);
+        // Solid ones first, then ghosts from far to near.
+        let key = |f: &FigureDraw| if f.ghost { (true, -f.depth) } else { (false, 0.0) };
+        self.figures[first..].sort_unstable_by(|x, y| {
+            let (x, y) = (key(x), key(y));
+            x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
+        });
         first..self.figures.len()
     }
 
-    /// Solid ones first, then ghosts from far to near; their uniforms go along. A handful of bodies: insertion keeps both lists in step.
-    fn sort_figures(&mut self, first: usize) {
-        let key = |f: &FigureDraw| if f.ghost { (true, -f.depth) } else { (false, 0.0) };
-        for i in first + 1..self.figures.len() {
-            let mut at = i;
-            while at > first && key(&self.figures[at]) < key(&self.figures[at - 1]) {
-                self.figures.swap(at, at - 1);
-                self.figure_uniforms.swap(at, at - 1);
-                at -= 1;
-            }
+    /// Adds the limbs of a figure that is seen as such.
+    fn add_limbs(&mut self, limbs: &[Limb], figure: &Figure, pane: &Pane, viewport: Viewport, quality: Quality, draw: &mut FigureDraw) {
+        let (plain, height) = (quality == Quality::Plain, viewport.height as f32);
+        let is_fine = |limb: &Limb| {
+            !plain && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+        };
+        let instance = |limb: &Limb| limb_instance(limb, figure.shadow);
+        let start = self.limbs.len() as u32;
+        self.limbs.extend(limbs.iter().filter(|l| is_fine(l)).filter_map(instance));
+        let middle = self.limbs.len() as u32;
+        self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(instance));
+        if middle == start {
+            // The lowest first: theirs are the shadows.
+            self.limbs[start as usize..].sort_unstable_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+        } else if quality == Quality::Full {
+            // Nobody sees how limbs melt in a body that is small all over.
+            let bodys_own = &mut self.limbs[start as usize..];
+            find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own, figure.ghost);
         }
+        let end = self.limbs.len() as u32;
+        (draw.fine, draw.coarse, draw.casting) = (start..middle, middle..end, start..end);
+        draw.uniform = self.figure_uniforms.len();
+        self.figure_uniforms.push(figure_uniform(limbs, figure));
     }
 }
 
-/// Below this height a limb's shadow is worth its pixels on a machine that draws in software, metres.
-const PLAIN_SHADOW_HEIGHT_M: f32 = 0.5;
+/// With more figures than this in a pane, only their low limbs shade the ground softly.
+const MANY_FIGURES: usize = 12;
+
+/// Below this height a limb's soft shadow is worth its pixels where there are few to spend, metres.
+const LOW_SHADOW_HEIGHT_M: f32 = 0.5;
 
 /// The height of a limb's lower end, metres.
 fn lowest(limb: &LimbInstance) -> f32 {
     limb.a[1].min(limb.b[1])
 }
 
-fn limb_instance(limb: &Limb) -> Option<LimbInstance> {
+fn limb_instance(limb: &Limb, shadow: f32) -> Option<LimbInstance> {
     let finite = limb.a.is_finite() && limb.b.is_finite() && limb.radius_a.is_finite() && limb.radius_b.is_finite();
     (finite && limb.radius_a >= 0.0 && limb.radius_b >= 0.0).then(|| LimbInstance {
         a: limb.a.extend(limb.radius_a).to_array(),
@@ -255,6 +434,7 @@ fn limb_instance(limb: &Limb) -> Option<LimbInstance> {
         flat: limb.flat.extend(limb.flatness).to_array(),
         color: bytes(limb.color),
         near: [NONE; NEAREST],
+        shadow,
     })
 }
 
@@ -278,7 +458,7 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
 fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     let solid = if figure.ghost { 0.0 } else { 1.0 };
     let mut uniform = FigureUniform {
-        about: [0.0, solid, figure.shadow, 0.0],
+        about: [solid, 0.0, 0.0, 0.0],
         neighbours: [[0.0; 4]; 3 * NEIGHBOURS],
     };
     for (limb, triple) in limbs.iter().zip(uniform.neighbours.chunks_exact_mut(3)) {
@@ -313,7 +493,7 @@ fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
                 continue;
             }
             let itself = limb.a == points[0] && limb.b == points[2] && limb.radius_a == a.w && limb.radius_b == b.w;
-            if itself || limb_instance(limb).is_none() {
+            if itself || limb_instance(limb, 0.0).is_none() {
                 continue;
             }
             let span = limb.b - limb.a;
@@ -356,9 +536,7 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
         } else {
             1.0
         };
-    // The main light stands over the camera's left shoulder, so that the body is modelled from all sides.
-    let level_back = Vec3::new(camera.yaw.sin(), 0.0, camera.yaw.cos());
-    let key = (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y);
+    let key = light::key_direction(right, camera.yaw);
     ViewUniform {
         clip_from_world: (camera.projection(aspect) * camera.view()).to_cols_array(),
         eye: camera.eye().extend(if orthographic { 1.0 } else { 0.0 }).to_array(),
@@ -369,10 +547,24 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
         key: key.extend(scale).to_array(),
         background_top: look.background_top,
         background_bottom: look.background_bottom,
-        floor: Vec4::from(look.floor).with_w(look.floor_radius.max(0.1)).to_array(),
+        // From far the light falls on more of the ground: it is the middle of the picture that is lit.
+        floor: Vec4::from(look.floor)
+            .with_w(look.floor_radius.max(0.55 * camera.distance).max(0.1))
+            .to_array(),
         focus: pane.focus.extend(look.shadow).to_array(),
         grid: look.grid,
         edge: look.edge,
-        style: [look.edge_width * scale, look.rim, 0.0, 0.0],
+        style: [look.edge_width * scale, look.rim, f32::from(u8::from(look.flat)), look.rim_light],
+        light_center: [0.0, 0.0, 0.0, 1.0],
+        light_right: [1.0, 0.0, 0.0, 1.0],
+        light_up: [0.0, 1.0, 0.0, 0.0],
+        light_tile: [0.0, 0.0, 1.0, 1.0],
+        light_tile_metres: [0.0; 4],
+        more: [
+            f32::from(u8::from(pane.skinning == Skinning::Dual)),
+            if stage.grid_metres > 1e-3 { stage.grid_metres } else { 1.0 },
+            0.0,
+            0.0,
+        ],
     }
 }

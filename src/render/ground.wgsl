@@ -1,4 +1,4 @@
-// Background and floor of a pane, found per pixel: a pool of light around the focus, and a grid of one metre that fades with it.
+// Background and floor of a pane, found per pixel: a pool of light around the focus, and a grid that fades with it.
 
 struct Pixel {
     @builtin(position) clip: vec4f,
@@ -36,12 +36,13 @@ fn ground_color(in: Pixel) -> vec3f {
     let direction = select(ahead, view.forward.xyz, orthographic);
     let steep = select(direction.y, min(direction.y, -1e-5), origin.y > 0.0);
     let t = min(-origin.y / steep, 4000.0);
-    // Measured from the focus' own metre of the grid: digits stay far from the origin.
-    let base = floor(view.focus.xz);
+    // Measured from the focus' own cell of the grid: digits stay far from the origin.
+    let cell = view.more.y;
+    let base = floor(view.focus.xz / cell) * cell;
     let at = (origin.xz - base) + direction.xz * t;
     let from_focus = length(at - (view.focus.xz - base)) / view.floor.w;
     // From here on the derivatives are needed, so nothing branches.
-    let cover = grid_cover(at, 1.0, view.key.w);
+    let cover = grid_cover(at, cell, view.key.w);
     let facing = f32(origin.y > 0.0 && direction.y < -1e-5);
     let pool = exp(-from_focus * from_focus * 0.9) * facing;
     color = mix(color, view.floor.rgb, pool);

@@ -1,13 +1,13 @@
 // Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
 
 struct Figure {
-    // Unused, 1 for a solid body, strength of the shadow, unused.
+    // 1 for a solid body; the rest is unused.
     about: vec4f,
     // Three for each limb of the body: centre and radius of its first ball, of its second, direction and scale of its flattening.
     neighbours: array<vec4f, 144>,
 }
 
-@group(1) @binding(0) var<uniform> figure: Figure;
+@group(2) @binding(0) var<uniform> figure: Figure;
 
 struct Limb {
     // Cosine and sine about the axis; from the seam (0) to the pole (1); which ball.
@@ -123,22 +123,19 @@ fn vs_edge(limb: Limb) -> Surface {
 struct Around {
     // Normal of the body where its limbs are melted together.
     normal: vec3f,
-    // How much of the sky and of the main light gets past the body's other limbs, 0 to 1.
+    // How much of the sky gets past the body's other limbs, 0 to 1.
     sky: f32,
-    key: f32,
 }
 
 // What a point of the surface sees of the other limbs of its body.
 //
 // Normal: of every limb that lies within a third of its radius, weighted by how near its surface is; seams between limbs vanish like in clay.
-// Sky: the closed form of a ball before the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb. Main light: the angle
-// between the light and the edge of that ball, softened by the width of the light.
+// Sky: the closed form of a ball before the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb.
 fn look_around(in: Surface) -> Around {
     let world = in.world;
     let normal = normalize(in.normal);
     var melted = normal;
     var sky = 1.0;
-    var key = 1.0;
     var near = array<vec4u, 5>(in.near_a, in.near_b, in.near_c, in.near_d, in.near_e);
     for (var k = 0u; k < 20u; k++) {
         let i = near[k / 4u][k % 4u];
@@ -165,7 +162,7 @@ fn look_around(in: Surface) -> Around {
         let closeness = max(1.0 - gap / clamp(radius * 0.42, 0.004, 0.034), 0.0);
         melted += other * closeness * closeness * smoothstep(-0.3, 0.3, dot(other, normal));
 
-        if figure.about.y < 0.5 {
+        if figure.about.x < 0.5 {
             continue;
         }
         let ball = radius * (0.5 + 0.5 * flattening.w);
@@ -174,85 +171,34 @@ fn look_around(in: Surface) -> Around {
         let ratio = min(ball / distance, 1.0);
         // Where limbs merge they are one surface, which does not shade itself: the seam would show.
         sky *= 1.0 - max(dot(normal, to_ball) / distance, 0.0) * ratio * ratio * smoothstep(0.0, 0.04, gap);
-
-        // Along the light: the point of the axis that the ray from here passes nearest.
-        let span_on_light = dot(span, view.key.xyz);
-        let across = max(dot(span, span) - span_on_light * span_on_light, 1e-9);
-        let u = clamp((dot(from_a, span) - dot(from_a, view.key.xyz) * span_on_light) / across, 0.0, 1.0);
-        let to_light_ball = span * u - from_a;
-        let reach = max(length(to_light_ball), 1e-5);
-        let size = min(mix(a.w, b.w, u) * (0.5 + 0.5 * flattening.w) / reach, 1.0);
-        let toward = dot(to_light_ball, view.key.xyz) / reach;
-        // A light 35 degrees wide; a limb that the point lies on does not count.
-        let hidden = smoothstep(-0.3, 0.3, toward - sqrt(1.0 - size * size)) * smoothstep(0.0, 0.3, dot(normal, to_light_ball) / reach);
-        key *= 1.0 - hidden * 0.6 * smoothstep(0.0, 0.09, gap);
     }
-    return Around(normalize(melted), sky, key);
-}
-
-struct Shade {
-    linear: vec3f,
-    // 0 where the surface faces the camera, 1 at the silhouette.
-    rim: f32,
-}
-
-fn shade(albedo: vec3f, world: vec3f, around: Around) -> Shade {
-    let normal = around.normal;
-    let to_eye = towards_eye(world);
-    let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
-    let base = to_linear(albedo);
-
-    // A broad main light from over the camera's shoulder, wrapped softly around; sky from above, the floor's light from below.
-    let key = pow(clamp((dot(normal, view.key.xyz) + 0.35) / 1.35, 0.0, 1.0), 1.7) * around.key;
-    let upward = normal.y * 0.5 + 0.5;
-    let near_floor = exp(-max(world.y, 0.0) * 4.0);
-    let under = mix(0.20, 0.12, near_floor) * vec3f(1.0, 0.985, 0.97);
-    let sky = mix(under, vec3f(0.36, 0.38, 0.425), upward) * around.sky;
-    let fill = clamp(dot(normal, normalize(view.right.xyz - view.forward.xyz * length(view.right.xyz))), 0.0, 1.0) * 0.08 * around.sky;
-    let light = sky + fill * vec3f(0.85, 0.94, 1.0) + key * 0.66 * vec3f(1.0, 0.985, 0.955);
-
-    let half_way = normalize(view.key.xyz + to_eye);
-    let gloss = pow(clamp(dot(normal, half_way), 0.0, 1.0), 30.0) * 0.06 * around.key;
-
-    var out: Shade;
-    let rim = 1.0 - facing;
-    out.rim = rim * rim;
-    out.linear = base * light + gloss;
-    return out;
-}
-
-// What has sunk into the ground is seen through it, faintly.
-fn sink(color: vec3f, world: vec3f) -> vec3f {
-    let depth = smoothstep(-0.008, -0.03, world.y);
-    return mix(color, to_linear(view.floor.rgb), depth * 0.72);
+    return Around(normalize(melted), sky);
 }
 
 @fragment
 fn fs_solid(in: Surface) -> @location(0) vec4f {
-    let lit = shade(in.color.rgb, in.world, look_around(in));
-    let rimmed = lit.linear * (1.0 - view.style.y * smoothstep(0.06, 0.85, lit.rim));
-    return vec4f(to_srgb(sink(rimmed, in.world)) + dither(in.clip.xy), 1.0);
+    let around = look_around(in);
+    let key = key_on_body(in.world, around.normal, in.clip.xy);
+    return solid_color(shade(in.color.rgb, in.world, around.normal, around.sky, key), in.world, in.clip.xy);
 }
 
 @fragment
 fn fs_edge(in: Surface) -> @location(0) vec4f {
-    // Edges end softly where the body enters the ground.
-    let over_ground = smoothstep(-0.02, 0.0, in.world.y);
-    return vec4f(view.edge.rgb, view.edge.a * over_ground);
+    return edge_color(in.world);
 }
 
 @fragment
 fn fs_ghost(in: Surface) -> @location(0) vec4f {
-    let lit = shade(in.color.rgb, in.world, look_around(in));
-    // Flat in the middle and denser at the rim, like a shell of tinted glass.
-    let base = to_linear(in.color.rgb);
-    let tinted = mix(base, lit.linear * 1.15, 0.45);
-    let density = clamp(in.color.a * (0.80 + 0.75 * lit.rim * lit.rim), 0.0, 1.0);
-    let over_ground = mix(0.45, 1.0, smoothstep(-0.02, 0.0, in.world.y));
-    return vec4f(to_srgb(tinted), density * over_ground);
+    return ghost_color(in.color, in.world, look_around(in).normal);
 }
 
-// For the pass that only finds the front of a ghost.
+// As the main light sees it.
+@vertex
+fn vs_cast(limb: Limb) -> @builtin(position) vec4f {
+    return vec4f(on_map(bend(limb).world), 1.0);
+}
+
+// For passes that only find depths.
 @fragment
 fn fs_depth() -> @location(0) vec4f {
     return vec4f(0.0);

@@ -8,9 +8,11 @@ mod callback;
 mod frame;
 #[cfg(test)]
 mod image;
+mod light;
 mod mesh;
 mod pipelines;
 mod renderer;
+mod skins;
 mod targets;
 #[cfg(test)]
 mod tests;

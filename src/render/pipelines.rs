@@ -1,15 +1,24 @@
 //! The render pipelines of a device.
 
-use super::frame::{FigureUniform, LimbInstance, RingInstance, StrokeInstance, ViewUniform};
+use super::frame::{FigureUniform, LimbInstance, RingInstance, SkinInstance, StrokeInstance, ViewUniform};
+use super::light::MAP_FORMAT;
 use super::mesh::ConeVertex;
+use super::skins::SkinVertex;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use eframe::wgpu;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 use wgpu::CompareFunction::{Less, LessEqual};
 use wgpu::Face::{Back, Front};
 
 /// The shaders as they are compiled: what all share comes first.
-pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("limb.wgsl"));
+pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("limb.wgsl"));
+pub(super) const SKIN: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("skin.wgsl"));
+pub(super) const KEY_SHADOW: &str = concat!(
+    include_str!("view.wgsl"),
+    include_str!("light.wgsl"),
+    include_str!("key_shadow.wgsl")
+);
 pub(super) const SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("shadow.wgsl"));
 pub(super) const GROUND: &str = concat!(include_str!("view.wgsl"), include_str!("ground.wgsl"));
 pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("line.wgsl"));
@@ -31,18 +40,35 @@ pub(super) enum Brush {
     /// Only the depth of the limbs' fronts.
     Front,
     Ghost,
+    /// A body in the light map.
+    Cast,
+    /// What the light map says of the ground.
+    KeyShadow,
+    /// The same of bodies in skins.
+    Skin,
+    SkinEdge,
+    SkinFront,
+    SkinGhost,
+    SkinCast,
 }
 
 impl Brush {
     /// In the order in which they are missed.
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 17] = [
         Self::Ground,
+        Self::Skin,
         Self::Front,
         Self::Solid,
         Self::Shadow,
         Self::Shade,
+        Self::SkinCast,
+        Self::Cast,
+        Self::KeyShadow,
         Self::FlatLine,
+        Self::SkinFront,
+        Self::SkinGhost,
         Self::Ghost,
+        Self::SkinEdge,
         Self::Edge,
         Self::SpaceLine,
         Self::Ring,
@@ -50,7 +76,7 @@ impl Brush {
 
     /// Whether there is no picture without it.
     const fn is_vital(self) -> bool {
-        matches!(self, Self::Ground | Self::Front | Self::Solid)
+        matches!(self, Self::Ground | Self::Front | Self::Solid | Self::Skin)
     }
 }
 
@@ -60,20 +86,32 @@ pub(super) struct Pipelines {
     device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
     pub(super) figure_layout: wgpu::BindGroupLayout,
+    pub(super) joints_layout: wgpu::BindGroupLayout,
+    pub(super) light_layout: wgpu::BindGroupLayout,
+    pub(super) light_compare: wgpu::Sampler,
+    pub(super) light_exactly: wgpu::Sampler,
     pub(super) composite_layout: wgpu::BindGroupLayout,
     pub(super) composite_sampler: wgpu::Sampler,
     pub(super) composite: wgpu::RenderPipeline,
     pub(super) sample_count: u32,
     /// For what lies on the ground and in space.
     plain: wgpu::PipelineLayout,
+    /// For what the main light falls on.
+    lit: wgpu::PipelineLayout,
     /// For bodies.
     bodily: wgpu::PipelineLayout,
+    /// For bodies in skins.
+    skinned: wgpu::PipelineLayout,
     limb: Shader,
+    skin: Shader,
     shadow: Shader,
+    key_shadow: Shader,
     ground: Shader,
     line: Shader,
     ring: Shader,
     made: [OnceLock<wgpu::RenderPipeline>; Brush::ALL.len()],
+    /// Those that were asked for: a bit each.
+    wanted: AtomicU32,
 }
 
 /// A shader that is compiled when the first pipeline needs it.
@@ -176,6 +214,42 @@ fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Bind
     })
 }
 
+/// The light map as depths to compare with, and as depths.
+fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let seen = wgpu::ShaderStages::FRAGMENT;
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("light map"),
+        entries: &[
+            texture_entry(0, seen, wgpu::TextureSampleType::Depth),
+            sampler_entry(1, wgpu::SamplerBindingType::Comparison),
+            texture_entry(2, seen, wgpu::TextureSampleType::Float { filterable: false }),
+            sampler_entry(3, wgpu::SamplerBindingType::NonFiltering),
+        ],
+    })
+}
+
+fn texture_entry(binding: u32, visibility: wgpu::ShaderStages, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn sampler_entry(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Sampler(kind),
+        count: None,
+    }
+}
+
 impl Pipelines {
     pub(super) fn new(device: &wgpu::Device, output_format: wgpu::TextureFormat, sample_count: u32) -> Self {
         let view_layout = uniform_layout(device, "stage view", size_of::<ViewUniform>());
@@ -187,18 +261,45 @@ impl Pipelines {
                 immediate_size: 0,
             })
         };
+        let light_layout = light_layout(device);
+        let joints_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("joints"),
+            entries: &[texture_entry(
+                0,
+                wgpu::ShaderStages::VERTEX,
+                wgpu::TextureSampleType::Float { filterable: false },
+            )],
+        });
         let (composite_layout, composite) = composite_pipeline(device, output_format);
         Self {
             plain: layout("stage", &[Some(&view_layout)]),
-            bodily: layout("stage bodies", &[Some(&view_layout), Some(&figure_layout)]),
+            lit: layout("stage light", &[Some(&view_layout), Some(&light_layout)]),
+            bodily: layout("stage bodies", &[Some(&view_layout), Some(&light_layout), Some(&figure_layout)]),
+            skinned: layout("stage skins", &[Some(&view_layout), Some(&light_layout), Some(&joints_layout)]),
             limb: Shader::new("limb", LIMB),
+            skin: Shader::new("skin", SKIN),
             shadow: Shader::new("shadow", SHADOW),
+            key_shadow: Shader::new("key shadow", KEY_SHADOW),
             ground: Shader::new("ground", GROUND),
             line: Shader::new("line", LINE),
             ring: Shader::new("ring", RING),
             made: std::array::from_fn(|_| OnceLock::new()),
+            wanted: AtomicU32::new(0),
             view_layout,
             figure_layout,
+            joints_layout,
+            light_layout,
+            light_compare: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("light map"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(LessEqual),
+                ..wgpu::SamplerDescriptor::default()
+            }),
+            light_exactly: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("light map as it is"),
+                ..wgpu::SamplerDescriptor::default()
+            }),
             composite_layout,
             composite_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("stage composite"),
@@ -212,26 +313,32 @@ impl Pipelines {
         }
     }
 
-    /// The pipeline; `None` where the picture can do without it until it is made.
+    /// The pipeline; `None` where the picture can do without it until it is made. Natively that takes no time worth a word.
     pub(super) fn get(&self, brush: Brush) -> Option<&wgpu::RenderPipeline> {
         let slot = &self.made[brush as usize];
-        if brush.is_vital() {
-            Some(slot.get_or_init(|| self.make(brush)))
-        } else {
-            slot.get()
+        if brush.is_vital() || cfg!(not(target_arch = "wasm32")) {
+            return Some(slot.get_or_init(|| self.make(brush)));
         }
+        if slot.get().is_none() {
+            self.wanted.fetch_or(1 << brush as u32, Ordering::Relaxed);
+        }
+        slot.get()
     }
 
-    /// Makes the next one that is missing; `false` when none is.
-    pub(super) fn make_next(&self) -> bool {
-        let missing = Brush::ALL.iter().find(|&&brush| self.made[brush as usize].get().is_none());
-        missing.is_some_and(|&brush| self.made[brush as usize].set(self.make(brush)).is_ok())
+    /// Makes the next one that was asked for in vain.
+    pub(super) fn make_next(&self) {
+        let wanted = self.wanted.load(Ordering::Relaxed);
+        let Some(&brush) = Brush::ALL.iter().find(|&&brush| wanted & 1 << brush as u32 != 0) else {
+            return;
+        };
+        self.made[brush as usize].get_or_init(|| self.make(brush));
+        self.wanted.fetch_and(!(1 << brush as u32), Ordering::Relaxed);
     }
 
     fn make(&self, brush: Brush) -> wgpu::RenderPipeline {
         let device = &self.device;
         let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4];
+        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4, 10 => Float32];
         let line_attributes = wgpu::vertex_attr_array![
             0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
         ];
@@ -249,10 +356,22 @@ impl Pipelines {
         let limb_buffer = instances(size_of::<LimbInstance>(), &limb_attributes[..]);
         let limb_buffers = [Some(mesh_buffer), Some(limb_buffer.clone())];
         // The shadow reads the limbs, but for their colour.
+        let [place_a, place_b, flat, .., strength] = limb_attributes;
+        let shadow_attributes = [place_a, place_b, flat, strength];
         let shadow_buffers = [Some(wgpu::VertexBufferLayout {
-            attributes: &limb_attributes[..3],
+            attributes: &shadow_attributes,
             ..limb_buffer
         })];
+        let skin_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Uint16x4, 3 => Unorm16x4, 4 => Unorm8x4];
+        let skin_figure_attributes = wgpu::vertex_attr_array![5 => Uint32x2, 6 => Unorm8x4];
+        let skin_buffers = [
+            Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<SkinVertex>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &skin_attributes,
+            }),
+            Some(instances(size_of::<SkinInstance>(), &skin_figure_attributes[..])),
+        ];
         let line_buffers = [Some(instances(size_of::<StrokeInstance>(), &line_attributes[..]))];
         let ring_buffers = [Some(instances(size_of::<RingInstance>(), &ring_attributes[..]))];
 
@@ -278,6 +397,14 @@ impl Pipelines {
             depth,
             ..ground_recipe(label, "", Some(OVER))
         };
+        let shadow_recipe = |label, shader, layout, entries| Recipe {
+            shader,
+            layout,
+            entries,
+            writes: wgpu::ColorWrites::ALPHA,
+            topology: quad,
+            ..ground_recipe(label, "", Some(DARKEN))
+        };
         let limb_recipe = |label, entries, depth, blend, cull| Recipe {
             label,
             shader: &self.limb,
@@ -291,17 +418,23 @@ impl Pipelines {
             cull: Some(cull),
             stencil: wgpu::StencilState::default(),
         };
+        let skin_recipe = |label, entries, depth, blend, cull| Recipe {
+            shader: &self.skin,
+            layout: &self.skinned,
+            buffers: &skin_buffers,
+            ..limb_recipe(label, entries, depth, blend, cull)
+        };
         let recipe = match brush {
             Brush::Ground => ground_recipe("ground", "fs_ground", None),
             Brush::Shade => ground_recipe("shade", "fs_shade", Some(SHADE)),
             Brush::Shadow => Recipe {
-                shader: &self.shadow,
-                layout: &self.bodily,
-                entries: ["vs_shadow", "fs_shadow"],
                 buffers: &shadow_buffers,
-                writes: wgpu::ColorWrites::ALPHA,
-                topology: quad,
-                ..ground_recipe("shadow", "", Some(DARKEN))
+                ..shadow_recipe("shadow", &self.shadow, &self.plain, ["vs_shadow", "fs_shadow"])
+            },
+            Brush::KeyShadow => shadow_recipe("key shadow", &self.key_shadow, &self.lit, ["vs_key_shadow", "fs_key_shadow"]),
+            Brush::Cast => Recipe {
+                layout: &self.plain,
+                ..limb_recipe("cast", ["vs_cast", ""], (Less, true), None, Back)
             },
             Brush::Ring => Recipe {
                 shader: &self.ring,
@@ -322,13 +455,31 @@ impl Pipelines {
                 stencil: once_per_ghost(),
                 ..limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)
             },
+            Brush::Skin => skin_recipe("skin", ["vs_skin", "fs_skin"], (Less, true), None, Back),
+            Brush::SkinEdge => skin_recipe("skin edge", ["vs_skin_edge", "fs_skin_edge"], (Less, true), Some(OVER), Front),
+            Brush::SkinFront => Recipe {
+                writes: wgpu::ColorWrites::empty(),
+                ..skin_recipe("skin front", ["vs_skin", "fs_depth"], (Less, true), None, Back)
+            },
+            Brush::SkinGhost => Recipe {
+                stencil: once_per_ghost(),
+                ..skin_recipe("skin ghost", ["vs_skin", "fs_skin_ghost"], (LessEqual, false), Some(OVER), Back)
+            },
+            Brush::SkinCast => skin_recipe("skin cast", ["vs_skin_cast", ""], (Less, true), None, Back),
         };
         stage_pipeline(device, &recipe, self.sample_count)
     }
 }
 
+/// A recipe without an entry for colours only finds depths, for the light map.
 fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32) -> wgpu::RenderPipeline {
     let module = recipe.shader.module(device);
+    let is_cast = recipe.entries[1].is_empty();
+    let targets = [Some(wgpu::ColorTargetState {
+        format: COLOR_FORMAT,
+        blend: recipe.blend,
+        write_mask: recipe.writes,
+    })];
     let (compare, write) = recipe.depth.unwrap_or((wgpu::CompareFunction::Always, false));
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(recipe.label),
@@ -345,25 +496,21 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
             ..wgpu::PrimitiveState::default()
         },
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
+            format: if is_cast { MAP_FORMAT } else { DEPTH_FORMAT },
             depth_write_enabled: Some(write),
             depth_compare: Some(compare),
             stencil: recipe.stencil.clone(),
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {
-            count: sample_count,
+            count: if is_cast { 1 } else { sample_count },
             ..wgpu::MultisampleState::default()
         },
-        fragment: Some(wgpu::FragmentState {
+        fragment: (!is_cast).then(|| wgpu::FragmentState {
             module,
             entry_point: Some(recipe.entries[1]),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: COLOR_FORMAT,
-                blend: recipe.blend,
-                write_mask: recipe.writes,
-            })],
+            targets: &targets,
         }),
         multiview_mask: None,
         cache: None,
@@ -374,22 +521,8 @@ fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat)
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("stage composite"),
         entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                count: None,
-            },
+            texture_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::TextureSampleType::Float { filterable: true }),
+            sampler_entry(1, wgpu::SamplerBindingType::Filtering),
         ],
     });
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -1,6 +1,8 @@
-use super::frame::{FigureUniform, Frame, PaneDraw, ViewUniform};
+use super::frame::{FigureDraw, FigureUniform, Frame, PaneDraw, SkinDraw, ViewUniform};
+use super::light::{LightMap, MAP_SIZE};
 use super::mesh::ConeMesh;
 use super::pipelines::{Brush, Pipelines};
+use super::skins::{JointTexture, SkinStore};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
 use eframe::wgpu;
 use segue::scene::Stage;
@@ -25,6 +27,10 @@ pub(crate) struct StageRenderer {
     alignment: usize,
     largest_side: u32,
     quality: Quality,
+    unlit: LightMap,
+    /// Made for the first body that casts a shadow.
+    light: Option<LightMap>,
+    skins: SkinStore,
     views: Vec<(u64, View)>,
     /// The frame in the making; it takes turns with the one last drawn.
     scratch: Frame,
@@ -47,6 +53,8 @@ pub(super) struct View {
     /// Whether nothing was left out of it.
     complete: bool,
     limbs: GrowingBuffer,
+    skins: GrowingBuffer,
+    joints: JointTexture,
     strokes: GrowingBuffer,
     rings: GrowingBuffer,
     pane_uniforms: GrowingBuffer,
@@ -139,6 +147,8 @@ impl View {
             shown: Shown::Nothing,
             complete: false,
             limbs: GrowingBuffer::new("limbs", vertex),
+            skins: GrowingBuffer::new("skins", vertex),
+            joints: JointTexture::default(),
             strokes: GrowingBuffer::new("strokes", vertex),
             rings: GrowingBuffer::new("rings", vertex),
             pane_uniforms: GrowingBuffer::new("views", uniform),
@@ -202,11 +212,11 @@ impl StageRenderer {
         };
         let limits = device.limits();
         let pipelines = Pipelines::new(device, output_format, if smooth { 4 } else { 1 });
-        // Only a browser takes so long that it shows.
-        if cfg!(not(target_arch = "wasm32")) {
-            while pipelines.make_next() {}
-        }
         Self {
+            // Where there is no light map, one texel takes its place.
+            unlit: LightMap::new(device, &pipelines, 1),
+            light: None,
+            skins: SkinStore::default(),
             pipelines,
             fine: mesh(40, 8),
             coarse: mesh(16, 4),
@@ -341,9 +351,14 @@ impl StageRenderer {
 
     fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, view: &mut View) {
         let (view_stride, figure_stride) = (self.view_stride(), self.figure_stride());
+        if view.drawn.panes.iter().any(|pane| pane.lit.is_some()) && self.light.is_none() {
+            self.light = Some(LightMap::new(device, &self.pipelines, MAP_SIZE));
+        }
         let View {
             drawn,
             limbs,
+            skins,
+            joints,
             strokes,
             rings,
             pane_uniforms,
@@ -352,6 +367,11 @@ impl StageRenderer {
             figures_bound,
             ..
         } = view;
+        self.skins.load(device, &drawn.meshes);
+        if !drawn.skins.is_empty() {
+            joints.write(device, queue, &self.pipelines, &drawn.joints);
+        }
+        skins.write(device, queue, bytemuck::cast_slice(&drawn.skins));
         limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
         strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));
         rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
@@ -365,8 +385,66 @@ impl StageRenderer {
         }
     }
 
+    /// Draws what the main light sees. `false` where something is left out because its pipeline is yet to be made.
+    fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("light map"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &light.depths,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        // The map itself is being drawn.
+        pass.set_bind_group(1, &self.unlit.bound, &[]);
+        let mut complete = true;
+        for (index, pane) in view.drawn.panes.iter().enumerate() {
+            let Some(tile) = pane.lit else { continue };
+            pass.set_viewport(tile.x as f32, tile.y as f32, tile.width as f32, tile.height as f32, 0.0, 1.0);
+            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
+            let figures = view.drawn.figures.get(pane.figures.clone()).unwrap_or_default();
+            let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
+            let glass = figures
+                .iter()
+                .filter(|figure| figure.in_light)
+                .filter_map(|figure| figure.skin.as_ref());
+            if let (Some(limbs), Some(pipeline)) = (
+                view.limbs
+                    .buffer
+                    .as_ref()
+                    .filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
+                self.pipelines.get(Brush::Cast),
+            ) {
+                pass.set_pipeline(pipeline);
+                pass.set_vertex_buffer(0, self.coarse.vertices.slice(..));
+                pass.set_vertex_buffer(1, limbs.slice(..));
+                pass.set_index_buffer(self.coarse.indices.slice(..), wgpu::IndexFormat::Uint16);
+                for figure in figures.iter().filter(|figure| figure.in_light && !figure.limbs().is_empty()) {
+                    pass.draw_indexed(0..self.coarse.index_count, 0, figure.limbs());
+                }
+            }
+            let mut skins = solid_skins.iter().chain(glass).peekable();
+            if skins.peek().is_some() {
+                let pipeline = self.pipelines.get(Brush::SkinCast);
+                complete &= pipeline.is_some();
+                if let Some(pipeline) = pipeline {
+                    pass.set_pipeline(pipeline);
+                    skins.for_each(|skin| self.draw_skin(&mut pass, view, skin));
+                }
+            }
+        }
+        complete
+    }
+
     /// Draws all panes. `false` where something is left out because its pipeline is yet to be made.
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
+        let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
+        let light = self.light.as_ref().filter(|_| is_lit);
+        let mut complete = light.is_none_or(|light| self.encode_light(light, encoder, view));
         let targets = view.current();
         let clear = view.drawn.clear.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -403,7 +481,7 @@ impl StageRenderer {
             }),
             ..Default::default()
         });
-        let mut complete = true;
+        pass.set_bind_group(1, &light.unwrap_or(&self.unlit).bound, &[]);
         for (index, pane) in view.drawn.panes.iter().enumerate() {
             let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
@@ -433,24 +511,34 @@ impl StageRenderer {
             }
             pipeline.is_some()
         };
-        let figures = || pane.figures.clone().filter_map(|i| Some((i, view.drawn.figures.get(i)?)));
-        let set_figure = |pass: &mut wgpu::RenderPass<'_>, index: usize| {
-            pass.set_bind_group(1, view.figures_bound.as_ref(), &[(index * self.figure_stride()) as u32]);
+        let figures = || view.drawn.figures.get(pane.figures.clone()).unwrap_or_default().iter();
+        let set_figure = |pass: &mut wgpu::RenderPass<'_>, figure: &FigureDraw| {
+            pass.set_bind_group(2, view.figures_bound.as_ref(), &[(figure.uniform * self.figure_stride()) as u32]);
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
         if take(pass, Brush::Ground) {
             pass.draw(0..3, 0..1);
         }
-        if figures().any(|(_, figure)| !figure.casting.is_empty()) && take(pass, Brush::Shadow) {
+        let casts = figures().any(|figure| !figure.casting.is_empty());
+        if casts && take(pass, Brush::Shadow) {
             pass.set_vertex_buffer(0, limbs.slice(..));
-            for (index, figure) in figures().filter(|(_, figure)| !figure.casting.is_empty()) {
-                set_figure(pass, index);
-                pass.draw(0..4, figure.casting.clone());
+            // Those that follow each other in the buffer at once.
+            let mut waiting = 0..0;
+            for FigureDraw { casting, .. } in figures().filter(|figure| !figure.casting.is_empty()) {
+                if casting.start == waiting.end {
+                    waiting.end = casting.end;
+                } else {
+                    pass.draw(0..4, std::mem::replace(&mut waiting, casting.clone()));
+                }
             }
-            if take(pass, Brush::Shade) {
-                pass.draw(0..3, 0..1);
-            }
+            pass.draw(0..4, waiting);
+        }
+        if pane.lit.is_some() && take(pass, Brush::KeyShadow) {
+            pass.draw(0..4, 0..1);
+        }
+        if (casts || pane.lit.is_some()) && take(pass, Brush::Shade) {
+            pass.draw(0..3, 0..1);
         }
         let quads = |pass: &mut wgpu::RenderPass<'_>, brush, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
             if !range.is_empty() && take(pass, brush) {
@@ -461,29 +549,43 @@ impl StageRenderer {
         quads(pass, Brush::FlatLine, strokes, &pane.strokes[0]);
         quads(pass, Brush::Ring, rings, &pane.rings);
 
-        let solids = || figures().filter(|(_, figure)| !figure.ghost);
-        pass.set_vertex_buffer(1, limbs.slice(..));
+        let has_edges = view.drawn.views.first().is_some_and(ViewUniform::has_edges);
+        let solids = || figures().filter(|figure| !figure.ghost && !figure.limbs().is_empty());
         // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
-        for (brush, wanted) in [
-            (Brush::Front, true),
-            (Brush::Solid, true),
-            (Brush::Edge, view.drawn.views.first().is_some_and(ViewUniform::has_edges)),
-        ] {
+        for (brush, wanted) in [(Brush::Front, true), (Brush::Solid, true), (Brush::Edge, has_edges)] {
             if wanted && solids().next().is_some() && take(pass, brush) {
-                for (index, figure) in solids() {
-                    set_figure(pass, index);
+                pass.set_vertex_buffer(1, limbs.slice(..));
+                for figure in solids() {
+                    set_figure(pass, figure);
                     self.draw_limbs(pass, figure);
+                }
+            }
+        }
+        let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
+        for (brush, wanted) in [(Brush::Skin, true), (Brush::SkinEdge, has_edges)] {
+            if wanted && !solid_skins.is_empty() && take(pass, brush) {
+                for skin in solid_skins {
+                    self.draw_skin(pass, view, skin);
                 }
             }
         }
         quads(pass, Brush::SpaceLine, strokes, &pane.strokes[1]);
         // Each ghost first finds its front, then colours it: far ones first.
-        for (number, (index, figure)) in figures().filter(|(_, figure)| figure.ghost).enumerate() {
-            set_figure(pass, index);
+        for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
-            for brush in [Brush::Front, Brush::Ghost] {
-                if take(pass, brush) {
-                    self.draw_limbs(pass, figure);
+            if let Some(skin) = &figure.skin {
+                for brush in [Brush::SkinFront, Brush::SkinGhost] {
+                    if take(pass, brush) {
+                        self.draw_skin(pass, view, skin);
+                    }
+                }
+            } else {
+                for brush in [Brush::Front, Brush::Ghost] {
+                    if take(pass, brush) {
+                        pass.set_vertex_buffer(1, limbs.slice(..));
+                        set_figure(pass, figure);
+                        self.draw_limbs(pass, figure);
+                    }
                 }
             }
         }
@@ -491,7 +593,19 @@ impl StageRenderer {
         complete.get()
     }
 
-    fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &super::frame::FigureDraw) {
+    /// Draws figures in their skin with the pipeline that is set.
+    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, skin: &SkinDraw) {
+        let mesh = view.drawn.meshes.get(skin.mesh).and_then(|mesh| self.skins.get(&mesh.0));
+        if let (Some(mesh), Some(instances)) = (mesh, &view.skins.buffer) {
+            pass.set_bind_group(2, view.joints.bound.as_ref(), &[]);
+            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+            pass.set_vertex_buffer(1, instances.slice(..));
+            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..mesh.index_count, 0, skin.instances.clone());
+        }
+    }
+
+    fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &FigureDraw) {
         for (mesh, range) in [(&self.fine, &figure.fine), (&self.coarse, &figure.coarse)] {
             if !range.is_empty() {
                 pass.set_vertex_buffer(0, mesh.vertices.slice(..));

@@ -3,26 +3,21 @@
 // The limb's outline from above, blurred by a normal distribution that widens with the height over the ground: crisp under a planted foot, a
 // breath under the head. The target's alpha starts at 1 and keeps what light is left.
 
-struct Figure {
-    about: vec4f,
-    neighbours: array<vec4f, 144>,
-}
-
-@group(1) @binding(0) var<uniform> figure: Figure;
-
 struct Limb {
     @builtin(vertex_index) corner: u32,
     @builtin(instance_index) index: u32,
     @location(1) a: vec4f,
     @location(2) b: vec4f,
     @location(3) flat_axis: vec4f,
+    // How strong the shadow is, 0 to 1.
+    @location(10) strength: f32,
 }
 
 struct Blot {
     @builtin(position) clip: vec4f,
     // Along and across the limb, metres from `a`.
     @location(0) at: vec2f,
-    // Length on the ground, radius of a and b, unused.
+    // Length on the ground, radius of a and b, strength.
     @location(1) @interpolate(flat) size: vec4f,
     // Width of the blur at a and b, and of an upright limb; a number of the limb's own.
     @location(2) @interpolate(flat) blur: vec4f,
@@ -53,7 +48,7 @@ fn vs_shadow(limb: Limb) -> Blot {
     var out: Blot;
     out.clip = view.clip_from_world * vec4f(ground.x, 0.0, ground.y, 1.0);
     out.at = at;
-    out.size = vec4f(len, radius, 0.0);
+    out.size = vec4f(len, radius, limb.strength);
     out.blur = vec4f(blur, mix(min(blur.x, blur.y), max(blur.x, blur.y), 0.3), f32(limb.index % 61u));
     return out;
 }
@@ -82,7 +77,7 @@ fn fs_shadow(in: Blot) -> @location(0) vec4f {
     let along = blurred_box(-0.85 * in.size.y - in.at.x, len + 0.85 * in.size.z - in.at.x, sigma);
     // What is high up only dims a wide area: that much light comes around it.
     let high = mix(1.0, 0.42, smoothstep(0.05, 0.45, sigma / 0.26));
-    let dark = clamp(across * along, 0.0, 1.0) * high * figure.about.z;
+    let dark = clamp(across * along, 0.0, 1.0) * high * in.size.w;
     // Noise of the limb's own breaks up the steps of 8 bits; with one noise for all it would add up.
     let noise = dither(in.clip.xy + 17.0 * in.blur.w) * smoothstep(0.0, 3.0 / 255.0, dark);
     return vec4f(0.0, 0.0, 0.0, dark + noise);

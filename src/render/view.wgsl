@@ -21,8 +21,20 @@ struct View {
     focus: vec4f,
     grid: vec4f,
     edge: vec4f,
-    // Width of edges in pixels, darkening of rims, unused, unused.
+    // Width of edges in pixels, darkening of rims, 1 for two flat tones, light on rims from behind.
     style: vec4f,
+    // Middle of what the light map shows; w is half its width, metres.
+    light_center: vec4f,
+    // The map's directions, unit: to its right, w is half its depth in metres; up, w is 1 where there is a map.
+    light_right: vec4f,
+    light_up: vec4f,
+    // The pane's part of the map: left, top, width, height, 0 to 1.
+    light_tile: vec4f,
+    // Width of a texel in metres; how fast the edge of a shadow widens with distance, and the widest it gets, metres; how much of the light on
+    // the ground is the main one's.
+    light_tile_metres: vec4f,
+    // 1 for dual quaternions; width of a cell of the grid, metres; unused, unused.
+    more: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

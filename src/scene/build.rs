@@ -1,14 +1,15 @@
+use super::dress::Wardrobe;
 use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
-use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Stage, Viewport, with_alpha};
+use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha};
 use crate::clip::Interpolation;
 use crate::graph::Place;
 use crate::matching;
 use crate::math::Planar;
-use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of};
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
-use glam::Vec3;
-use std::sync::{Arc, Weak};
+use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Value, Walk, joint_of};
+use crate::skeleton::{Role, Side, Skeleton, WorldPose, world_pose, world_pose_into};
+use glam::{Quat, Vec3};
+use std::sync::Arc;
 
 /// The colours of what is made from A, from B, and from both, in the theme of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +40,9 @@ pub struct Director {
     marks: PathMarks,
     jump: Option<[Place; 2]>,
     candidate: Option<matching::Place>,
-    bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
+    wardrobe: Wardrobe,
+    /// A pose in the making.
+    posed: WorldPose,
 }
 
 /// A ghost fades in before the transition and out behind it, over this long.
@@ -58,6 +61,8 @@ const PAIR_ALPHA: f32 = 1.8;
 const COMPANY_SHARE: f32 = 0.55;
 /// And how much on that of one in a crowd.
 const CROWD_SHARE: f32 = 0.3;
+/// How much of a body is seen where its bones shine through.
+const GLASS_ALPHA: f32 = 0.5;
 /// Points of a path, at most. A path is as long as its clip, and no screen shows more.
 const PATH_POINTS: usize = 600;
 /// So much of a walk's path is drawn, behind and before it, seconds.
@@ -84,13 +89,15 @@ impl Director {
         let stage = Arc::make_mut(&mut self.stage);
         stage.look = look;
         stage.pixels_per_point = pixels_per_point;
+        stage.grid_metres = figure_height(params).recip();
         stage.panes.resize_with(shown.len(), Pane::default);
         let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
-        self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
+        self.wardrobe.choose(session);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
+            pane.skinning = skinning_of(session, index);
             if let Some(session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now)) {
                 let Some(world) = pose_at(&outcome.motion, now, &place) else {
                     continue;
@@ -163,16 +170,7 @@ impl Director {
     }
 
     fn body(&mut self, motion: &Motion) -> Arc<Body> {
-        let skeleton = motion.clip.skeleton();
-        let known =
-            |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles;
-        if let Some((.., body)) = self.bodies.iter().find(known) {
-            return Arc::clone(body);
-        }
-        let body = Arc::new(Body::new(skeleton, Some(&motion.roles)));
-        self.bodies
-            .push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
-        body
+        self.wardrobe.body(motion)
     }
 
     fn draw(&mut self, shown: &Shown<'_>, params: &Params, look: &Look, colors: &Colors, pane: &mut Pane) {
@@ -184,16 +182,18 @@ impl Director {
         } = shown;
         let (motion, now) = (&outcome.motion, *now);
         let body = self.body(motion);
-        let shape = params.text(Key::Look);
-        if shape != "bones" {
-            match outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors)) {
-                Some(layer) => pane.add_colored_body(&body, world, |joint| {
-                    share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)
-                }),
-                None => pane.add_body(&body, world, look.clay),
-            }
+        let twisted = twisted(motion, world, params.number(Key::Twist));
+        let world = twisted.as_ref().unwrap_or(world);
+        let seen = params.text(Key::Look);
+        match (seen, outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors))) {
+            ("bones", _) => {}
+            ("both", _) => pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA)),
+            (_, Some(layer)) => pane.add_colored_body(&body, world, |joint| {
+                share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)
+            }),
+            (_, None) => pane.add_body(&body, world, look.clay),
         }
-        if shape != "body" {
+        if matches!(seen, "bones" | "both") {
             add_bones(motion.clip.skeleton(), world, colors.result, pane);
         }
         if params.is_on(Key::Axes) {
@@ -275,13 +275,15 @@ impl Director {
             return;
         }
         let body = self.body(&shown.outcome.motion);
+        let world = &mut self.posed;
         for (index, pose) in poses.into_iter().enumerate() {
             let color = colors.others[index % colors.others.len()];
-            let world = world_pose(skeleton, pose);
+            let moved = pose.translations.iter().copied();
+            world_pose_into(skeleton, pose.root_translation, &pose.rotations, moved, world);
             if session.params().text(Key::Look) == "bones" {
-                add_bones(skeleton, &world, color, pane);
+                add_bones(skeleton, world, color, pane);
             } else {
-                pane.add_body(&body, &world, mixed(look.clay, color, CROWD_SHARE));
+                pane.add_body(&body, world, mixed(look.clay, color, CROWD_SHARE));
             }
         }
     }
@@ -408,7 +410,7 @@ impl Director {
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
-        );
+        ) / figure_height(params);
         let goal = Camera {
             target: followed.unwrap_or_else(|| resting_point(shown.outcome, &shown.place)) + pan,
             ..camera_of(params)
@@ -462,6 +464,54 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
     Some(world)
 }
 
+/// How many times as high as its clip a figure is shown.
+///
+/// It is the world about it that is shown smaller: the camera stands nearer and the cells of the grid are narrower, and with the figure grow its
+/// steps, its path, and all that is drawn along with it. What stands still keeps standing still: foot skate is neither made nor hidden.
+#[must_use]
+pub fn figure_height(params: &Params) -> f32 {
+    (params.number(Key::FigureHeight) as f32).max(0.1)
+}
+
+/// The pane's own way of skinning where it is compared, else that of all.
+fn skinning_of(session: &Session, pane: usize) -> Skinning {
+    let compared = session.panes().get(pane).and_then(|pane| match &pane.variant {
+        Some((Key::Skinning, Value::Choice(word))) => Some(*word),
+        _ => None,
+    });
+    match compared.unwrap_or(session.params().text(Key::Skinning)) {
+        "linear" => Skinning::Linear,
+        _ => Skinning::Dual,
+    }
+}
+
+/// The pose with both hands turned about their forearms, by degrees; `None` where they are not to be.
+fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose> {
+    let (skeleton, mut world) = (motion.clip.skeleton(), (degrees != 0.0).then(|| world.clone())?);
+    for side in Side::BOTH {
+        let (Some(elbow), Some(hand)) = (motion.roles.get(Role::forearm(side)), motion.roles.get(Role::hand(side))) else {
+            continue;
+        };
+        let (Some(&from), Some(&wrist)) = (world.positions.get(elbow), world.positions.get(hand)) else {
+            continue;
+        };
+        let Some(axis) = (wrist - from).try_normalize() else { continue };
+        let turn = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
+        // The hand and all that hangs on it: parents come first.
+        let mut moved = vec![false; skeleton.len()];
+        for joint in hand..skeleton.len() {
+            moved[joint] = joint == hand || skeleton.parent(joint).is_some_and(|parent| moved[parent]);
+            if moved[joint]
+                && let (Some(position), Some(rotation)) = (world.positions.get_mut(joint), world.rotations.get_mut(joint))
+            {
+                *position = wrist + turn * (*position - wrist);
+                *rotation = turn * *rotation;
+            }
+        }
+    }
+    Some(world)
+}
+
 /// The camera that the parameters describe, wherever what it follows may be.
 #[must_use]
 pub fn camera_of(params: &Params) -> Camera {
@@ -473,7 +523,7 @@ pub fn camera_of(params: &Params) -> Camera {
         } else {
             params.number(Key::CameraPitch).to_radians() as f32
         },
-        distance: params.number(Key::CameraDistance) as f32,
+        distance: params.number(Key::CameraDistance) as f32 / figure_height(params),
         lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
         ..Camera::default()
     }
@@ -661,6 +711,6 @@ fn add_contacts(shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
             .unwrap_or(toe);
         let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;
         let middle = toe.lerp(ankle, 0.35).with_y(0.0);
-        pane.add_contact(middle, if slides { colors.bad } else { colors.result });
+        pane.add_contact(middle, if slides { colors.bad } else { colors.result }, slides);
     }
 }

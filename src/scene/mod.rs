@@ -9,6 +9,7 @@ mod body;
 mod bounds;
 mod build;
 mod camera;
+mod dress;
 mod drive;
 mod path;
 mod rig;
@@ -16,8 +17,8 @@ mod stage;
 
 pub use body::Body;
 pub use bounds::Bounds;
-pub use build::{Colors, Director, camera_of, pose_at, resting_point};
+pub use build::{Colors, Director, camera_of, figure_height, pose_at, resting_point};
 pub use camera::{Camera, Lens, Ray};
 pub use path::PathMarks;
 pub use rig::CameraRig;
-pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Stage, Stroke, Viewport, rgb, with_alpha};
+pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport, rgb, with_alpha};

@@ -1,7 +1,9 @@
 use super::{Body, Camera};
 use crate::skeleton::WorldPose;
+use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::Vec3;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, alpha straight.
 pub type Color = [f32; 4];
@@ -42,15 +44,47 @@ pub struct Limb {
     pub color: Color,
 }
 
-/// The limbs of one body, as a range of [`Pane::limbs`].
+/// One body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Which limbs.
+    /// Its limbs, a range of [`Pane::limbs`].
     pub limbs: Range<usize>,
+    /// The skin that is seen in their place: then they only shade the ground.
+    pub skin: Option<Skin>,
     /// Translucent: only its front is seen, and bodies behind it shine through.
     pub ghost: bool,
-    /// How strongly it darkens the ground, 0 (not at all) to 1.
+    /// How strongly it darkens the ground near it, 0 (not at all) to 1: what is that strong also keeps off the main light.
     pub shadow: f32,
+}
+
+/// A skinned mesh in a pose.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// The mesh; many figures may share one.
+    pub mesh: Arc<SkinnedMesh>,
+    /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
+    pub joints: Range<usize>,
+    /// Colour; for a ghost the alpha says how much of it is seen. Where the mesh has colours of its own, a solid body shows those.
+    pub color: Color,
+    /// Whether every joint has a colour of its own instead, in [`Pane::joint_colors`].
+    pub colored: bool,
+}
+
+/// Meshes are large: one is itself and no other.
+impl PartialEq for Skin {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh) && self.joints == other.joints && self.color == other.color && self.colored == other.colored
+    }
+}
+
+/// How a skin follows its joints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Skinning {
+    /// The mean of the joints' motions, as dual quaternions: a twisted limb keeps its girth.
+    #[default]
+    Dual,
+    /// The mean of where each joint would take the point: a twisted limb collapses.
+    Linear,
 }
 
 /// Where a line is in the depth of the picture.
@@ -157,6 +191,12 @@ pub struct Pane {
     pub limbs: Vec<Limb>,
     /// The bodies.
     pub figures: Vec<Figure>,
+    /// The joints of all skins.
+    pub joints: Vec<RigidTransform>,
+    /// A colour for each of them.
+    pub joint_colors: Vec<Color>,
+    /// How skins follow their joints.
+    pub skinning: Skinning,
     /// Lines.
     pub strokes: Vec<Stroke>,
     /// Rings on the ground.
@@ -168,30 +208,64 @@ impl Pane {
     pub fn clear(&mut self) {
         self.limbs.clear();
         self.figures.clear();
+        self.joints.clear();
+        self.joint_colors.clear();
         self.strokes.clear();
         self.rings.clear();
     }
 
     /// Adds a body in a pose, solid, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, |_| color, false, 1.0);
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, false, 1.0);
     }
 
     /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
     pub fn add_colored_body(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color) {
-        self.add_figure(body, pose, color_of, false, 1.0);
+        self.add_figure(body, pose, [1.0; 4], Some(color_of), false, 1.0);
     }
 
     /// Adds a translucent body; its shadow is as strong as the colour's alpha.
     pub fn add_ghost(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, |_| color, true, color[3]);
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, color[3]);
     }
 
-    fn add_figure(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color, ghost: bool, shadow: f32) {
+    /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one does.
+    pub fn add_glass(&mut self, body: &Body, pose: &WorldPose, color: Color) {
+        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, 1.0);
+    }
+
+    fn add_figure(
+        &mut self,
+        body: &Body,
+        pose: &WorldPose,
+        color: Color,
+        color_of: Option<impl Fn(usize) -> Color>,
+        ghost: bool,
+        shadow: f32,
+    ) {
+        let mut led = WorldPose::default();
+        let pose = body.led_pose(pose, &mut led).unwrap_or(pose);
         let start = self.limbs.len();
-        body.colored_limbs(pose, color_of, &mut self.limbs);
+        match (&color_of, body.skin()) {
+            (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),
+            _ => body.limbs(pose, color, &mut self.limbs),
+        }
+        let skin = body.skin().map(|mesh| {
+            let first = self.joints.len();
+            self.joints.extend(mesh.world_from_bind(pose));
+            let joints = first..self.joints.len();
+            self.joint_colors
+                .extend((0..joints.len()).map(|joint| color_of.as_ref().map_or(color, |color_of| color_of(body.color_joint(joint)))));
+            Skin {
+                mesh: Arc::clone(mesh),
+                joints,
+                color,
+                colored: color_of.is_some(),
+            }
+        });
         self.figures.push(Figure {
             limbs: start..self.limbs.len(),
+            skin,
             ghost,
             shadow,
         });
@@ -283,14 +357,15 @@ impl Pane {
         }
     }
 
-    /// Adds a ring of 12 cm on the ground about a planted foot.
-    pub fn add_contact(&mut self, foot: Vec3, color: Color) {
+    /// Adds a ring of 12 cm on the ground about a planted foot. That of a foot which slides is heavier: its colour is not all that tells it.
+    pub fn add_contact(&mut self, foot: Vec3, color: Color, slides: bool) {
+        let (width, fill) = if slides { (0.032, 0.32) } else { (0.014, 0.1) };
         self.rings.push(Ring {
             center: foot,
             radius: 0.12,
-            width: 0.014,
+            width,
             color,
-            fill: 0.1,
+            fill,
         });
     }
 }
@@ -310,6 +385,8 @@ pub struct Look {
     pub grid: Color,
     /// How dark the ground gets under a body, 0–1.
     pub shadow: f32,
+    /// How much of the light on the ground is the main one's, which throws the shadow of the whole body, 0–1.
+    pub key_shadow: f32,
     /// The neutral clay for the bodies that are the result.
     pub clay: Color,
     /// Thin lines where one limb passes before another; the alpha says how clear they are.
@@ -318,6 +395,10 @@ pub struct Look {
     pub edge_width: f32,
     /// How much limbs darken towards their silhouette, 0–1.
     pub rim: f32,
+    /// How much light from behind there is on a silhouette.
+    pub rim_light: f32,
+    /// Two tones with a line between them, and shadows with a hard edge: for print.
+    pub flat: bool,
 }
 
 impl Look {
@@ -329,10 +410,13 @@ impl Look {
         floor_radius: 3.6,
         grid: [0.55, 0.6, 0.7, 0.26],
         shadow: 0.82,
+        key_shadow: 0.6,
         clay: rgb(0xd2_d6_e2),
         edge: [0.04, 0.045, 0.06, 0.85],
         edge_width: 1.1,
         rim: 0.62,
+        rim_light: 0.5,
+        flat: false,
     };
 
     /// For the light theme.
@@ -343,10 +427,30 @@ impl Look {
         floor_radius: 4.2,
         grid: [0.42, 0.48, 0.6, 0.3],
         shadow: 0.5,
+        key_shadow: 0.5,
         clay: rgb(0xae_b4_c4),
         edge: [0.16, 0.19, 0.26, 0.8],
         edge_width: 1.1,
         rim: 0.45,
+        rim_light: 0.2,
+        flat: false,
+    };
+
+    /// For print and for a bright lecture hall: black lines and two flat tones on white.
+    pub const PAPER: Self = Self {
+        background_top: rgb(0xff_ff_ff),
+        background_bottom: rgb(0xff_ff_ff),
+        floor: rgb(0xff_ff_ff),
+        floor_radius: 5.0,
+        grid: [0.0, 0.0, 0.0, 0.28],
+        shadow: 0.3,
+        key_shadow: 0.85,
+        clay: rgb(0xf4_f4_f4),
+        edge: [0.0, 0.0, 0.0, 1.0],
+        edge_width: 2.0,
+        rim: 0.0,
+        rim_light: 0.0,
+        flat: true,
     };
 }
 
@@ -359,6 +463,8 @@ pub struct Stage {
     pub look: Look,
     /// Physical pixels per point: widths of lines are in points.
     pub pixels_per_point: f32,
+    /// Width of a cell of the grid on the ground, metres of the scene.
+    pub grid_metres: f32,
 }
 
 impl Default for Stage {
@@ -367,6 +473,7 @@ impl Default for Stage {
             panes: Vec::new(),
             look: Look::DARK,
             pixels_per_point: 1.0,
+            grid_metres: 1.0,
         }
     }
 }

@@ -1,7 +1,8 @@
 use super::params::{Key, Kind, Value, ValueError};
+use super::recipe::{read_ids, write_ids};
 use std::fmt;
 
-/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`, `method:inertialize,smooth`.
+/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`, `method:inertialize,smooth`, `a:walk,run`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
     /// The parameter in which the panes differ.
@@ -28,11 +29,18 @@ impl Compare {
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
         let key = Key::from_name(name.trim())
             .filter(|key| key.param().is_comparable())
-            .ok_or_else(|| refuse(format!("a number or a choice of a lab before the colon, not `{name}`")))?;
-        let values = list
-            .split(',')
-            .map(|value| match key.param().parse(value.trim())? {
-                Value::Auto => Err(refuse(format!("a value for each pane, not `{value}`"))),
+            .ok_or_else(|| refuse(format!("a number or a choice of a lab, or a clip, before the colon, not `{name}`")))?;
+        let is_clip = matches!(key.param().kind, Kind::Clip);
+        let words = if is_clip {
+            read_ids(list).ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?
+        } else {
+            list.split(',').map(|word| word.trim().to_owned()).collect()
+        };
+        let values = words
+            .iter()
+            .map(|word| match key.param().parse(word)? {
+                Value::Auto => Err(refuse(format!("a value for each pane, not `{word}`"))),
+                Value::Text(id) if id.is_empty() => Err(refuse("a clip for each pane".into())),
                 value => Ok(value),
             })
             .collect::<Result<Vec<Value>, ValueError>>()?;
@@ -64,7 +72,11 @@ impl fmt::Display for Compare {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let param = self.key.param();
         let values: Vec<String> = self.values.iter().map(|value| param.format(value)).collect();
-        write!(f, "{}:{}", param.name, values.join(","))
+        let values = match param.kind {
+            Kind::Clip => write_ids(&values),
+            _ => values.join(","),
+        };
+        write!(f, "{}:{values}", param.name)
     }
 }
 
@@ -77,6 +89,10 @@ mod tests {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
         assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0), Some(compare));
+        // A kept clip's id has commas of its own, and so may a file's name.
+        let clips = Compare::parse("a:walk,blend(a:walk,b:run),my%2C walk.bvh~0a1b2c3d").unwrap();
+        assert_eq!(clips.values[2], Value::Text("my, walk.bvh~0a1b2c3d".into()));
+        assert_eq!(Compare::parse(&clips.to_string()), Ok(clips));
         let methods = Compare::parse("method:inertialize, smooth,dead").unwrap();
         assert_eq!(methods.to_string(), "method:inertialize,smooth,dead");
     }
@@ -88,6 +104,9 @@ mod tests {
             ("align:1,2", "not `align`"),
             ("rate:1,2", "not `rate`"),
             ("method:cut,leap", "expected inertialize"),
+            ("a:walk", "not 1"),
+            ("a:walk,blend(a:walk", "brackets close"),
+            ("a:walk,,run", "a clip for each pane"),
             ("blend_window:30", "2 to 4 values, not 1"),
             ("blend_window:1,2,3,4,5", "not 5"),
             ("leave_a:auto,1", "not `auto`"),

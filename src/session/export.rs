@@ -90,7 +90,13 @@ pub fn export(motion: &Motion, columns: &[Column], options: &ExportOptions) -> R
             };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
-        ExportFormat::Glb => write_glb(&motion.clip, &GlbOptions { fps: options.fps }),
+        ExportFormat::Glb => write_glb(
+            &motion.clip,
+            &GlbOptions {
+                fps: options.fps,
+                smooth: true,
+            },
+        ),
     }
 }
 

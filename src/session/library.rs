@@ -4,6 +4,7 @@ use super::motion::Motion;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
 use crate::formats::{FileKind, ImportOptions};
 use crate::skeleton::Roles;
+use crate::skin::{Character, SkinnedMesh};
 use std::sync::Arc;
 
 /// Where a clip comes from.
@@ -74,6 +75,8 @@ pub struct Entry {
     pub origin: Origin,
     /// The motion; `None` for a sample that was not loaded yet, a preset that was not needed yet, and a file that is being read.
     pub motion: Option<Arc<Motion>>,
+    /// The mesh that the file has for the clip's skeleton.
+    pub mesh: Option<Arc<SkinnedMesh>>,
     /// Why there is no motion though the file is known: reading it failed or was stopped. It is read again when that is asked for.
     pub unread: Option<String>,
     /// How its file was read; `None` for what comes from no file, and until it is read.
@@ -92,6 +95,7 @@ impl Entry {
             name: name.into(),
             origin,
             motion: None,
+            mesh: None,
             unread: None,
             about: None,
             warnings: Vec::new(),
@@ -114,6 +118,17 @@ impl Entry {
     pub fn awaits_skeleton(&self) -> bool {
         let motion_alone = |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
         self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
+    }
+
+    /// The character that the file brought: its mesh on the clip's skeleton. `None` without a mesh, and until the file is read.
+    #[must_use]
+    pub fn character(&self) -> Option<Character> {
+        let motion = self.motion.as_ref()?;
+        Some(Character {
+            skeleton: Arc::clone(motion.clip.skeleton()),
+            roles: motion.roles.clone(),
+            mesh: Arc::clone(self.mesh.as_ref()?),
+        })
     }
 
     /// The whole SHA-256 of the file it came from, hexadecimal.
@@ -236,6 +251,7 @@ mod tests {
             name: name.into(),
             origin: Origin::File(file),
             motion: None,
+            mesh: None,
             unread: None,
             about: None,
             warnings: vec![],

@@ -305,20 +305,6 @@ const HYSTERESES: &[Choice] = &[
 ];
 const SEARCHES: &[Choice] = &[choice("boxes", "boxes"), choice("tree", "k-d tree"), choice("scan", "scan")];
 const JUMPS: &[Choice] = &[choice("inertialize", "inertialize"), choice("dead", "dead blend")];
-const ASKED_TAGS: &[Choice] = &[
-    choice("any", "anything"),
-    choice("walk", "walk"),
-    choice("run", "run"),
-    choice("idle", "idle"),
-    choice("turn", "turn"),
-];
-const FORBIDDEN_TAGS: &[Choice] = &[
-    choice("nothing", "nothing"),
-    choice("walk", "walk"),
-    choice("run", "run"),
-    choice("idle", "idle"),
-    choice("turn", "turn"),
-];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -328,7 +314,19 @@ const GAITS: &[Choice] = &[
     choice("spin", "spin"),
     choice("jump", "jump"),
 ];
-const LOOKS: &[Choice] = &[choice("body", "body"), choice("bones", "bones"), choice("both", "both")];
+const LOOKS: &[Choice] = &[
+    choice("body", "body"),
+    choice("limbs", "limbs"),
+    choice("bones", "bones"),
+    choice("both", "both"),
+];
+const SKINNINGS: &[Choice] = &[choice("dual", "dual quaternions"), choice("linear", "linear blend")];
+const STAGES: &[Choice] = &[
+    choice("auto", "auto"),
+    choice("dark", "dark"),
+    choice("light", "light"),
+    choice("paper", "paper"),
+];
 const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
 const CURVES: &[Choice] = &[
@@ -387,6 +385,7 @@ parameters! {
     WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
     WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
+    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Word(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
     WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Word(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
     WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
     WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
@@ -456,8 +455,9 @@ parameters! {
     ClampDistance "clamp_distance" "Never farther than" Match number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
     ClampTurn "clamp_turn" "Never turned more than" Match number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
     PlantFeet "plant_feet" "Foot lock" Match Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
-    AskTag "ask_tag" "Only frames of" Match Kind::Choice(ASKED_TAGS), Start::Word("any"), "", "Frames must have this tag.";
-    ForbidTag "forbid_tag" "No frames of" Match Kind::Choice(FORBIDDEN_TAGS), Start::Word("nothing"), "", "Frames must not have this tag.";
+    AskTag "ask_tag" "Only frames of" Match Kind::Text, Start::Word("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
+    ForbidTag "forbid_tag" "No frames of" Match Kind::Text, Start::Word("nothing"), "", "Frames must not have this tag.";
+    Tags "tags" "Tags" Match Kind::Text, Start::Word(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
     ShownCandidates "shown_candidates" "Candidates shown" Match number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
     Crowd "crowd" "Characters" Match number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
 
@@ -471,7 +471,13 @@ parameters! {
     MakeSeconds "make_seconds" "Length" Make number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
     Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
 
-    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "Body, bones, or both.";
+    Stage "stage" "Stage" Stage Kind::Choice(STAGES), Start::Word("auto"), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
+    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
+    Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
+    FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
+    FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.01), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
+    Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once. Twist a forearm: linear blend wraps it like a candy, dual quaternions keep its girth.";
+    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does: a test of the skin.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
     Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";
@@ -710,10 +716,14 @@ impl Param {
         }
     }
 
-    /// Whether compare can make panes of it: a number that changes the result.
+    /// Whether compare can make panes of it: a clip, a number or choice that changes the result, and the two ways of skinning.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        matches!(self.kind, Kind::Number { .. } | Kind::Choice(_)) && self.group.is_of_lab()
+        match self.kind {
+            Kind::Clip => true,
+            Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab() || self.key == Key::Skinning,
+            _ => false,
+        }
     }
 }
 

@@ -23,8 +23,8 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
-pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, recording_of};
-pub use driving::{DriveMoment, Driven};
+pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, read_tags, recording_of};
+pub use driving::{DriveMoment, Driven, HandTag, own_words, write_tags};
 pub use graph::{At, Built, Cast, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub use kept::write_ids;
@@ -36,10 +36,10 @@ pub(super) use make::{made_id, make, preset_motion, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath};
 pub(super) use path::{PathInputs, Paths};
-pub use register::{Beat, DistanceMap, Registered, weight_curve, write_pairs};
-pub(super) use register::{RegisterInputs, Registrar, read_pins, read_weights};
+pub use register::{Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs};
+pub(super) use register::{RegisterInputs, Registrars, read_also, read_pins, read_weights};
 pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
-pub(super) use view::{FeetHolder, ViewInputs};
+pub(super) use view::{ViewInputs, Viewer};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

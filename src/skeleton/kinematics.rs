@@ -1,5 +1,5 @@
 use super::{Pose, Skeleton};
-use crate::math::Planar;
+use crate::math::{Planar, quat};
 use glam::{Quat, Vec3};
 
 /// Every joint in the world.
@@ -70,6 +70,34 @@ pub fn world_pose_of(
     place(skeleton, root_translation, rotations, translations, joints.iter().copied(), world);
 }
 
+/// The way back from [`world_pose`]: the local rotations, and the translations of joints that are not where their offset puts them (by more than
+/// 0.1 mm). Joints that the pose does not have rest.
+#[must_use]
+pub fn local_pose(skeleton: &Skeleton, world: &WorldPose) -> Pose {
+    const SAME_PLACE_M: f32 = 1e-4;
+    let mut pose = Pose {
+        root_translation: world.positions.first().copied().unwrap_or_default(),
+        ..Pose::default()
+    };
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        let (Some(&position), Some(&rotation)) = (world.positions.get(index), world.rotations.get(index)) else {
+            break;
+        };
+        let Some(parent) = joint.parent else {
+            pose.rotations.push(rotation);
+            continue;
+        };
+        let parent_from_world = world.rotations[parent].conjugate();
+        pose.rotations.push(quat::renormalize(parent_from_world * rotation));
+        let translation = parent_from_world * (position - world.positions[parent]);
+        if translation.distance(joint.offset) > SAME_PLACE_M {
+            pose.translations.push((index, translation));
+        }
+    }
+    pose.rotations.resize(skeleton.len(), Quat::IDENTITY);
+    pose
+}
+
 fn place(
     skeleton: &Skeleton,
     root_translation: Vec3,
@@ -99,5 +127,37 @@ fn place(
         };
         world.positions[index] = position;
         world.rotations[index] = rotation;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures;
+
+    #[test]
+    fn a_pose_comes_back_from_the_world() {
+        let skeleton = fixtures::cmu_bvh();
+        let mut next = fixtures::noise(3);
+        let mut random = |scale: f32| Vec3::new(next(), next(), next()) * scale;
+        let pose = Pose {
+            root_translation: random(2.0),
+            rotations: (0..skeleton.len()).map(|_| quat::exp(random(1.5))).collect(),
+            translations: vec![(4, random(0.3)), (9, random(0.3))],
+        };
+        let world = world_pose(&skeleton, &pose);
+        let back = local_pose(&skeleton, &world);
+        assert_eq!(back.translations.iter().map(|(joint, _)| *joint).collect::<Vec<_>>(), [4, 9]);
+        let again = world_pose(&skeleton, &back);
+        for joint in 0..skeleton.len() {
+            assert!(again.positions[joint].distance(world.positions[joint]) < 1e-5);
+            assert!(quat::angle_between(again.rotations[joint], world.rotations[joint]) < 1e-3);
+        }
+        // A pose of fewer joints rests where it ends.
+        let short = WorldPose {
+            positions: world.positions[..5].to_vec(),
+            rotations: world.rotations[..5].to_vec(),
+        };
+        assert_eq!(local_pose(&skeleton, &short).rotations.len(), skeleton.len());
     }
 }

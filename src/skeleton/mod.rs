@@ -15,7 +15,7 @@ mod tree;
 mod two_bones;
 
 pub use joint_map::JointMap;
-pub use kinematics::{WorldPose, world_pose, world_pose_into, world_pose_of};
+pub use kinematics::{WorldPose, local_pose, world_pose, world_pose_into, world_pose_of};
 pub use mirror::{Mirror, NoSides};
 pub use pose::Pose;
 pub use retarget::Retargeting;

@@ -16,6 +16,7 @@ use super::save_rows::save_rows_ui;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
+use super::top_bar::toggle_compare;
 use eframe::egui::{self, Ui};
 use segue::math::spring;
 use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value};
@@ -43,7 +44,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 
 fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
-    slot_row_ui(Slot::A, session, out, ui);
+    compared_clips_ui(session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     let is_held = session.params().is_on(Key::FootLock);
     if is_held {
@@ -52,6 +53,28 @@ fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(entry) = session.slot(Slot::A) {
         let saved = if is_held { "result:0" } else { entry.id.as_str() };
         ui.push_id(&entry.id, |ui| clip_panel_ui(entry, saved, session, state, out, ui));
+    }
+}
+
+/// The clip, or those that stand side by side.
+fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let compare = session.compare().filter(|compare| compare.key == Key::A);
+    let label = if let Some(compare) = compare {
+        for (pane, value) in compare.values.iter().enumerate() {
+            let label = format!("{} {}", text::CLIP, pane + 1);
+            if let Some(id) = clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui) {
+                let mut compare = compare.clone();
+                compare.values[pane] = Value::Text(id);
+                out.set_once(Key::Compare, Value::Text(compare.to_string()));
+            }
+        }
+        text::COMPARE_OFF
+    } else {
+        slot_row_ui(Slot::A, session, out, ui);
+        text::COMPARE_CLIPS
+    };
+    if kit::button_ui(Button::new(label).hint(text::COMPARE_CLIPS_HELP), ui).clicked() {
+        toggle_compare(session, out);
     }
 }
 
@@ -131,19 +154,11 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     save_result_ui(session, state, out, ui);
 }
 
-/// `30 frames`.
-pub(super) fn value_in_words((key, value): &(Key, Value)) -> String {
-    format!("{} {}", key.param().spoken(value), key.param().unit).trim_end().to_owned()
-}
-
 /// Keeps the result, or saves it; which one, where several stand side by side.
 pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
-    let names: Vec<String> = panes
-        .iter()
-        .map(|pane| pane.variant.as_ref().map_or_else(String::new, value_in_words))
-        .collect();
+    let names: Vec<String> = panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
     if panes.len() > 1 {
         let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
         if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
@@ -272,22 +287,26 @@ fn found_sentence(session: &Session) -> String {
 
 /// Which clip is in a slot, to be chosen anew.
 pub(super) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let chosen = session.slot(slot).map_or("", |entry| entry.id.as_str());
+    if let Some(id) = clip_choice_ui(slot.label(), chosen, session, ui) {
+        out.commands.push(Command::Assign(slot, id));
+    }
+}
+
+/// A clip of the library to choose; the id of the one that was.
+pub(super) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &mut Ui) -> Option<String> {
     let entries = session.library().entries();
     let options: Vec<(usize, &str)> = entries
         .iter()
         .enumerate()
         .map(|(index, entry)| (index, entry.name.as_str()))
         .collect();
-    let chosen = session
-        .slot(slot)
-        .and_then(|entry| entries.iter().position(|other| other.id == entry.id))
-        .unwrap_or(usize::MAX);
+    let chosen = session.library().find(chosen);
+    let chosen = chosen.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
     let picked = ui
-        .push_id(slot.label(), |ui| kit::choice_row_ui(slot.label(), chosen, &options, ui))
+        .push_id(label, |ui| kit::choice_row_ui(label, chosen.unwrap_or(usize::MAX), &options, ui))
         .inner;
-    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
-        out.commands.push(Command::Assign(slot, entry.id.clone()));
-    }
+    Some(entries.get(picked?)?.id.clone())
 }
 
 /// The experiment of the course, and the way back from it.

@@ -206,7 +206,7 @@ fn try_ui(label: &str, query: &str, session: &Session, out: &mut Out, ui: &mut U
 
 fn title_ui(title: &str, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.label(RichText::new(title).font(theme.font(Type::Heading)).color(palette.text));
+    ui.label(RichText::new(tr(title, ui)).font(theme.font(Type::Heading)).color(palette.text));
     ui.add_space(space::XS);
 }
 

@@ -7,9 +7,10 @@ use super::out::{Action, Out};
 use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
+use super::top_bar::compare_clips;
 use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue::session::export::{ExportFormat, ExportOptions};
-use segue::session::{Command, Entry, Origin, Session, Slot};
+use segue::session::{Command, Entry, Key, Origin, Session, Slot};
 
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -193,6 +194,14 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
             {
                 out.commands.push(Command::Assign(slot, entry.id.clone()));
             }
+        }
+        let compare = MenuItem {
+            text: text::COMPARE_WITH_A,
+            icon: Some(Icon::Swap),
+            ..MenuItem::default()
+        };
+        if part != Part::A && kit::menu_item_ui(compare, ui).clicked() {
+            compare_clips(session.params().text(Key::A), &entry.id, out);
         }
         for format in ExportFormat::ALL {
             let words = format!("{} {}", text::SAVE_AS, text::format(format));

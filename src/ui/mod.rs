@@ -36,10 +36,11 @@ pub(crate) use language::{Language, Tongue, speak_english};
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};
-pub(crate) use text::{LINK_COPIED, TABLE_COPIED};
+pub(crate) use text::{LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
+use segue::scene::Look;
 use segue::session::{Key, Session};
 use state::Layout;
 use theme::{Theme, palette_of, space, theme_of};
@@ -55,6 +56,27 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
         dark,
         projector: session.params().is_on(Key::Projector),
     }
+}
+
+/// The theme of what lies over the stage, on a page of that theme.
+pub(crate) fn stage_theme(session: &Session, page: Theme) -> Theme {
+    let dark = match session.params().text(Key::Stage) {
+        "dark" => true,
+        "light" | "paper" => false,
+        _ => page.dark,
+    };
+    Theme { dark, ..page }
+}
+
+/// Colours and light of the stage in that theme.
+pub(crate) fn stage_look(session: &Session, theme: Theme) -> Look {
+    let mut look = match (session.params().text(Key::Stage), theme.dark) {
+        ("paper", _) => Look::PAPER,
+        (_, true) => Look::DARK,
+        (_, false) => Look::LIGHT,
+    };
+    look.edge_width *= theme.scale();
+    look
 }
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
@@ -181,7 +203,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
 fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
     match session.graph_walk().filter(|walk| !walk.is_jump) {
         Some(walk) => graph::walk_panel_ui(session, walk, layout, state, out, ui),
-        None => timeline_panel::timeline_panel_ui(session, layout, curves, out, ui),
+        None => timeline_panel::timeline_panel_ui(session, layout, curves, state, out, ui),
     }
 }
 

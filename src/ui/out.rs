@@ -19,6 +19,8 @@ pub(crate) enum Action {
         /// As what, and how.
         how: ExportOptions,
     },
+    /// Put what is shown into the clipboard, as a report with a picture.
+    CopyReport,
     /// Put a text into the clipboard.
     CopyText(String),
     /// Save a text as a file.

@@ -1,7 +1,7 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
-use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, MapCurve, WeightCurveEvent, WeightCurveRow};
-use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
+use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
+use super::lab_panel::{clip_choice_ui, compare_ui, lab_label, pair_ui, save_result_ui};
 use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -9,9 +9,12 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
-use segue::session::{Command, DistanceMap, Key, Registered, Session, Slot, Value, weight_curve, write_pairs};
+use segue::session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
 use segue::skeleton::Side;
 use std::sync::Arc;
+
+/// How much of a clip there is that has just joined a blend.
+const FIRST_SHARE: f64 = 0.25;
 
 /// All rows of the lab.
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -32,6 +35,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     let shown = |mode: &str| modes.is_some() || params.text(Key::WarpMode) == mode;
     if shown("blend") {
         weight_ui(session, out, ui);
+        also_ui(session, out, ui);
     }
     if shown("join") {
         let last = |slot| {
@@ -98,6 +102,59 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     if kit::button_ui(Button::new(label), ui).clicked() {
         out.set_once(Key::WarpCurve, Value::Text(wanted.to_owned()));
+    }
+}
+
+/// The further clips of a blend, each with its weight.
+fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let also = session.also_blended();
+    let set = |also: &[(String, f64)], out: &mut Out| out.set(Key::WarpAlso, Value::Text(write_also(also)));
+    for (index, (id, weight)) in also.iter().enumerate() {
+        let label = text::blended_clip(index);
+        let with = |clip: (String, f64)| {
+            let mut also = also.clone();
+            also[index] = clip;
+            also
+        };
+        ui.horizontal(|ui| {
+            let gone = kit::icon_button_ui(Icon::Close, text::REMOVE, ui).clicked();
+            if gone {
+                let rest: Vec<(String, f64)> = also
+                    .iter()
+                    .enumerate()
+                    .filter(|(at, _)| *at != index)
+                    .map(|(_, clip)| clip.clone())
+                    .collect();
+                set(&rest, out);
+                out.commands.push(Command::Settle);
+            }
+            ui.vertical(|ui| {
+                if let Some(chosen) = clip_choice_ui(&label, id, session, ui) {
+                    set(&with((chosen, *weight)), out);
+                    out.commands.push(Command::Settle);
+                }
+            });
+        });
+        let share = text::weight_of(index);
+        let response = kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
+        if let Some(weight) = response.changed {
+            set(&with((id.clone(), weight)), out);
+        }
+        if response.drag_ended || (response.changed.is_some() && !response.response.dragged()) {
+            out.commands.push(Command::Settle);
+        }
+    }
+    if also.len() < MOST_ALSO
+        && kit::button_ui(Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(Key::WarpAlso.param().help), ui).clicked()
+    {
+        // The first that is not in it yet, if there is one.
+        let params = session.params();
+        let is_in = |id: &str| [Key::A, Key::B].iter().any(|key| params.text(*key) == id) || also.iter().any(|(other, _)| other == id);
+        let entries = session.library().entries();
+        let next = entries.iter().find(|entry| !is_in(&entry.id)).or(entries.first());
+        let added = next.map(|entry| (entry.id.clone(), FIRST_SHARE));
+        set(&also.iter().cloned().chain(added).collect::<Vec<_>>(), out);
+        out.commands.push(Command::Settle);
     }
 }
 

@@ -12,14 +12,18 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
-use segue::scene::{camera_of, resting_point};
-use segue::session::{CycleMade, Key, Outcome, Pane, Session, Value, Walk, write_path};
+use segue::scene::{camera_of, figure_height, resting_point};
+use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
 
-/// The whole stage, as large as `ui`.
+/// The whole stage, as large as `ui`, in the stage's own theme.
 pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+    super::stage_theme(session, theme_of(ui)).within(ui, |ui| stage_ui(session, layout, state, out, paint, ui));
+}
+
+fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let stage = ui.available_rect_before_wrap();
     state.stage = stage;
     let panes = session.panes();
@@ -133,14 +137,12 @@ fn verdicts(panes: &[Pane]) -> Verdicts {
     if walk.best.is_some() {
         return walk;
     }
-    let (registered, transition, cycle) = (of("skate_mean_cm"), of("seam_dps"), of("loop_seam_dps"));
-    if registered.best.is_some() {
-        registered
-    } else if transition.best.is_some() {
-        transition
-    } else {
-        cycle
-    }
+    let looked_at = ["skate_mean_cm", "seam_dps", "loop_seam_dps", "clip_seam_dps"];
+    looked_at
+        .map(of)
+        .into_iter()
+        .find(|verdicts| verdicts.best.is_some())
+        .unwrap_or_default()
 }
 
 /// Differences below this are nobody's verdict.
@@ -299,6 +301,13 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
     if let Some((key, value)) = &pane.variant {
         let param = key.param();
+        if matches!(param.kind, Kind::Clip) {
+            return Words {
+                strong: session.variant_name(pane).unwrap_or_default(),
+                text: String::new(),
+                secondary: String::new(),
+            };
+        }
         let secondary = match value {
             Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
             // A bare number says nothing of itself.
@@ -430,7 +439,7 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
         }
     });
     if !params.is_on(Key::Embed) {
-        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 2.0 * side + space::XS));
+        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 3.0 * side + 2.0 * space::XS));
         filming_ui(state.filming, below, out, ui);
     }
 }
@@ -442,6 +451,9 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
         ui.spacing_mut().item_spacing.y = space::XS;
         if filming.pictures && kit::button_ui(Button::icon_only(Icon::Picture, text::SAVE_PICTURE).quiet(), ui).clicked() {
             out.actions.push(Action::SavePicture);
+        }
+        if kit::button_ui(Button::icon_only(Icon::Report, text::COPY_REPORT).quiet(), ui).clicked() {
+            out.actions.push(Action::CopyReport);
         }
         if !filming.films {
             return None;
@@ -512,7 +524,7 @@ fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     let mut camera = camera_of(session.params());
     let before = camera.target;
     camera.pan(glam_vec2(drag), stage.height());
-    let moved = camera.target - before;
+    let moved = (camera.target - before) * figure_height(params);
     [(Key::PanX, moved.x), (Key::PanY, moved.y), (Key::PanZ, moved.z)]
         .map(|(key, by)| (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0))))
         .to_vec()
@@ -557,10 +569,14 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     let mut camera = camera_of(&params);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = camera.target - resting_point(first.outcome, &first.place);
+    let shown = figure_height(&params);
+    let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),
-        (Key::CameraDistance, Value::Number(f64::from(camera.distance).clamp(0.5, 60.0))),
+        (
+            Key::CameraDistance,
+            Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0)),
+        ),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

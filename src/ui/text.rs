@@ -19,9 +19,28 @@ pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";
 pub(crate) const LINK: &str = "Link";
 pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
+pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
+pub(crate) const REPORT: &str = "Copy a report";
+pub(crate) const REPORT_COPIED: &str = "The report is in the clipboard: Markdown, with the picture in it.";
+pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
+pub(crate) const CLIP: &str = "Clip";
+pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
+pub(crate) const COMPARE_CLIPS_HELP: &str = "A and B as they are, side by side, with the same numbers for both";
+pub(crate) const BLEND_MORE: &str = "Blend in another clip";
+pub(crate) const TAGS: &str = "Tags";
+pub(crate) const TAGS_HELP: &str =
+    "Speed and turn rate suggest tags. Drag along a clip in the strip below the stage to tag a stretch of it by hand.";
+pub(crate) const TAG_WHAT_PLAYS: &str = "Choose what plays now";
+pub(crate) const STRETCH_FROM: &str = "Stretch from";
+pub(crate) const STRETCH_TO: &str = "Stretch to";
+pub(crate) const OWN_WORD: &str = "A word of your own";
+pub(crate) const TYPE_A_WORD: &str = "type it and press Enter";
+pub(crate) const TAKE_TAG_AWAY: &str = "Take this tag away";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
+/// Behind the sign 中.
+pub(crate) const OR_ENGLISH: &str = "/ EN";
 pub(crate) const IN_CHINESE: &str = "Interface in Chinese";
 pub(crate) const IN_ENGLISH: &str = "Interface in English";
 pub(crate) const HELP: &str = "Shortcuts";
@@ -64,6 +83,7 @@ pub(crate) const JOINT_TREE: &str = "Joints of the clip";
 pub(crate) const ROOT: &str = "Root";
 pub(crate) const POSITION: &str = "position";
 pub(crate) const ROTATION: &str = "rotation";
+pub(crate) const MADE_BODY: &str = "made around the bones";
 pub(crate) const BODY_PARTS: &str = "Body parts";
 pub(crate) const BODY_PARTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
 pub(crate) const UNIT: &str = "Unit";
@@ -197,6 +217,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("apart_cm", "apart cm"),
     ("skate_mean_cm", "skate cm"),
     ("seam_dps", "seam °/s"),
+    ("clip_seam_dps", "worst jerk °/s"),
     ("skate_cm", "skate cm"),
     ("skate_before_cm", "unlocked cm"),
     ("skate_original_cm", "original cm"),
@@ -211,8 +232,12 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("off_spine_deg", "spine"),
     ("off_head_deg", "head"),
     ("off_legs_deg", "legs"),
+    ("clip_spin_deg", "turn in 0.2 s"),
     ("seam_deg", "jump"),
+    ("clip_seam_deg", "worst jump"),
     ("penetration_cm", "sunk cm"),
+    ("clip_penetration_cm", "sunk cm"),
+    ("clip_jump_cm", "leap cm"),
     ("loop_before_deg", "bare seam"),
     ("cycle_s", "cycle s"),
     ("cycle_frames", "frames"),
@@ -588,7 +613,6 @@ pub(crate) const COPY_CSV: &str = "Copy as CSV";
 /// What is said then.
 pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
 /// A row of it.
-pub(crate) const BUILD_TIME: &str = "Build time";
 /// A mark of the walk.
 pub(crate) const SEAM: &str = "Into another clip";
 
@@ -845,6 +869,21 @@ pub(crate) fn leave_clip_out(name: &str) -> String {
     format!("Leave {name} out")
 }
 
+/// The letter of a further clip in a blend: those behind A and B.
+fn letter(index: usize) -> char {
+    char::from_u32('C' as u32 + index as u32).unwrap_or('…')
+}
+
+/// What a further clip of a blend is called.
+pub(crate) fn blended_clip(index: usize) -> String {
+    letter(index).to_string()
+}
+
+/// Its weight.
+pub(crate) fn weight_of(index: usize) -> String {
+    format!("Weight of {}", letter(index))
+}
+
 /// The button that opens the list of lessons.
 pub(crate) const LESSONS: &str = "Lessons";
 /// Its hint.
@@ -881,6 +920,24 @@ pub(crate) const TRY_AGAIN: &str = "Try again";
 /// The place of a page.
 pub(crate) fn page_of(number: usize, of: usize) -> String {
     format!("{number} of {of}")
+}
+
+/// A tag that was set by hand, or taken away.
+pub(crate) fn hand_tag(clip: &str, [from, to]: [f64; 2], word: &str, takes_away: bool) -> String {
+    if takes_away {
+        format!("{clip}, {from:.2} to {to:.2} s: no longer {word}")
+    } else {
+        format!("{clip}, {from:.2} to {to:.2} s: {word}")
+    }
+}
+
+/// The button that puts a tag on the chosen stretch, or takes it away from there.
+pub(crate) fn tag_as(word: &str, takes_away: bool) -> String {
+    if takes_away {
+        format!("Not {word}")
+    } else {
+        format!("Tag as {word}")
+    }
 }
 
 #[cfg(test)]

@@ -174,7 +174,7 @@ impl Theme {
             ]
             .into(),
             visuals: self.visuals(),
-            animation_time: 0.12,
+            animation_time: 0.13,
             ..Style::default()
         };
         let spacing = &mut style.spacing;
@@ -192,6 +192,20 @@ impl Theme {
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.45;
         style
+    }
+
+    /// Draws with this theme on a page that has another.
+    pub(crate) fn within<R>(self, ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+        let page = theme_of(ui);
+        if page == self {
+            return add(ui);
+        }
+        let style = std::mem::replace(ui.style_mut(), self.style());
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), self));
+        let added = add(ui);
+        ui.ctx().data_mut(|data| data.insert_temp(theme_id(), page));
+        *ui.style_mut() = style;
+        added
     }
 
     fn visuals(self) -> Visuals {

@@ -2,9 +2,8 @@
 
 use super::drive::drive_panel_ui;
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
-use super::lab_panel::value_in_words;
 use super::out::Out;
-use super::state::Layout;
+use super::state::{Layout, UiState};
 use super::text;
 use super::theme::palette_of;
 use super::transport_row::{Playhead, transport_row_ui};
@@ -42,11 +41,18 @@ enum CurveOf {
 const CURVE_POINTS: usize = 900;
 
 /// The whole panel.
-pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn timeline_panel_ui(
+    session: &Session,
+    layout: Layout,
+    cache: &mut CurveCache,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let params = session.params();
     let Some(outcome) = session.main_outcome() else { return };
     if let Some(driven) = &outcome.driven {
-        return drive_panel_ui(session, outcome, driven, layout, out, ui);
+        return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
     let clip = &outcome.motion.clip;
     let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));
@@ -285,7 +291,7 @@ fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
 /// The results of all panes, with what tells them apart.
 fn named_outcomes(session: &Session) -> Vec<(String, &Arc<Outcome>)> {
     let named = session.panes().iter().filter_map(|pane| {
-        let name = pane.variant.as_ref().map_or_else(|| text::RESULT.to_owned(), value_in_words);
+        let name = session.variant_name(pane).unwrap_or_else(|| text::RESULT.to_owned());
         Some((name, pane.outcome.as_ref()?))
     });
     named.collect()

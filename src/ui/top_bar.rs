@@ -13,7 +13,7 @@ use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
-use segue::session::{Command, Key, Kind, Session, Value};
+use segue::session::{Command, Compare, Key, Kind, Session, Value};
 
 /// The whole bar.
 pub(crate) fn top_bar_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -75,8 +75,10 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     if kit::icon_button_ui(Icon::Contrast, text::THEME, ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
-    if kit::icon_button_ui(Icon::Language, language_switch(state.language).1, ui).clicked() {
-        out.set_once(Key::Lang, language_switch(state.language).0);
+    let (language, words) = language_switch(state.language);
+    let switch = Button::new(text::OR_ENGLISH).name(words).hint(words).icon(Icon::Language).quiet();
+    if kit::button_ui(switch, ui).clicked() {
+        out.set_once(Key::Lang, language);
     }
     let projector = session.params().is_on(Key::Projector);
     if kit::button_ui(
@@ -131,6 +133,9 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
     if kit::menu_item_ui(item(text::REDO, Icon::Redo), ui).clicked() {
         out.commands.push(Command::Redo);
     }
+    if kit::menu_item_ui(item(text::REPORT, Icon::Report), ui).clicked() {
+        out.actions.push(Action::CopyReport);
+    }
     if kit::menu_item_ui(item(text::THEME, Icon::Contrast), ui).clicked() {
         out.set_once(Key::Theme, other_theme(ui));
     }
@@ -169,13 +174,22 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "path" => return compare_points(session, out),
         "graph" => return compare_windows(out),
         "match" => return compare_hysteresis(session, out),
+        "view" => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
         "make" => Key::GaitSpeed,
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
     out.commands.push(Command::CompareThirds(key));
-    if session.params().text(Key::Lab) == "view" {
-        out.set_once(Key::Lab, Value::Choice("blend"));
-    }
+}
+
+/// Two clips as they are, side by side: a reference, and what somebody made after it.
+pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
+    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
+    let compare = Compare { key: Key::A, values }.to_string();
+    out.commands.push(Command::Set(vec![
+        (Key::Lab, Value::Choice("view")),
+        (Key::Compare, Value::Text(compare)),
+    ]));
+    out.commands.push(Command::Settle);
 }

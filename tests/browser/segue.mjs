@@ -30,13 +30,19 @@ const BACKEND_FLAGS = {
  * @param options.viewport [width, height]
  * @param options.scale device pixels per CSS pixel
  * @param options.theme "dark" or "light"
+ * @param options.motion "reduce" for a user who wants little of it
+ * @param options.base the address to open in place of the build that is served
+ * @param options.keeps true: the page may keep itself for later visits (sw.js), which no other test is about
  * @param options.wait false: return at once, ready or not
  * @param options.prepare called with the page before it goes anywhere: routes, init scripts
  */
-export async function openSegue(backend, query = "", { viewport = [1280, 800], scale = 1, theme = "dark", wait = true, prepare } = {}) {
+export async function openSegue(backend, query = "", options = {}) {
+  const { viewport = [1280, 800], scale = 1, theme = "dark", motion = "no-preference", base, keeps = false, wait = true, prepare } = options;
   const browser = await launch(backend);
   const [width, height] = viewport;
-  const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale, colorScheme: theme });
+  const context = await browser.newContext({
+    viewport: { width, height }, deviceScaleFactor: scale, colorScheme: theme, reducedMotion: motion, serviceWorkers: keeps ? "allow" : "block",
+  });
   const page = await context.newPage();
   const log = [];
   /** Uncaught errors, which fail the test. Empty it (`problems.length = 0`) where one is the point. */
@@ -44,7 +50,7 @@ export async function openSegue(backend, query = "", { viewport = [1280, 800], s
   page.on("console", (message) => log.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => problems.push(String(error.stack ?? error)));
   await prepare?.(page);
-  await page.goto(`${await address()}${query ? `?${query}` : ""}`, { waitUntil: "commit" });
+  await page.goto(`${base ?? await address()}${query ? `?${query}` : ""}`, { waitUntil: "commit" });
 
   const opened = {
     page,

@@ -53,6 +53,7 @@ export function makeApi(handle, { stopped, onLost }) {
     metrics: () => call("metrics"),
     export: (which, format) => call("exportClip", which, format),
     keep: (which) => call("keep", which),
+    report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),
     record: () => call("record"),
     stopRecording: () => callAsync("stopRecording"),

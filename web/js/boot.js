@@ -71,7 +71,16 @@ async function start(jsUrl, wasmUrl) {
   const api = makeApi(life.handle, { stopped: () => life.stopped, onLost: () => life.rebuild() });
   window.segue = api;
   answerParent(api);
+  keepForLater();
   return api;
+}
+
+/** From the second visit on the page comes without a network; see sw.js. A build that is worked on has no name and keeps nothing. */
+function keepForLater() {
+  if (!document.querySelector('meta[name="build"]')) return;
+  // Not while the page begins: the files come a second time, from the browser's own copy where it has one.
+  const keep = () => navigator.serviceWorker?.register(new URL("sw.js", document.baseURI)).catch((reason) => console.info(reason));
+  (window.requestIdleCallback ?? setTimeout)(keep);
 }
 
 /** A worker that reads files; see reader.js. */

@@ -4,6 +4,7 @@ mod check;
 mod dist;
 mod fuzz;
 mod quality;
+mod seal;
 mod server;
 mod shell;
 mod tools;
@@ -48,6 +49,9 @@ cargo xtask match-quality
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
+cargo xtask seal
+    What Trunk calls at the end of a build: gives the page's scripts a name of their own and tells the service worker what there is.
+
 cargo xtask help
 ";
 
@@ -62,6 +66,7 @@ fn main() -> ExitCode {
         Some((&"graph-quality", rest)) => quality::run_walks(rest),
         Some((&"match-quality", rest)) => quality::run_drives(rest),
         Some((&"docs", _)) => docs(),
+        Some((&"seal", _)) => seal::run(),
         None | Some((&("help" | "--help" | "-h"), _)) => {
             print!("{HELP}");
             Ok(())

@@ -222,6 +222,7 @@ fn media_type(file: &Path) -> &'static str {
         "wasm" => "application/wasm",
         "css" => "text/css; charset=utf-8",
         "json" => "application/json",
+        "webmanifest" => "application/manifest+json",
         "svg" => "image/svg+xml",
         "png" => "image/png",
         // Not a content encoding: the page asks for the compressed file and unpacks it itself.

@@ -27,6 +27,41 @@ impl<'a> Elements<'a> {
 impl Document<'_> {
     /// The elements of an accessor as numbers, one element after the other. Integers are fractions of their largest value (section 3.6.2.2).
     pub(super) fn floats(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<f32>, ImportError> {
+        self.values(index, expected, |component| {
+            (component != ComponentType::U32).then_some(number as fn(_, &[u8]) -> _)
+        })
+    }
+
+    /// The same of whole numbers that are not negative: indices of vertices and joints.
+    pub(super) fn integers(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<u32>, ImportError> {
+        use ComponentType::{U8, U16, U32};
+        self.values(index, expected, |component| {
+            matches!(component, U8 | U16 | U32).then_some((|_, bytes| integer(bytes)) as fn(_, &[u8]) -> _)
+        })
+    }
+
+    /// The same of lengths: integers stand for themselves unless the accessor says that they are fractions (`KHR_mesh_quantization`).
+    pub(super) fn lengths(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<f32>, ImportError> {
+        if self.root.get(index).is_some_and(|accessor| accessor.normalized) {
+            return self.floats(index, expected);
+        }
+        self.values(index, expected, |component| {
+            (component != ComponentType::U32).then_some(plain as fn(_, &[u8]) -> _)
+        })
+    }
+
+    /// The number of elements that an accessor claims; nothing has been checked.
+    pub(super) fn claimed(&self, index: Index<Accessor>) -> u64 {
+        self.root.get(index).map_or(0, |accessor| accessor.count.0)
+    }
+
+    /// The elements of an accessor. `reader` gives what reads one component of a type, or `None` where the type does not fit.
+    fn values<T: Copy + Default>(
+        &self,
+        index: Index<Accessor>,
+        expected: Type,
+        reader: impl Fn(ComponentType) -> Option<fn(ComponentType, &[u8]) -> T>,
+    ) -> Result<Vec<T>, ImportError> {
         let at = index.value();
         let accessor = self
             .root
@@ -35,24 +70,24 @@ impl Document<'_> {
         let (Checked::Valid(GenericComponentType(component)), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(self.error(format!("accessor {at} of an unknown type"), VALID));
         };
-        if kind != expected || component == ComponentType::U32 {
+        let Some(read) = reader(component).filter(|_| kind == expected) else {
             let found = format!("accessor {at} with {kind:?} of {component:?}");
-            return Err(self.error(found, &format!("{expected:?} of F32")));
-        }
+            return Err(self.error(found, &format!("{expected:?} of another type")));
+        };
         let width = kind.multiplicity();
         let count = self.size(accessor.count)?;
         let mut values = if let Some(view) = accessor.buffer_view {
             let elements = self.elements(view, accessor.byte_offset, count, width * component.size())?;
-            self.spend(count, 4 * width)?;
+            self.spend(count, size_of::<T>() * width)?;
             let parts = elements.iter().flat_map(|element| element.chunks_exact(component.size()));
-            parts.map(|bytes| number(component, bytes)).collect()
+            parts.map(|bytes| read(component, bytes)).collect()
         } else {
             // Zeros that no byte stands for.
             if count > self.total_bytes() {
                 return Err(self.error(format!("accessor {at} with {count} values and no data"), VALID));
             }
-            self.spend(count, 4 * width)?;
-            vec![0.0; count * width]
+            self.spend(count, size_of::<T>() * width)?;
+            vec![T::default(); count * width]
         };
         if let Some(sparse) = &accessor.sparse {
             let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type else {
@@ -77,7 +112,7 @@ impl Document<'_> {
                     return Err(self.error(format!("accessor {at} with an index beyond its end"), VALID));
                 };
                 for (value, bytes) in target.iter_mut().zip(content.chunks_exact(component.size())) {
-                    *value = number(component, bytes);
+                    *value = read(component, bytes);
                 }
             }
         }
@@ -124,12 +159,23 @@ impl Document<'_> {
 }
 
 fn number(component: ComponentType, bytes: &[u8]) -> f32 {
+    let plain = plain(component, bytes);
+    match component {
+        ComponentType::I8 => (plain / 127.0).max(-1.0),
+        ComponentType::U8 => plain / 255.0,
+        ComponentType::I16 => (plain / 32767.0).max(-1.0),
+        ComponentType::U16 => plain / 65535.0,
+        ComponentType::F32 | ComponentType::U32 => plain,
+    }
+}
+
+fn plain(component: ComponentType, bytes: &[u8]) -> f32 {
     match (component, bytes) {
         (ComponentType::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
-        (ComponentType::I8, &[a]) => (f32::from(a.cast_signed()) / 127.0).max(-1.0),
-        (ComponentType::U8, &[a]) => f32::from(a) / 255.0,
-        (ComponentType::I16, &[a, b]) => (f32::from(i16::from_le_bytes([a, b])) / 32767.0).max(-1.0),
-        (ComponentType::U16, &[a, b]) => f32::from(u16::from_le_bytes([a, b])) / 65535.0,
+        (ComponentType::I8, &[a]) => f32::from(a.cast_signed()),
+        (ComponentType::U8, &[a]) => f32::from(a),
+        (ComponentType::I16, &[a, b]) => f32::from(i16::from_le_bytes([a, b])),
+        (ComponentType::U16, &[a, b]) => f32::from(u16::from_le_bytes([a, b])),
         _ => 0.0,
     }
 }

@@ -1,7 +1,8 @@
 //! A body of simple bones around a skeleton at rest: what programs show of an armature is mostly the skin on it.
 
 use crate::skeleton::Skeleton;
-use glam::Vec3;
+use crate::skin::{RigidTransform, SkinnedMesh};
+use glam::{Quat, Vec3};
 
 /// Bones shorter than this have no direction, metres.
 const SHORTEST: f32 = 1e-4;
@@ -43,6 +44,25 @@ impl Bones {
             );
         }
         bones
+    }
+
+    /// The bones as a mesh that is bound where the joints are at `positions`, of a skeleton of at most 65,536 joints.
+    pub(super) fn into_mesh(self, positions: &[Vec3]) -> SkinnedMesh {
+        let bind = |&position: &Vec3| RigidTransform {
+            rotation: Quat::IDENTITY,
+            translation: -position,
+        };
+        SkinnedMesh {
+            joints: self.joints.iter().map(|&joint| [joint as u16, 0, 0, 0]).collect(),
+            weights: vec![[1.0, 0.0, 0.0, 0.0]; self.joints.len()],
+            triangles: (0..self.joints.len() as u32 / 3)
+                .map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2])
+                .collect(),
+            bind: positions.iter().map(bind).collect(),
+            positions: self.positions,
+            normals: self.normals,
+            colors: Vec::new(),
+        }
     }
 
     fn bone(&mut self, joint: usize, start: Vec3, end: Vec3) -> bool {

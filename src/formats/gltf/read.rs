@@ -3,9 +3,11 @@ use super::curve::{Curve, Kind, SAME_FRAME, rotation};
 use super::document::Document;
 use super::node::Nodes;
 use super::rate::{Rate, rate};
+use super::skin::mesh;
+use super::write::GENERATOR;
 use crate::clip::UpAxis;
 use crate::formats::measure::measure;
-use crate::formats::raw::RawMotion;
+use crate::formats::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::formats::t_pose::first_frame_is_t_pose;
 use crate::formats::warning::{Tally, WarningKind};
 use crate::formats::{ImportError, ImportOptions, Imported, ImportedClip, check_size, stem};
@@ -178,6 +180,11 @@ impl Context<'_> {
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
+        let mut skin = if self.is_own() {
+            None
+        } else {
+            mesh(self.document, self.nodes, character, tally)
+        };
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);
         }
@@ -188,6 +195,13 @@ impl Context<'_> {
             tracks: Vec::new(),
         };
         let metres_per_unit = self.unit(&rest, tally);
+        if let Some(mesh) = &mut skin {
+            mesh.scale(metres_per_unit as f32);
+            if self.options.up == Some(UpAxis::Z) {
+                mesh.turn(Y_UP_FROM_Z_UP);
+            }
+        }
+        let skin = skin.map(Arc::new);
         let is_moved = |motion: &&Motion| {
             let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
             character.nodes.iter().any(moves)
@@ -195,14 +209,26 @@ impl Context<'_> {
         let before = clips.len();
         for motion in motions.iter().filter(is_moved) {
             let raw = self.sampled(character, motion)?;
-            clips.push(self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?);
+            clips.push(
+                self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?
+                    .with_mesh(skin.as_ref()),
+            );
         }
         if clips.len() == before {
             tally.add(WarningKind::NoFrames, None);
             let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
-            clips.push(self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?);
+            clips.push(
+                self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?
+                    .with_mesh(skin.as_ref()),
+            );
         }
         Ok(())
+    }
+
+    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.
+    fn is_own(&self) -> bool {
+        let generator = self.document.root.asset.generator.as_deref();
+        generator.is_some_and(|generator| generator.starts_with(GENERATOR))
     }
 
     /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.
@@ -301,6 +327,7 @@ impl Context<'_> {
             t_pose_first_row,
             t_pose_dropped,
             measure,
+            mesh: None,
         })
     }
 }

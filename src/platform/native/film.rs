@@ -1,6 +1,6 @@
 //! A window takes no pictures of itself: desktops have programs for it.
 
-use crate::platform::Inbox;
+use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
 use std::convert::Infallible;
 
@@ -11,6 +11,11 @@ pub(crate) fn can_take_pictures() -> bool {
 
 /// Nobody asks for it here.
 pub(crate) fn save_picture(_file_name: &str, _stage: Rect, _inbox: &Inbox) {}
+
+/// A text does without one.
+pub(crate) fn take_picture(_stage: Rect, inbox: &Inbox) {
+    inbox.push(Incoming::Picture(None));
+}
 
 /// Whether films can be made.
 pub(crate) fn can_film() -> bool {

@@ -8,7 +8,7 @@ mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
-pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
+pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use reader::{LargeFile, Reader};
@@ -35,6 +35,14 @@ pub(crate) fn location_query() -> String {
         .skip(1)
         .find(|argument| files::is_query(argument))
         .map_or_else(String::new, |query| address::state_of(&query))
+}
+
+/// A window's widgets are known to the system's screen reader by themselves.
+pub(crate) fn announce(_words: &str) {}
+
+/// Desktops tell a window nothing of the kind.
+pub(crate) fn prefers_stillness() -> bool {
+    false
 }
 
 /// The user's languages, best first, as their tags.

@@ -13,6 +13,11 @@ use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Blob, BlobPropertyBag, Clipboard, File, HtmlAnchorElement, HtmlInputElement, Url};
 
+/// Longer texts are no notice to read.
+const LONGEST_NOTICE: usize = 2_000;
+/// What those are saved as.
+const TEXT_FILE: &str = "segue.md";
+
 /// Lets the user choose files.
 ///
 /// Only within a user's gesture: browsers ignore it otherwise. There is no filter by ending, because phones then grey out every file
@@ -159,8 +164,18 @@ pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
             Incoming::Copied
         } else {
             Incoming::Failed {
-                reason: format!("This browser does not let the page use the clipboard. Copy it by hand: {text}"),
+                reason: by_hand(&text, &inbox),
             }
         });
     });
+}
+
+/// What to do where the clipboard is closed to pages: copy what is short by hand, and take the rest as a file.
+fn by_hand(text: &str, inbox: &Inbox) -> String {
+    let refused = "This browser does not let the page use the clipboard.";
+    if text.len() < LONGEST_NOTICE {
+        return format!("{refused} Copy it by hand: {text}");
+    }
+    download(TEXT_FILE, "text/markdown", text.as_bytes(), inbox);
+    format!("{refused} It is saved as {TEXT_FILE} instead.")
 }

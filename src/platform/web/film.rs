@@ -2,7 +2,7 @@
 
 use super::files::hand_over;
 use super::page::{canvas, listen, now_ms, window};
-use super::snapshot::{area_of, snapshot};
+use super::snapshot::{area_of, inline_picture, snapshot};
 use super::words_of;
 use crate::app::api::file_name;
 use crate::platform::{Inbox, Incoming};
@@ -35,6 +35,22 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
         let area = area_of(stage, ctx.pixels_per_point());
         let taken = snapshot(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
         tell_failure(&file_name, taken.and_then(|blob| hand_over(&file_name, &blob)), &inbox);
+    });
+}
+
+/// Takes a picture of the stage, at that place on the page (points), for a text: [`Incoming::Picture`] brings it.
+pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
+    let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
+        return inbox.push(Incoming::Picture(None));
+    };
+    let inbox = inbox.clone();
+    spawn_local(async move {
+        let area = area_of(stage, ctx.pixels_per_point());
+        let taken = inline_picture(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
+        if let Err(error) = &taken {
+            log::warn!("no picture: {}", words_of(error));
+        }
+        inbox.push(Incoming::Picture(taken.ok()));
     });
 }
 

@@ -3,7 +3,7 @@
 use super::folders::watch_folders;
 use super::page::{listen, next_frame, sleep, wanted_backend, watch_hiding};
 use super::reader::{LargeFile, workers_are_made_by};
-use super::snapshot::{area_of, snapshot};
+use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::Inbox;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -222,12 +222,14 @@ impl SegueHandle {
     /// The stage as a PNG.
     pub async fn snapshot(&self) -> Result<Blob, JsValue> {
         let canvas = self.canvas.borrow().clone();
-        let frames = || self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn());
-        let area = || {
-            let place = self.segue.try_borrow().ok()?.stage_place()?;
-            Some(area_of(place, self.inbox.ctx()?.pixels_per_point()))
-        };
-        snapshot(&canvas, frames, || self.inbox.wake(), area).await
+        snapshot(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await
+    }
+
+    /// What is shown, in Markdown with the picture in it.
+    pub async fn report(&self) -> Result<String, JsValue> {
+        let canvas = self.canvas.borrow().clone();
+        let picture = inline_picture(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await?;
+        Ok(self.borrow()?.report(Some(&picture)))
     }
 
     /// Begins to film the page.
@@ -262,6 +264,16 @@ impl SegueHandle {
 }
 
 impl SegueHandle {
+    fn frames(&self) -> u64 {
+        self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn())
+    }
+
+    /// Where the stage is on the canvas.
+    fn stage_area(&self) -> Option<Area> {
+        let place = self.segue.try_borrow().ok()?.stage_place()?;
+        Some(area_of(place, self.inbox.ctx()?.pixels_per_point()))
+    }
+
     fn borrow(&self) -> Result<std::cell::Ref<'_, Segue>, JsValue> {
         self.segue
             .try_borrow()

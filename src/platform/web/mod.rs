@@ -15,10 +15,10 @@ mod storage;
 pub(crate) use super::address::file_name_of;
 pub(crate) use fetch::{Fetch, fetch, load_language, load_lesson, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};
-pub(crate) use film::{Film, can_film, can_take_pictures, save_picture};
+pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
-pub(crate) use page::{full_link, languages, location_query, now_ms, replace_query, tell_language, watch_navigation};
+pub(crate) use page::{announce, full_link, languages, location_query, now_ms, prefers_stillness, replace_query, tell_language, watch_navigation};
 pub(crate) use reader::{LargeFile, Reader};
 pub(crate) use storage::Storage;
 

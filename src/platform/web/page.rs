@@ -103,6 +103,19 @@ pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     listen(window(), "pagehide", move |_| on_hide());
 }
 
+/// Has a screen reader say something: what is drawn on a canvas it cannot read.
+pub(crate) fn announce(words: &str) {
+    if let Some(spoken) = document().and_then(|document| document.get_element_by_id("spoken")) {
+        spoken.set_text_content(Some(words));
+    }
+}
+
+/// Whether the user has asked their system for little motion.
+pub(crate) fn prefers_stillness() -> bool {
+    let asked = window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
+    asked.is_some_and(|query| query.matches())
+}
+
 /// Whether nothing is drawn because nobody could see it.
 pub(super) fn is_hidden() -> bool {
     document().is_some_and(|document| document.hidden())

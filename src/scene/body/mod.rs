@@ -1,57 +1,13 @@
-//! What a skeleton looks like: tapered limbs from nothing but its bones.
+//! A body of tapered limbs, one per shape of [`crate::skin::shapes`]: posed in microseconds, whatever the skeleton.
 
-mod bones;
-mod human;
 #[cfg(test)]
 mod tests;
 
 use super::{Color, Limb};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
-use glam::Vec3;
-
-/// A point that moves with a joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Anchor {
-    joint: usize,
-    /// In the joint's frame, metres.
-    point: Vec3,
-}
-
-/// A [`Limb`] before it is posed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shape {
-    a: Anchor,
-    b: Anchor,
-    radius_a: f32,
-    radius_b: f32,
-    /// In the frame of the joint of `a`; zero where the shape is round.
-    flat: Vec3,
-    flatness: f32,
-}
-
-impl Shape {
-    fn round(a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) -> Self {
-        Self {
-            a,
-            b,
-            radius_a,
-            radius_b,
-            flat: Vec3::ZERO,
-            flatness: 1.0,
-        }
-    }
-
-    fn flattened(self, flat: Vec3, flatness: f32) -> Self {
-        Self { flat, flatness, ..self }
-    }
-
-    /// Grows with how much of its surroundings the shape can hide.
-    fn weight(&self, rest: &[Vec3]) -> f32 {
-        let at = |anchor: Anchor| rest.get(anchor.joint).map_or(anchor.point, |&p| p + anchor.point);
-        let radius = self.radius_a.max(self.radius_b);
-        radius * (radius + at(self.a).distance(at(self.b)))
-    }
-}
+use crate::skin::shapes::{Placed, Shape, shapes};
+use crate::skin::{Character, Drive, SkinnedMesh};
+use std::sync::Arc;
 
 /// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.
 fn set_balls_apart(shapes: &mut [Shape]) {
@@ -68,9 +24,19 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 ///
 /// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the skeleton's own; girths follow the body
 /// height). Any other tree gets one tapered limb per bone, each as thick as what hangs on it asks for.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Body {
     shapes: Vec<Shape>,
+    skin: Option<Arc<SkinnedMesh>>,
+    led: Option<Led>,
+}
+
+/// How a body is moved by poses of a skeleton that is not its own.
+#[derive(Clone, Debug)]
+struct Led {
+    drive: Drive,
+    /// For each of its joints the joint of the other skeleton whose colour it wears.
+    colors_of: Vec<usize>,
 }
 
 impl Body {
@@ -78,14 +44,70 @@ impl Body {
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: Option<&Roles>) -> Self {
         let rest = skeleton.rest_positions();
-        let mut shapes = roles
-            .and_then(|roles| human::shapes(skeleton, &rest, roles))
-            .unwrap_or_else(|| bones::shapes(skeleton, &rest));
-        shapes.retain(|s| s.radius_a.is_finite() && s.radius_b.is_finite() && s.a.point.is_finite() && s.b.point.is_finite());
+        let mut shapes = shapes(skeleton, &rest, roles);
+        shapes.retain(|shape| !shape.soft);
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
-        Self { shapes }
+        Self {
+            shapes,
+            skin: None,
+            led: None,
+        }
+    }
+
+    /// The body of a character that poses of another skeleton, with those roles, move through `drive`.
+    #[must_use]
+    pub fn led(character: &Character, drive: Drive, roles: &Roles) -> Self {
+        let skeleton = &character.skeleton;
+        // Joints without a namesake go with the one that they hang on; parents come first.
+        let mut colors_of = vec![0; skeleton.len()];
+        for joint in 0..skeleton.len() {
+            let namesake = character.roles.role_of(joint).and_then(|role| roles.get(role));
+            let parents = skeleton.parent(joint).and_then(|parent| colors_of.get(parent).copied());
+            if let Some(color) = colors_of.get_mut(joint) {
+                *color = namesake.or(parents).unwrap_or(0);
+            }
+        }
+        Self {
+            led: Some(Led { drive, colors_of }),
+            ..Self::new(skeleton, Some(&character.roles)).with_skin(Arc::clone(&character.mesh))
+        }
+    }
+
+    /// The pose of the body's own skeleton for a pose of the one that moves it, written to `out`; `None` where both are the same.
+    pub(super) fn led_pose<'a>(&self, pose: &WorldPose, out: &'a mut WorldPose) -> Option<&'a WorldPose> {
+        let led = self.led.as_ref()?;
+        led.drive.pose(pose, out);
+        Some(out)
+    }
+
+    /// The joint of the skeleton that moves the body whose colour one of its own joints wears.
+    pub(super) fn color_joint(&self, joint: usize) -> usize {
+        let led = self.led.as_ref().and_then(|led| led.colors_of.get(joint));
+        led.copied().unwrap_or(joint)
+    }
+
+    /// The body with girths so many times as wide.
+    #[must_use]
+    pub fn with_girth(mut self, girth: f32) -> Self {
+        for shape in &mut self.shapes {
+            shape.radius_a *= girth;
+            shape.radius_b *= girth;
+        }
+        self
+    }
+
+    /// The body in a skin: it is seen in place of the limbs, which go on to shade the ground. The mesh is one of the same skeleton.
+    #[must_use]
+    pub fn with_skin(self, mesh: Arc<SkinnedMesh>) -> Self {
+        Self { skin: Some(mesh), ..self }
+    }
+
+    /// The mesh over the limbs.
+    #[must_use]
+    pub fn skin(&self) -> Option<&Arc<SkinnedMesh>> {
+        self.skin.as_ref()
     }
 
     /// The number of limbs that [`Body::limbs`] adds at most.
@@ -102,24 +124,25 @@ impl Body {
     /// Likewise, each limb in the colour of the joint that moves it.
     pub fn colored_limbs(&self, pose: &WorldPose, color_of: impl Fn(usize) -> Color, out: &mut Vec<Limb>) {
         out.reserve(self.shapes.len());
-        let at = |anchor: Anchor| Some(*pose.positions.get(anchor.joint)? + *pose.rotations.get(anchor.joint)? * anchor.point);
         for shape in &self.shapes {
-            let (Some(a), Some(b)) = (at(shape.a), at(shape.b)) else { continue };
-            if !(a.is_finite() && b.is_finite()) {
+            let Some(Placed {
+                a,
+                b,
+                radius_a,
+                radius_b,
+                flat,
+                flatness,
+            }) = shape.placed(pose)
+            else {
                 continue;
-            }
-            let flat = pose
-                .rotations
-                .get(shape.a.joint)
-                .map_or(Vec3::ZERO, |&rotation| rotation * shape.flat);
-            let (radius_a, radius_b) = (shape.radius_a, shape.radius_b);
+            };
             out.push(Limb {
                 a,
                 b,
                 radius_a,
                 radius_b,
                 flat,
-                flatness: shape.flatness,
+                flatness,
                 color: color_of(shape.a.joint),
             });
         }

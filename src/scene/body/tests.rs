@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::rgb;
 use crate::skeleton::{Joint, Pose, world_pose};
-use glam::Quat;
+use glam::{Quat, Vec3};
 
 fn skeleton(joints: &[(&str, Option<usize>, [f32; 3])]) -> Skeleton {
     let joints = joints

@@ -196,6 +196,9 @@ impl Session {
                 Ok((entries, warnings)) => {
                     names.push(name);
                     loaded.warnings.extend(warnings);
+                    if let Some(first) = entries.iter().find(|entry| entry.mesh.is_some()) {
+                        self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
+                    }
                     for entry in entries {
                         loaded.ids.push(entry.id.clone());
                         self.join(entry);
@@ -229,11 +232,13 @@ impl Session {
         let awaited = [Slot::A, Slot::B].into_iter().any(|slot| self.slot(slot).is_none());
         self.library.put(entry);
         let holds = |session: &Self, slot| session.slot(slot).is_some_and(|entry| entry.id == id);
-        // A skeleton alone plays nothing; a motion that waits for one may come into its place when it can be read.
-        let plays = self
-            .library
-            .find(&id)
-            .is_some_and(|entry| entry.motion.as_ref().is_some_and(|motion| motion.clip.frames() > 0));
+        // A skeleton alone plays nothing, nor does a character that comes without a motion of its own; a motion that waits for one may come into its place when it can be read.
+        let plays = self.library.find(&id).is_some_and(|entry| {
+            entry
+                .motion
+                .as_ref()
+                .is_some_and(|motion| motion.clip.frames() > usize::from(entry.mesh.is_some()))
+        });
         if plays && !(awaited && [Slot::A, Slot::B].into_iter().any(|slot| holds(self, slot))) {
             self.offer(&id);
         }
@@ -254,6 +259,7 @@ impl Session {
                     }
                     // A motion whose skeleton was not found keeps waiting.
                     entry.motion = new.motion;
+                    entry.mesh = new.mesh;
                     entry.about = new.about;
                     entry.warnings = new.warnings;
                 });
@@ -553,6 +559,7 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
         let source = SourceFile { index, ..source.clone() };
         Entry {
             motion: Some(Arc::new(clip.motion)),
+            mesh: clip.mesh,
             about: Some(clip.about),
             warnings: warnings.clone(),
             ..Entry::new(file_id(&source.name, &source.sha256, index), String::new(), Origin::File(source))

@@ -22,14 +22,15 @@ use super::library::{Entry, Library, Origin, Sample, split_reference};
 use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
-use super::params::{Key, Params, Value};
+use super::params::{Key, Kind, Params, Value};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, Driver, FeetHolder, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrar, Slot,
-    read_pins, read_weights,
+    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
+    read_also, read_pins, read_weights,
 };
 use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
+use crate::skin::Character;
 use crate::synth;
 use std::sync::Arc;
 
@@ -99,11 +100,11 @@ pub struct Session {
     gaits: GaitFinder,
     cycles: CycleFinder,
     layerer: Layerer,
-    registrar: Registrar,
+    registrars: Registrars,
     paths: Paths,
     company: Vec<Companion>,
     grapher: Grapher,
-    feet: FeetHolder,
+    viewer: Viewer,
     driver: Driver,
     driving: driving::Driving,
     shelf: Shelf,
@@ -135,11 +136,11 @@ impl Session {
             gaits: GaitFinder::default(),
             cycles: CycleFinder::default(),
             layerer: Layerer::default(),
-            registrar: Registrar::default(),
+            registrars: Registrars::default(),
             paths: Paths::default(),
             company: Vec::new(),
             grapher: Grapher::default(),
-            feet: FeetHolder::default(),
+            viewer: Viewer::default(),
             driver: Driver::default(),
             driving: driving::Driving::default(),
             shelf: Shelf::default(),
@@ -259,6 +260,12 @@ impl Session {
     #[must_use]
     pub fn span(&self) -> Span {
         Span::between(self.params.optional(Key::In), self.params.optional(Key::Out), self.duration_secs())
+    }
+
+    /// The character that is moved in place of bodies made around bones: the one of the clip that the parameter `character` names.
+    #[must_use]
+    pub fn character(&self) -> Option<Character> {
+        self.library.find(self.params.text(Key::Character))?.character()
     }
 
     /// The clip in a slot.
@@ -427,7 +434,7 @@ impl Session {
         let pane = self.panes.first()?;
         let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered.as_ref());
         let shown = shown.filter(|_| pane.problem.is_none()).map(|registered| &registered.map);
-        shown.or_else(|| self.registrar.last_map())
+        shown.or_else(|| self.registrars.last_map())
     }
 
     /// Pairs of frames of A and B, at A's rate, that must meet; none where they cannot be read.
@@ -440,6 +447,12 @@ impl Session {
     #[must_use]
     pub fn weight_keys(&self) -> Vec<(usize, usize)> {
         read_weights(self.params.text(Key::WarpCurve)).unwrap_or_default()
+    }
+
+    /// The further clips of a registered blend, with their weights; none where they cannot be read.
+    #[must_use]
+    pub fn also_blended(&self) -> Vec<(String, f64)> {
+        read_also(self.params.text(Key::WarpAlso)).unwrap_or_default()
     }
 
     /// The frame of a slot's clip at a time, at its own rate.
@@ -497,6 +510,31 @@ impl Session {
         self.lesson_was_set(named);
     }
 
+    /// Looks for every clip that the parameters name.
+    fn look_for_clips(&mut self) {
+        for slot in [Slot::A, Slot::B] {
+            let reference = self.params.text(slot_key(slot)).to_owned();
+            self.look_for(slot.label(), &reference);
+        }
+        for reference in self.compared_clips() {
+            self.look_for("A clip to compare", &reference);
+        }
+        for (reference, _) in self.also_blended() {
+            self.look_for("A clip of the blend", &reference);
+        }
+    }
+
+    /// The clips that stand side by side.
+    fn compared_clips(&self) -> Vec<String> {
+        let compare = self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
+        let values = compare.map(|compare| compare.values).unwrap_or_default();
+        let clips = values.into_iter().filter_map(|value| match value {
+            Value::Text(id) => Some(id),
+            _ => None,
+        });
+        clips.collect()
+    }
+
     fn fetch_sources(&mut self) {
         let addresses: Vec<String> = self.params.text(Key::Src).split_whitespace().map(str::to_owned).collect();
         if addresses.len() > MOST_SOURCES {
@@ -517,24 +555,18 @@ impl Session {
         }
     }
 
-    /// What to tell who opened a link to a clip that is not here; `None` when it is, or when Segue can bring it.
-    fn missing(&mut self, slot: Slot) -> Option<String> {
-        let reference = self.params.text(slot_key(slot)).to_owned();
-        if reference.is_empty() || self.bring(&reference) {
-            return None;
+    /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
+    fn look_for(&mut self, what: &str, reference: &str) {
+        if reference.is_empty() || self.bring(reference) {
+            return;
         }
-        let (name, sha, _) = split_reference(&reference);
-        Some(if sha.is_empty() {
-            format!(
-                "{} is `{name}`, which is not here: drop that file, or choose another clip.",
-                slot.label()
-            )
+        let (name, sha, _) = split_reference(reference);
+        let text = if sha.is_empty() {
+            format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
         } else {
-            format!(
-                "{} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.",
-                slot.label()
-            )
-        })
+            format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
+        };
+        self.say(Level::Warning, text);
     }
 
     /// Whether the clip is in the library, or can be made from its id.
@@ -565,6 +597,9 @@ impl Session {
         self.leave_company(&entry.id);
         self.leave_out_of_graph(&entry.id);
         self.library_revision += 1;
+        if self.params.text(Key::Character) == entry.id {
+            self.set_unchecked(Key::Character, Value::Text(String::new()));
+        }
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
             let key = slot_key(slot);

@@ -7,12 +7,14 @@ use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
-use crate::session::params::{Key, Params, Value};
+use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{
     BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs,
     ViewInputs,
 };
-use crate::session::recipe::{belongs_to, clips_of, made_id, make, preset_motion, recipe_name, recipe_params};
+use crate::session::recipe::{
+    belongs_to, clips_of, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params,
+};
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -119,14 +121,19 @@ impl Session {
             }
             return true;
         }
-        if self.registrar.work() || self.feet.work() || self.paths.work() || self.driver.work() {
+        if self.registrars.work() || self.viewer.work() || self.paths.work() || self.driver.work() {
             return true;
         }
         let now_secs = self.params.number(Key::Time);
         if self.grapher.work(now_secs) {
             return true;
         }
-        if self.registrar.is_ready() || self.feet.is_ready() || self.paths.is_ready() || self.grapher.is_ready() || self.driver.is_ready() {
+        if self.registrars.is_ready()
+            || self.viewer.is_ready()
+            || self.paths.is_ready()
+            || self.grapher.is_ready()
+            || self.driver.is_ready()
+        {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -157,13 +164,13 @@ impl Session {
             progress: f64::from(progress),
             size: None,
         });
-        let registering = self.registrar.progress().map(|progress| Job {
+        let registering = self.registrars.progress().map(|progress| Job {
             task: None,
             name: "registering".into(),
             progress: f64::from(progress),
             size: None,
         });
-        let holding = self.feet.progress().or(self.paths.progress()).map(|progress| Job {
+        let holding = self.viewer.progress().or(self.paths.progress()).map(|progress| Job {
             task: None,
             name: "holding feet".into(),
             progress: f64::from(progress),
@@ -273,11 +280,33 @@ impl Session {
         params
     }
 
+    /// What a person calls that in which a pane differs from the others: the value with its unit, or the clip's name. `None` where there is nothing
+    /// to compare.
+    #[must_use]
+    pub fn variant_name(&self, pane: &Pane) -> Option<String> {
+        let (key, value) = pane.variant.as_ref()?;
+        let param = key.param();
+        Some(match (param.kind, value) {
+            (Kind::Clip, Value::Text(id)) => self
+                .library
+                .find(id)
+                .map_or_else(|| split_reference(id).0.to_owned(), |entry| entry.name.clone()),
+            _ => format!("{} {}", param.spoken(value), param.unit).trim_end().to_owned(),
+        })
+    }
+
     /// Recomputes the panes whose inputs have changed.
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
         self.ask_for_lesson();
-        let compare = self.compare().filter(|compare| belongs_to(compare.key, self.params.text(Key::Lab)));
+        let lab = self.params.text(Key::Lab);
+        let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
+        // What is only looked at may be compared in every lab.
+        let uses = |key: Key| match key.param().group.is_of_lab() {
+            true => belongs_to(key, lab),
+            false => !matches!(key.param().kind, Kind::Clip) || is_clip(key),
+        };
+        let compare = self.compare().filter(|compare| uses(compare.key));
         let variants: Vec<Option<(Key, Value)>> = match &compare {
             Some(compare) => compare
                 .values
@@ -287,12 +316,15 @@ impl Session {
                 .collect(),
             None => vec![None],
         };
+        for clip in self.compared_clips() {
+            self.bring(&clip);
+        }
         let mut old = std::mem::take(&mut self.panes).into_iter();
-        self.registrar.ask_anew();
+        self.registrars.ask_anew();
         self.paths.ask_anew();
         self.grapher.ask_anew();
         self.driver.ask_anew();
-        self.feet.ask_anew();
+        self.viewer.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         self.grapher.guide_by(None);
         for variant in variants {
@@ -335,7 +367,12 @@ impl Session {
         let inputs = match params.text(Key::Lab) {
             "register" => {
                 let pair = self.pair_of(params)?;
-                return Ok(self.registrar.inputs(&pair, params)?.map(Inputs::Register));
+                let mut also = Vec::new();
+                for (id, weight) in read_also(params.text(Key::WarpAlso))? {
+                    self.bring(&id);
+                    also.push((self.motion_of(&id)?, weight));
+                }
+                return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
             }
             "graph" => {
                 let clips = self.graph_clips(params)?;
@@ -344,11 +381,7 @@ impl Session {
             "match" => return self.match_inputs(params),
             "view" => {
                 let motion = self.motion_of(params.text(Key::A))?;
-                if params.is_on(Key::FootLock) {
-                    return Ok(self.feet.inputs(&motion).map(Inputs::View));
-                }
-                self.feet.stop();
-                Ok(Inputs::View(ViewInputs::plain(motion)))
+                return Ok(self.viewer.inputs(&motion, params.is_on(Key::FootLock)).map(Inputs::View));
             }
             "make" => Ok(Inputs::Make(made_id(params))),
             "loop" => (self.motion_of(params.text(Key::A)))

@@ -1,7 +1,7 @@
 //! The Register lab, by commands.
 
 use super::*;
-use crate::clip::Clip;
+use crate::clip::{Clip, ground_speed};
 use crate::math::Planar;
 use crate::session::Registered;
 use crate::skeleton::Side;
@@ -106,7 +106,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
         assert_eq!(registered.beats.len(), outcome.motion.clip.frames());
         assert_eq!(outcome.motion.ground_frames.len(), outcome.motion.clip.frames());
         let at = |secs: f64| registered.beat_at(secs).unwrap();
-        assert_eq!((at(0.0).weight_b, at(outcome.duration_secs()).weight_b), (0.0, 1.0));
+        assert_eq!((at(0.0).weights, at(outcome.duration_secs()).weights), ([1.0, 0.0], [0.0, 1.0]));
         assert_eq!(at(0.0).frames[0], 0.0);
         assert!((at(transition.start_secs).frames[0] / 60.0 - registered.part_secs[0]).abs() < 1e-6);
         let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
@@ -211,7 +211,7 @@ fn long_clips_are_registered_in_slices() {
 #[test]
 fn a_weight_can_change_over_the_blend() {
     let session = opened("lab=register&warp_curve=0-0,50-100,100-20");
-    let weights: Vec<f64> = registered(&session).beats.iter().map(|beat| beat.weight_b).collect();
+    let weights: Vec<f64> = registered(&session).beats.iter().map(|beat| beat.weights[1]).collect();
     let last = weights.len() - 1;
     assert!(
         weights[0] < 1e-9 && weights[last / 2] > 0.99 && (weights[last] - 0.2).abs() < 0.01,
@@ -220,4 +220,36 @@ fn a_weight_can_change_over_the_blend() {
     let bad = opened("lab=register&warp_curve=0-0,50-200");
     let problem = bad.panes()[0].problem.clone().unwrap();
     assert!(problem.contains("`50-200`"), "{problem}");
+}
+
+#[test]
+fn more_than_two_clips_are_blended() {
+    let three = "lab=register&a=walk&b=run&warp_weight=0.25&warp_also=0.5:fast_walk";
+    let session = opened(three);
+    let of = |session: &Session| registered(session).beats[0].weights;
+    assert_eq!(of(&session), [0.25, 0.25]);
+    // With all of the weight the third clip plays alone, at its own speed.
+    let speed = |session: &Session| {
+        let motion = &session.main_outcome().unwrap().motion;
+        ground_speed(&motion.ground_frames, motion.clip.fps())
+    };
+    let alone = opened("lab=register&a=walk&b=run&warp_weight=0&warp_also=1:fast_walk");
+    let fast = opened("lab=view&a=fast_walk");
+    assert!((speed(&alone) - speed(&fast)).abs() < 0.03, "{} {}", speed(&alone), speed(&fast));
+    assert!(session.main_outcome().unwrap().motion.clip.name().contains(" + "), "both are named");
+    // What is kept comes back from its id.
+    let mut session = session;
+    session.apply(Command::Keep(0)).unwrap();
+    let id = session.library().entries().last().unwrap().id.clone();
+    assert!(id.contains("warp_also:"), "{id}");
+    let before = session.main_outcome().unwrap().motion.clip.clone();
+    let again = opened(&format!(
+        "lab=view&a={}",
+        percent_encoding::utf8_percent_encode(&id, percent_encoding::NON_ALPHANUMERIC)
+    ));
+    assert_eq!(again.main_outcome().unwrap().motion.clip.rotations(20), before.rotations(20));
+    for (bad, word) in [("0.5:nobody", "nobody"), ("2:run", "`2:run`")] {
+        let problem = opened(&format!("lab=register&warp_also={bad}")).panes()[0].problem.clone().unwrap();
+        assert!(problem.contains(word), "{problem}");
+    }
 }

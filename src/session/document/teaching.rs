@@ -6,7 +6,6 @@ use crate::session::lesson::{CONTENTS, LESSONS, LessonError, Page, Source, Text,
 use crate::session::link::{self, Link};
 use crate::session::notice::Level;
 use crate::session::params::{Group, Key, PARAMS, Param, Params};
-use crate::session::recipe::Slot;
 use std::sync::Arc;
 
 /// What the panel of lessons shows.
@@ -230,11 +229,7 @@ impl Session {
         if sources_changed {
             self.fetch_sources();
         }
-        for slot in [Slot::A, Slot::B] {
-            if let Some(text) = self.missing(slot) {
-                self.say(Level::Warning, text);
-            }
-        }
+        self.look_for_clips();
         self.grapher.stop(false);
     }
 }

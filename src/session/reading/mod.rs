@@ -10,6 +10,7 @@ use crate::formats::acclaim::{self, AcclaimSkeleton};
 use crate::formats::archive::{self, ArchiveLimits};
 use crate::formats::{FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress, kind_of, unpack_gzip};
 use crate::skeleton::Roles;
+use crate::skin::SkinnedMesh;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
@@ -113,6 +114,8 @@ pub struct ReadClip {
     pub motion: Motion,
     /// How it was read.
     pub about: About,
+    /// The mesh that the file has for the clip's skeleton; all clips of one character share it.
+    pub mesh: Option<Arc<SkinnedMesh>>,
 }
 
 /// How a clip was read: what the clip panel tells.
@@ -327,6 +330,7 @@ impl ReadClip {
     fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
         let about = About::from(&imported);
         Self {
+            mesh: imported.mesh,
             motion: Motion::analyze(imported.clip, roles),
             about,
         }

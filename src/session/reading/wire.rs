@@ -7,6 +7,7 @@ use crate::formats::{FileKind, ImportError};
 use crate::math::Planar;
 use crate::session::motion::Motion;
 use crate::skeleton::{Joint, Roles, Side, Skeleton, SkeletonError};
+use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{DVec2, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -56,6 +57,8 @@ struct FileHead {
 #[derive(Serialize, Deserialize)]
 struct ClipsHead {
     clips: Vec<ClipHead>,
+    #[serde(default)]
+    meshes: Vec<MeshHead>,
     warnings: Vec<String>,
     companion: Option<Companion>,
     awaits_skeleton: bool,
@@ -73,6 +76,19 @@ struct ClipHead {
     moving: Vec<usize>,
     roles: Roles,
     about: About,
+    /// Which of the file's meshes is its own.
+    #[serde(default)]
+    mesh: Option<usize>,
+}
+
+/// A mesh without its arrays.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct MeshHead {
+    vertices: usize,
+    triangles: usize,
+    joints: usize,
+    /// Vertices with a colour: all or none.
+    colors: usize,
 }
 
 /// A report that is ready to travel.
@@ -114,8 +130,12 @@ impl Parcel {
             for part in file.unpacked.as_deref().unwrap_or_default().chunks(PIECE_BYTES) {
                 piece.put(part);
             }
-            for clip in file.result.as_ref().map_or(&[][..], |read| &read.clips) {
+            let clips = file.result.as_ref().map_or(&[][..], |read| &read.clips);
+            for clip in clips {
                 put_motion(&mut piece, &clip.motion);
+            }
+            for mesh in meshes(clips) {
+                put_mesh(&mut piece, mesh);
             }
         }
         piece.flush();
@@ -137,6 +157,36 @@ fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     }
     for frame in 0..clip.frames() {
         piece.put(&Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame))));
+    }
+}
+
+/// The meshes of clips, each once.
+fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
+    let mut meshes: Vec<&Arc<SkinnedMesh>> = Vec::new();
+    for mesh in clips.iter().filter_map(|clip| clip.mesh.as_ref()) {
+        if !meshes.iter().any(|known| Arc::ptr_eq(known, mesh)) {
+            meshes.push(mesh);
+        }
+    }
+    meshes
+}
+
+fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
+    for v in mesh.positions.iter().chain(&mesh.normals) {
+        piece.put(v.to_array().map(f32::to_le_bytes).as_flattened());
+    }
+    for joints in &mesh.joints {
+        piece.put(joints.map(u16::to_le_bytes).as_flattened());
+    }
+    for numbers in mesh.weights.iter().chain(&mesh.colors) {
+        piece.put(numbers.map(f32::to_le_bytes).as_flattened());
+    }
+    for triangle in &mesh.triangles {
+        piece.put(triangle.map(u32::to_le_bytes).as_flattened());
+    }
+    for RigidTransform { rotation, translation } in &mesh.bind {
+        piece.put(rotation.to_array().map(f32::to_le_bytes).as_flattened());
+        piece.put(translation.to_array().map(f32::to_le_bytes).as_flattened());
     }
 }
 
@@ -172,7 +222,8 @@ impl FileHead {
             unpacked: file.unpacked.as_ref().map(Vec::len),
             result: match &file.result {
                 Ok(read) => Ok(ClipsHead {
-                    clips: read.clips.iter().map(ClipHead::of).collect(),
+                    clips: read.clips.iter().map(|clip| ClipHead::of(clip, &meshes(&read.clips))).collect(),
+                    meshes: meshes(&read.clips).into_iter().map(|mesh| MeshHead::of(mesh)).collect(),
                     warnings: read.warnings.clone(),
                     companion: read.companion.clone(),
                     awaits_skeleton: read.awaits_skeleton,
@@ -186,15 +237,20 @@ impl FileHead {
         self.result.as_ref().map_or(&[], |read| &read.clips)
     }
 
+    fn meshes(&self) -> &[MeshHead] {
+        self.result.as_ref().map_or(&[], |read| &read.meshes)
+    }
+
     /// How many bytes of arrays come with it.
     fn bytes(&self) -> usize {
         let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
-        clips.saturating_add(self.unpacked.unwrap_or(0))
+        let meshes = self.meshes().iter().fold(0usize, |sum, mesh| sum.saturating_add(mesh.bytes()));
+        clips.saturating_add(meshes).saturating_add(self.unpacked.unwrap_or(0))
     }
 }
 
 impl ClipHead {
-    fn of(clip: &ReadClip) -> Self {
+    fn of(clip: &ReadClip, meshes: &[&Arc<SkinnedMesh>]) -> Self {
         let motion = &clip.motion;
         Self {
             name: motion.clip.name().to_owned(),
@@ -205,7 +261,55 @@ impl ClipHead {
             moving: motion.clip.translations().iter().map(|track| track.joint).collect(),
             roles: motion.roles.clone(),
             about: clip.about.clone(),
+            mesh: clip
+                .mesh
+                .as_ref()
+                .and_then(|mesh| meshes.iter().position(|known| Arc::ptr_eq(known, mesh))),
         }
+    }
+}
+
+impl MeshHead {
+    fn of(mesh: &SkinnedMesh) -> Self {
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            joints: mesh.bind.len(),
+            colors: mesh.colors.len(),
+        }
+    }
+
+    /// How many bytes its arrays take.
+    fn bytes(&self) -> usize {
+        let vertices = self
+            .vertices
+            .saturating_mul(12 + 12 + 8 + 16)
+            .saturating_add(self.colors.saturating_mul(16));
+        vertices
+            .saturating_add(self.triangles.saturating_mul(12))
+            .saturating_add(self.joints.saturating_mul(28))
+    }
+
+    /// Takes what the mesh still needs from the front of `bytes`.
+    fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
+        let vector = |b: &[u8; 12]| Vec3::from_array(floats(b));
+        fill(&mut mesh.positions, self.vertices, bytes, vector);
+        fill(&mut mesh.normals, self.vertices, bytes, vector);
+        fill(&mut mesh.joints, self.vertices, bytes, |b: &[u8; 8]| {
+            std::array::from_fn(|at| u16::from_le_bytes([b[2 * at], b[2 * at + 1]]))
+        });
+        fill(&mut mesh.weights, self.vertices, bytes, |b: &[u8; 16]| floats(b));
+        fill(&mut mesh.colors, self.colors, bytes, |b: &[u8; 16]| floats(b));
+        fill(&mut mesh.triangles, self.triangles, bytes, |b: &[u8; 12]| {
+            std::array::from_fn(|at| u32::from_le_bytes(std::array::from_fn(|i| b[4 * at + i])))
+        });
+        fill(&mut mesh.bind, self.joints, bytes, |b: &[u8; 28]| {
+            let [x, y, z, w, translation @ ..] = floats::<28, 7>(b);
+            RigidTransform {
+                rotation: Quat::from_xyzw(x, y, z, w),
+                translation: Vec3::from_array(translation),
+            }
+        });
     }
 }
 
@@ -253,7 +357,8 @@ impl Arrays {
         }
     }
 
-    fn into_clip(self, head: ClipHead) -> Result<ReadClip, WireError> {
+    fn into_clip(self, head: ClipHead, meshes: &[Arc<SkinnedMesh>]) -> Result<ReadClip, WireError> {
+        let mesh = head.mesh.and_then(|mesh| meshes.get(mesh)).cloned();
         let skeleton = Arc::new(Skeleton::new(head.joints)?);
         let mut translations = self.translations.into_iter();
         let root = translations.next().unwrap_or_default();
@@ -268,6 +373,7 @@ impl Arrays {
                 ground_frames: self.ground_frames,
             },
             about: head.about,
+            mesh,
         })
     }
 }
@@ -302,6 +408,7 @@ pub struct Unpacker {
 struct Incoming {
     unpacked: Vec<u8>,
     clips: Vec<Arrays>,
+    meshes: Vec<SkinnedMesh>,
 }
 
 impl std::fmt::Debug for Unpacker {
@@ -372,6 +479,10 @@ impl Incoming {
         for (head, clip) in head.clips().iter().zip(&mut self.clips) {
             clip.take(head, bytes);
         }
+        self.meshes.resize_with(head.meshes().len(), SkinnedMesh::default);
+        for (head, mesh) in head.meshes().iter().zip(&mut self.meshes) {
+            head.take(mesh, bytes);
+        }
     }
 
     fn into_file(mut self, head: FileHead) -> Result<ReadFile, WireError> {
@@ -379,7 +490,8 @@ impl Incoming {
         let result = match head.result {
             Ok(read) => {
                 let clips = read.clips.into_iter().zip(self.clips);
-                let clips: Result<Vec<ReadClip>, WireError> = clips.map(|(head, arrays)| arrays.into_clip(head)).collect();
+                let meshes: Vec<Arc<SkinnedMesh>> = self.meshes.into_iter().map(Arc::new).collect();
+                let clips: Result<Vec<ReadClip>, WireError> = clips.map(|(head, arrays)| arrays.into_clip(head, &meshes)).collect();
                 Ok(ReadClips {
                     clips: clips?,
                     warnings: read.warnings,
@@ -413,6 +525,7 @@ mod tests {
     use super::*;
     use crate::formats::bvh;
     use crate::session::reading::{ReadSetup, read};
+    use crate::skin::Build;
     use crate::synth::{Action, Params, synthesize};
 
     fn report(secs: f32) -> ReadReport {
@@ -439,11 +552,24 @@ mod tests {
             unpacked: Some((0..=255).collect()),
             ..report(1.0).files.remove(0)
         });
+        let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
+        let mesh = Arc::new(SkinnedMesh {
+            colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
+            ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default())
+        });
+        for file in &mut long.files {
+            let read = file.result.as_mut().unwrap();
+            read.clips.push(read.clips[0].clone());
+            read.clips.iter_mut().for_each(|clip| clip.mesh = Some(Arc::clone(&mesh)));
+        }
         long.notes.push("two".into());
         let mut pieces = 0;
         Parcel::new(long.clone()).unwrap().pieces(|_| pieces += 1);
         assert!(pieces > 1, "{pieces}");
-        assert_eq!(sent(&long), long);
+        let arrived = sent(&long);
+        assert_eq!(arrived, long);
+        let clips = &arrived.files[0].result.as_ref().unwrap().clips;
+        assert!(Arc::ptr_eq(clips[0].mesh.as_ref().unwrap(), clips[1].mesh.as_ref().unwrap()));
         let refused = read("no.bvh", b"HIERARCHY x", &ReadSetup::default(), &mut |_| true).unwrap();
         assert!(refused.files[0].result.is_err());
         assert_eq!(sent(&refused), refused);

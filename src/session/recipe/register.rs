@@ -5,9 +5,9 @@ mod pairs;
 mod registrar;
 
 pub use map::DistanceMap;
-pub use pairs::write_pairs;
-pub(in crate::session) use pairs::{read_pins, read_weights};
-pub(in crate::session) use registrar::Registrar;
+pub use pairs::{MOST_ALSO, write_also, write_pairs};
+pub(in crate::session) use pairs::{read_also, read_pins, read_weights};
+pub(in crate::session) use registrar::Registrars;
 
 use super::feet::{slide_before, with_feet};
 use super::pair::Pair;
@@ -31,8 +31,8 @@ use std::sync::Arc;
 pub struct Beat {
     /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or has not begun.
     pub frames: [f64; 2],
-    /// How much of B there is, 0 to 1.
-    pub weight_b: f64,
+    /// How much of A there is, and of B, 0 to 1; where more clips are blended, less than 1 together.
+    pub weights: [f64; 2],
 }
 
 /// How a result follows from the registration of A and B.
@@ -70,7 +70,7 @@ impl Registered {
         let mixed = |from: f64, to: f64| from + (to - from) * at.fract();
         Some(Beat {
             frames: [0, 1].map(|clip| mixed(here.frames[clip], next.frames[clip])),
-            weight_b: mixed(here.weight_b, next.weight_b),
+            weights: [0, 1].map(|clip| mixed(here.weights[clip], next.weights[clip])),
         })
     }
 
@@ -144,15 +144,38 @@ pub fn weight_curve(keys: &[(usize, usize)]) -> WeightCurve {
 pub(in crate::session) struct RegisterInputs {
     pair: Arc<Pair>,
     found: Arc<Found>,
+    also: Vec<Also>,
     made: Made,
     is_plain: bool,
     foot_lock: bool,
+}
+
+/// A further clip of a blend, registered to A.
+#[derive(Clone, Debug)]
+struct Also {
+    pair: Arc<Pair>,
+    found: Arc<Found>,
+    weight: f64,
+}
+
+impl PartialEq for Also {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair) && Arc::ptr_eq(&self.found, &other.found) && self.weight == other.weight
+    }
+}
+
+impl Found {
+    /// The registration that a result follows.
+    fn way(&self, is_plain: bool) -> &Registration {
+        if is_plain { &self.lockstep } else { &self.registration }
+    }
 }
 
 impl PartialEq for RegisterInputs {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.pair, &other.pair)
             && Arc::ptr_eq(&self.found, &other.found)
+            && self.also == other.also
             && self.made == other.made
             && (self.is_plain, self.foot_lock) == (other.is_plain, other.foot_lock)
     }
@@ -175,7 +198,7 @@ fn beat(instant: &Instant) -> Beat {
     let of = |values: &[f64], at: usize| values.get(at).copied().unwrap_or_default();
     Beat {
         frames: [of(&instant.frames, 0), of(&instant.frames, 1)],
-        weight_b: of(&instant.weights, 1),
+        weights: [of(&instant.weights, 0), of(&instant.weights, 1)],
     }
 }
 
@@ -184,6 +207,7 @@ impl RegisterInputs {
         [0, 1].map(|clip| &**self.pair.profiles[clip].source())
     }
 
+    /// Of A and of B.
     fn contacts(&self) -> [&Contacts; 2] {
         [&self.pair.a.contacts, &self.pair.incoming.contacts]
     }
@@ -202,15 +226,20 @@ impl RegisterInputs {
         let [a, b] = self.sources();
         let partner = Partner {
             source: b,
-            registration: if self.is_plain {
-                &self.found.lockstep
-            } else {
-                &self.found.registration
-            },
+            registration: self.found.way(self.is_plain),
             weight,
         };
-        let made = registered_blend(a, &[partner]).map_err(|error| sentence(&error))?;
-        let contacts = made.contacts(&self.contacts());
+        let weights: Vec<WeightCurve> = self.also.iter().map(|also| WeightCurve::constant(also.weight)).collect();
+        let also = self.also.iter().zip(&weights).map(|(also, weight)| Partner {
+            source: also.pair.profiles[1].source(),
+            registration: also.found.way(self.is_plain),
+            weight,
+        });
+        let partners: Vec<Partner<'_>> = std::iter::once(partner).chain(also).collect();
+        let made = registered_blend(a, &partners).map_err(|error| sentence(&error))?;
+        let also = self.also.iter().map(|also| &also.pair.incoming.contacts);
+        let all: Vec<&Contacts> = self.contacts().into_iter().chain(also).collect();
+        let contacts = made.contacts(&all);
         let RegisteredBlend { clip, instants, frames } = made;
         Ok(Draft {
             mixed: 0..clip.frames(),
@@ -259,7 +288,7 @@ impl RegisterInputs {
             let joined = dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
             let beat = |p: usize| Beat {
                 frames: [(leave + p) as f64, (enter + p) as f64],
-                weight_b: 1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64),
+                weights: of_two(1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64)),
             };
             let during: Vec<Beat> = (0..joined.transition.len()).map(beat).collect();
             let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
@@ -271,7 +300,7 @@ impl RegisterInputs {
         };
         let before = (0..leave).map(|frame| Beat {
             frames: [frame as f64, warp.at(frame as f64)],
-            weight_b: 0.0,
+            weights: of_two(0.0),
         });
         let last = during.last().map_or([arrive as f64, 0.0], |last| last.frames);
         let left = joined.clip.frames().saturating_sub(joined.transition.end);
@@ -280,7 +309,7 @@ impl RegisterInputs {
             let in_a = if self.is_plain { last[0] + step as f64 } else { warp.inverse(in_b) };
             Beat {
                 frames: [in_a, in_b],
-                weight_b: 1.0,
+                weights: of_two(1.0),
             }
         });
         Ok(Draft {
@@ -314,7 +343,9 @@ impl RegisterInputs {
         } = draft;
         let roles = pair.a.roles.clone();
         let sign = if is_join { "→" } else { "+" };
-        let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), pair.b.clip.name())));
+        let also = self.also.iter().map(|also| &also.pair.b);
+        let others: Vec<&str> = std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
+        let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), others.join(" + "))));
         let clip = with_feet(&free, &roles, &contacts, self.foot_lock)?;
         let distance_cm = mean(
             beats
@@ -377,8 +408,7 @@ impl RegisterInputs {
                     .collect()
             });
             for (stance, slide) in foot_slides_cm(clip, &self.pair.a.roles, &Contacts::from_flags(flags)) {
-                let of_b = mean_weight_b(beats.get(stance).unwrap_or_default());
-                let share = if of == 1 { of_b } else { 1.0 - of_b };
+                let share = mean_weight(beats.get(stance).unwrap_or_default(), of);
                 sum += share * slide;
                 weight += share;
             }
@@ -410,7 +440,7 @@ impl RegisterInputs {
         if self.foot_lock {
             metrics.push(slide_before(slide(free)));
         }
-        let handover = beats.iter().position(|beat| beat.weight_b > 0.5).unwrap_or(usize::MAX);
+        let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
         let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
         let found = TransitionMetrics::measure(&Subject {
             result: clip,
@@ -440,8 +470,14 @@ fn sentence(error: &impl std::fmt::Display) -> String {
         .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-fn mean_weight_b(beats: &[Beat]) -> f64 {
-    mean(beats.iter().map(|beat| beat.weight_b)).unwrap_or_default()
+/// The weights of A and of B where there are no more.
+fn of_two(weight_b: f64) -> [f64; 2] {
+    [1.0 - weight_b, weight_b]
+}
+
+/// How much of A (0) or of B (1) there is in the mean.
+fn mean_weight(beats: &[Beat], of: usize) -> f64 {
+    mean(beats.iter().map(|beat| beat.weights[of])).unwrap_or_default()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -1,8 +1,9 @@
-//! The View lab: a clip as it is, or with its planted feet held.
+//! The View lab: a clip as it is, or with its planted feet held, and what there is to say of it in numbers.
 
 use super::Outcome;
-use super::feet::{slide, slide_before};
-use crate::metrics::SlideMeter;
+use super::feet::slide_before;
+use crate::metrics::{ClipMeter, Metric, SlideMeter};
+use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::transition::{FootLockOptions, FootLocking};
 use std::sync::Arc;
@@ -16,96 +17,140 @@ const PER_SLICE: usize = 500;
 #[derive(Clone, Debug)]
 pub(in crate::session) struct ViewInputs {
     motion: Arc<Motion>,
-    held: Option<Arc<Held>>,
+    viewed: Option<Arc<Viewed>>,
 }
 
 impl PartialEq for ViewInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.motion, &other.motion) && self.held.is_some() == other.held.is_some()
+        let same_view = match (&self.viewed, &other.viewed) {
+            (Some(a), Some(b)) => a.is_held == b.is_held,
+            (None, None) => true,
+            _ => false,
+        };
+        Arc::ptr_eq(&self.motion, &other.motion) && same_view
     }
 }
 
 impl ViewInputs {
-    /// A clip as it is.
-    pub(in crate::session) fn plain(motion: Arc<Motion>) -> Self {
-        Self { motion, held: None }
-    }
-
-    /// The clip.
+    /// The clip, with what is known of it by now.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        match &self.held {
+        match &self.viewed {
             None => Ok(Outcome::plain(Arc::clone(&self.motion))),
-            Some(held) => held.made.clone(),
+            Some(viewed) => viewed.made.clone(),
         }
     }
 }
 
 /// What came of it.
 #[derive(Debug)]
-struct Held {
+struct Viewed {
     of: Arc<Motion>,
+    is_held: bool,
     made: Result<Outcome, String>,
 }
 
-/// Holds the feet of clips slice by slice, and keeps the last one.
+/// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have asked for.
 #[derive(Debug, Default)]
-pub(in crate::session) struct FeetHolder {
-    known: Option<Arc<Held>>,
-    under_way: Option<UnderWay>,
-    /// It has just been done, and nobody has asked for it yet.
+pub(in crate::session) struct Viewer {
+    /// The newest last.
+    known: Vec<Arc<Viewed>>,
+    under_way: Vec<UnderWay>,
+    /// Something has just been done, and nobody has asked for it yet.
     is_ready: bool,
 }
 
 #[derive(Debug)]
 struct UnderWay {
     motion: Arc<Motion>,
+    is_held: bool,
+    is_wanted: bool,
     stage: Stage,
 }
 
 #[derive(Debug)]
 enum Stage {
+    /// The feet as they are, of a clip whose feet will be held.
     Before(SlideMeter),
-    Locking { before_cm: Option<f64>, locking: FootLocking },
+    Locking {
+        before_cm: Option<f64>,
+        locking: Box<FootLocking>,
+    },
+    Measuring {
+        /// The clip as it will be shown.
+        motion: Arc<Motion>,
+        /// Of a clip whose feet are held: how far they slid before.
+        before: Option<Metric>,
+        meter: Box<ClipMeter>,
+    },
 }
 
-impl FeetHolder {
+impl Stage {
+    fn measuring(motion: Arc<Motion>, before: Option<Metric>) -> Self {
+        let meter = Box::new(ClipMeter::new(&motion.clip, &motion.roles));
+        Self::Measuring { motion, before, meter }
+    }
+}
+
+impl Viewer {
     /// Nobody waits any more: everybody is about to ask again.
     pub(in crate::session) fn ask_anew(&mut self) {
         self.is_ready = false;
+        for under_way in &mut self.under_way {
+            under_way.is_wanted = false;
+        }
     }
 
-    /// The clip with its feet held. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
-    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>) -> Option<ViewInputs> {
-        loop {
-            if let Some(held) = self.known.as_ref().filter(|held| Arc::ptr_eq(&held.of, motion)) {
-                return Some(ViewInputs {
-                    motion: Arc::clone(motion),
-                    held: Some(Arc::clone(held)),
-                });
+    /// The clip, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
+    /// comes at once, and again with its numbers.
+    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>, is_held: bool) -> Option<ViewInputs> {
+        let viewed = self.known(motion, is_held).or_else(|| {
+            let index = self.begin(motion, is_held);
+            while motion.clip.frames() <= AT_ONCE && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion)) {
+                self.step(index);
             }
-            if !self
-                .under_way
-                .as_ref()
-                .is_some_and(|under_way| Arc::ptr_eq(&under_way.motion, motion))
-            {
-                self.under_way = Some(UnderWay {
-                    motion: Arc::clone(motion),
-                    stage: Stage::Before(SlideMeter::new(&motion.clip, &motion.roles)),
-                });
-            }
-            if motion.clip.frames() > AT_ONCE {
-                return None;
-            }
-            self.step();
+            self.known(motion, is_held)
+        });
+        (viewed.is_some() || !is_held).then(|| ViewInputs {
+            motion: Arc::clone(motion),
+            viewed,
+        })
+    }
+
+    fn known(&self, motion: &Arc<Motion>, is_held: bool) -> Option<Arc<Viewed>> {
+        let is_it = |viewed: &&Arc<Viewed>| Arc::ptr_eq(&viewed.of, motion) && viewed.is_held == is_held;
+        self.known.iter().find(is_it).cloned()
+    }
+
+    /// Has it done, if nobody else has; where it stands among what is under way.
+    fn begin(&mut self, motion: &Arc<Motion>, is_held: bool) -> usize {
+        let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.is_held == is_held;
+        if let Some(index) = self.under_way.iter().position(is_it) {
+            self.under_way[index].is_wanted = true;
+            return index;
         }
+        self.under_way.push(UnderWay {
+            motion: Arc::clone(motion),
+            is_held,
+            is_wanted: true,
+            stage: if is_held {
+                Stage::Before(SlideMeter::new(&motion.clip, &motion.roles))
+            } else {
+                Stage::measuring(Arc::clone(motion), None)
+            },
+        });
+        self.under_way.len() - 1
     }
 
     /// One slice of what a pane waits for. `false` when there was nothing to do.
     pub(in crate::session) fn work(&mut self) -> bool {
-        let had_work = self.under_way.is_some();
-        self.step();
-        self.is_ready |= had_work && self.under_way.is_none();
-        had_work
+        self.under_way.retain(|at| at.is_wanted);
+        let before = self.under_way.len();
+        if before == 0 {
+            return false;
+        }
+        self.step(0);
+        self.is_ready |= self.under_way.len() < before;
+        true
     }
 
     /// Whether what a pane waits for is there, so that it should ask again.
@@ -113,62 +158,89 @@ impl FeetHolder {
         self.is_ready
     }
 
-    /// Lets go of what is under way: nobody wants it any more.
-    pub(in crate::session) fn stop(&mut self) {
-        self.under_way = None;
-    }
-
-    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    /// How much is done of the feet that are being held, 0 to 1; `None` when there are none. Nobody waits for numbers.
     pub(in crate::session) fn progress(&self) -> Option<f32> {
-        self.under_way.as_ref().map(|under_way| match &under_way.stage {
+        let at = self.under_way.iter().find(|at| at.is_held)?;
+        Some(match &at.stage {
             Stage::Before(_) => 0.0,
-            Stage::Locking { locking, .. } => 0.2 + 0.8 * locking.progress(),
+            Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
+            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
         })
     }
 
-    fn step(&mut self) {
-        let Some(UnderWay { motion, stage }) = self.under_way.take() else {
-            return;
-        };
-        let Motion {
-            clip,
-            roles,
-            contacts,
-            ground_frames,
-        } = &*motion;
-        let next = match stage {
-            Stage::Before(mut meter) => {
-                if meter.advance(clip, contacts, PER_SLICE) {
-                    Ok(Stage::Before(meter))
-                } else {
-                    let locking = FootLocking::new(Arc::clone(clip), roles, contacts, &FootLockOptions::default());
-                    let before_cm = meter.worst_cm();
-                    locking
-                        .map(|locking| Stage::Locking { before_cm, locking })
-                        .map_err(|error| Err(error.to_string()))
-                }
+    fn step(&mut self, index: usize) {
+        let UnderWay {
+            motion,
+            is_held,
+            is_wanted,
+            stage,
+        } = self.under_way.remove(index);
+        match next(&motion, stage) {
+            Step::On(stage) => self.under_way.insert(
+                index,
+                UnderWay {
+                    motion,
+                    is_held,
+                    is_wanted,
+                    stage,
+                },
+            ),
+            Step::Done(made) => {
+                let made = *made;
+                self.known.push(Arc::new(Viewed { of: motion, is_held, made }));
+                let surplus = self.known.len().saturating_sub(MAX_PANES);
+                self.known.drain(..surplus);
             }
-            Stage::Locking { before_cm, mut locking } => {
-                if locking.advance(PER_SLICE) {
-                    Ok(Stage::Locking { before_cm, locking })
-                } else {
-                    let locked = locking.finish().map_err(|error| error.to_string());
-                    Err(locked.map(|locked| Outcome {
-                        metrics: vec![slide(&locked, roles, contacts), slide_before(before_cm)],
-                        ..Outcome::plain(Arc::new(Motion {
-                            clip: Arc::new(locked),
-                            roles: roles.clone(),
-                            contacts: contacts.clone(),
-                            // Hips are only raised and lowered.
-                            ground_frames: ground_frames.clone(),
-                        }))
-                    }))
-                }
+        }
+    }
+}
+
+/// What a slice of work leads to.
+enum Step {
+    On(Stage),
+    Done(Box<Result<Outcome, String>>),
+}
+
+fn next(of: &Arc<Motion>, stage: Stage) -> Step {
+    match stage {
+        Stage::Before(mut meter) => {
+            if meter.advance(&of.clip, &of.contacts, PER_SLICE) {
+                return Step::On(Stage::Before(meter));
             }
-        };
-        match next {
-            Ok(stage) => self.under_way = Some(UnderWay { motion, stage }),
-            Err(made) => self.known = Some(Arc::new(Held { of: motion, made })),
+            let before_cm = meter.worst_cm();
+            match FootLocking::new(Arc::clone(&of.clip), &of.roles, &of.contacts, &FootLockOptions::default()) {
+                Ok(locking) => Step::On(Stage::Locking {
+                    before_cm,
+                    locking: Box::new(locking),
+                }),
+                Err(error) => Step::Done(Box::new(Err(error.to_string()))),
+            }
+        }
+        Stage::Locking { before_cm, mut locking } => {
+            if locking.advance(PER_SLICE) {
+                return Step::On(Stage::Locking { before_cm, locking });
+            }
+            match locking.finish() {
+                // Hips are only raised and lowered: the character stands where it stood.
+                Ok(locked) => {
+                    let motion = Motion {
+                        clip: Arc::new(locked),
+                        ..Motion::clone(of)
+                    };
+                    Step::On(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
+                }
+                Err(error) => Step::Done(Box::new(Err(error.to_string()))),
+            }
+        }
+        Stage::Measuring { motion, before, mut meter } => {
+            if meter.advance(&motion.clip, &motion.contacts, PER_SLICE) {
+                return Step::On(Stage::Measuring { motion, before, meter });
+            }
+            let found = meter.finish(&motion.clip, &motion.ground_frames);
+            Step::Done(Box::new(Ok(Outcome {
+                metrics: found.list().into_iter().chain(before).collect(),
+                ..Outcome::plain(motion)
+            })))
         }
     }
 }

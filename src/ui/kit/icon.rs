@@ -18,7 +18,7 @@ pub(crate) enum Icon {
     Loop,
     /// Dark or light.
     Contrast,
-    /// Another language: 中 / EN.
+    /// 中: another language.
     Language,
     /// More, behind three lines.
     Menu,
@@ -56,6 +56,8 @@ pub(crate) enum Icon {
     ChevronRight,
     /// A picture of what is seen.
     Picture,
+    /// A page with lines: what is seen, written down.
+    Report,
     /// A film of what is seen.
     Record,
     /// To a file.
@@ -110,11 +112,9 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.fill(&arc.collect::<Vec<_>>());
         }
         Icon::Language => {
-            // 中 is a box and an upright: no font has to have it.
-            pen.stroke(&[(2.0, 3.6), (9.0, 3.6), (9.0, 7.8), (2.0, 7.8), (2.0, 3.6)]);
-            pen.stroke(&[(5.5, 1.2), (5.5, 11.4)]);
-            pen.stroke(&[(14.0, 9.0), (11.0, 9.0), (11.0, 14.6), (14.0, 14.6)]);
-            pen.stroke(&[(11.0, 11.7), (13.6, 11.7)]);
+            // A box and an upright: no font has to have it.
+            pen.stroke(&[(2.5, 4.5), (13.5, 4.5), (13.5, 10.3), (2.5, 10.3), (2.5, 4.5)]);
+            pen.stroke(&[(8.0, 1.5), (8.0, 14.5)]);
         }
         Icon::Book => {
             // Two pages that lie open.
@@ -222,6 +222,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 (2.0, 12.8),
             ]);
             pen.circle(8.0, 8.8, 2.3);
+        }
+        Icon::Report => {
+            pen.closed(&[(3.4, 2.2), (12.6, 2.2), (12.6, 13.8), (3.4, 13.8)]);
+            for y in [5.4, 8.0, 10.6] {
+                pen.stroke(&[(5.8, y), (10.2, y)]);
+            }
         }
         Icon::Record => {
             pen.circle(8.0, 8.0, 6.0);

@@ -27,7 +27,8 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options:
 
     // The chosen one's ground slides to its place.
     if let Some(current) = current {
-        let left = ui.ctx().animate_value_with_time(id.with("thumb"), current as f32, 0.14);
+        let secs = ui.style().animation_time;
+        let left = ui.ctx().animate_value_with_time(id.with("thumb"), current as f32, secs);
         let thumb = Rect::from_min_size(pos2(inner.left() + left * width, inner.top()), vec2(width, inner.height()));
         ui.painter()
             .rect_filled(thumb.translate(vec2(0.0, 1.0)), radius::S + 1, palette.shadow.gamma_multiply(0.5));

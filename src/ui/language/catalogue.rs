@@ -7,7 +7,8 @@
 //!   stood for is translated in turn, and goes into the placeholders of the translation, in order or by number (`{1}`);
 //! - several sentences behind each other, lists, and `title: text` are translated piece by piece;
 //! - a note, `the rest pose was taken`, is found also where it was made a sentence, `The rest pose was taken.`;
-//! - a number before a thing, `3 bones`, needs an entry for one `bone` only.
+//! - a number before a thing, `3 bones`, needs an entry for one `bone` only;
+//! - a row of words and numbers that all have entries, `27 seam °/s best`, is translated word by word.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,6 +17,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST_KNOWN: usize = 4096;
 /// Parts of parts are not looked into any deeper.
 const DEEPEST: usize = 6;
+/// A pattern with so many letters does not fit a text by chance.
+const ENOUGH: usize = 12;
+/// A row of more words is a sentence.
+const LONGEST_ROW: usize = 14;
 
 /// See the module.
 #[derive(Debug)]
@@ -101,10 +106,10 @@ impl Catalogue {
         self.whole(core)
             .or_else(|| self.sentences(core, depth))
             .or_else(|| self.pattern(core, depth))
-            .or_else(|| self.note(core, depth))
             .or_else(|| self.counted(core, depth))
             .or_else(|| self.bracketed(core, depth))
             .or_else(|| self.joined(core, depth))
+            .or_else(|| self.row(core, depth))
     }
 
     fn part(&self, text: &str, depth: usize) -> String {
@@ -112,7 +117,8 @@ impl Catalogue {
     }
 
     fn whole(&self, text: &str) -> Option<String> {
-        self.exact.get(text).cloned()
+        let found = self.exact.get(text).cloned();
+        found.or_else(|| Some(format!("{}。", self.exact.get(&note_of(text)?)?)))
     }
 
     /// `It is so. It is not.`: only where there is a translation of each.
@@ -133,24 +139,21 @@ impl Catalogue {
         Some(whole)
     }
 
+    /// By the pattern with the most words; a sentence also by that of a note.
     fn pattern(&self, text: &str, depth: usize) -> Option<String> {
+        let note = note_of(text);
         self.patterns.iter().find_map(|pattern| {
-            let mut filled = Vec::new();
-            let fits = fill(&pattern.english, text, pattern.letters, &mut filled);
-            fits.then(|| {
-                let parts: Vec<String> = filled.iter().map(|part| self.part(part, depth)).collect();
-                put_in(&pattern.translation, &parts)
-            })
+            let fits = |text: &str| {
+                let mut filled = Vec::new();
+                let fits = fill(&pattern.english, text, &mut filled);
+                let parts = fits.then(|| filled.iter().map(|part| self.part(part, depth)).collect::<Vec<_>>())?;
+                // Few words stand in a long text by chance, too: what they stand between must then be known.
+                let known =
+                    |(part, english): (&String, &&str)| part != english.trim() || !has_word(english) || !english.trim().contains(' ');
+                (pattern.letters >= ENOUGH || parts.iter().zip(&filled).all(known)).then(|| put_in(&pattern.translation, &parts))
+            };
+            fits(text).or_else(|| Some(format!("{}。", fits(note.as_deref()?)?)))
         })
-    }
-
-    /// A note that was made a sentence: `no frame time` as `No frame time.`.
-    fn note(&self, text: &str, depth: usize) -> Option<String> {
-        let note = text.strip_suffix('.')?;
-        let mut letters = note.chars();
-        let small: String = letters.next()?.to_lowercase().chain(letters).collect();
-        let found = [note, &small].into_iter().find_map(|note| self.look_up(note, depth + 1))?;
-        Some(format!("{found}。"))
     }
 
     /// `3 bones`, by the entry of `bone` or of `bones`.
@@ -169,7 +172,8 @@ impl Catalogue {
                 self.part(&format!("({rest}"), depth)
             ))
         })?;
-        Some(format!("{number} 個{found}"))
+        // A unit is no thing.
+        (!found.is_ascii()).then(|| format!("{number} 個{found}"))
     }
 
     /// `words (more words)`.
@@ -217,6 +221,38 @@ impl Catalogue {
             })
         })
     }
+
+    /// Words and numbers in a row: all of them must have entries, the longest are taken first.
+    fn row(&self, text: &str, depth: usize) -> Option<String> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        if words.len() > LONGEST_ROW {
+            return None;
+        }
+        let mut whole: Vec<String> = Vec::new();
+        let mut from = 0;
+        while from < words.len() {
+            let (to, found) = (from + 1..=words.len()).rev().find_map(|to| {
+                let words = words[from..to].join(" ");
+                let bare = words.trim_end_matches([',', ';']);
+                let found = self.whole(bare).or_else(|| self.counted(bare, depth));
+                let found = found.or_else(|| (to == from + 1 && !has_word(bare)).then(|| bare.to_owned()))?;
+                let comma = if bare.len() < words.len() { "，" } else { "" };
+                Some((to, format!("{found}{comma}")))
+            })?;
+            whole.push(found);
+            from = to;
+        }
+        Some(whole.join(" "))
+    }
+}
+
+/// What a sentence was before it was made one: `no frame time`, of `No frame time.`.
+fn note_of(sentence: &str) -> Option<String> {
+    let mut letters = sentence.strip_suffix('.')?.chars();
+    let first = letters.next()?;
+    let small = letters.as_str().starts_with(|second: char| !second.is_uppercase());
+    let first: String = if small { first.to_lowercase().collect() } else { first.to_string() };
+    Some(first + letters.as_str())
 }
 
 impl Piece {
@@ -256,20 +292,14 @@ fn pieces(entry: &str) -> Vec<Piece> {
 }
 
 /// Whether `text` is made of these pieces; `filled` holds then what the placeholders stand for.
-fn fill<'a>(pieces: &[Piece], text: &'a str, letters: usize, filled: &mut Vec<&'a str>) -> bool {
+fn fill<'a>(pieces: &[Piece], text: &'a str, filled: &mut Vec<&'a str>) -> bool {
     let Some((first, rest)) = pieces.split_first() else {
         return text.is_empty();
     };
     if let Piece::Words(words) = first {
-        return text
-            .strip_prefix(words.as_str())
-            .is_some_and(|text| fill(rest, text, letters, filled));
+        return text.strip_prefix(words.as_str()).is_some_and(|text| fill(rest, text, filled));
     }
-    let fits = |part: &str| match first {
-        Piece::Number => is_number(part),
-        // Few words may stand anywhere in a long text by chance.
-        _ => letters >= 8 || part.len() <= 40 && !part.contains(". "),
-    };
+    let fits = |part: &str| *first == Piece::Anything || is_number(part);
     let known = filled.len();
     let ends: Vec<usize> = match rest.first() {
         None => vec![text.len()],
@@ -288,7 +318,7 @@ fn fill<'a>(pieces: &[Piece], text: &'a str, letters: usize, filled: &mut Vec<&'
     for end in ends {
         if fits(&text[..end]) {
             filled.push(&text[..end]);
-            if fill(rest, &text[end..], letters, filled) {
+            if fill(rest, &text[end..], filled) {
                 return true;
             }
             filled.truncate(known);
@@ -336,7 +366,8 @@ mod tests {
     fn catalogue() -> Catalogue {
         Catalogue::read(
             r#"{
-                "words": {"Walk": "走", "frame": "影格", "bone": "骨頭", "too short": "太短", "left": "左", "samples": "範例"},
+                "words": {"Walk": "走", "frame": "影格", "bone": "骨頭", "too short": "太短", "left": "左", "samples": "範例",
+                          "cm": "cm", "seam": "接縫", "best": "最佳", "walk": "走", "turn left": "左轉"},
                 "patterns": {
                     "{} could not be loaded: {}.": "無法載入 {0}：{1}。",
                     "{} of {} frames": "{1} 個影格中的 {0} 個",
@@ -345,7 +376,9 @@ mod tests {
                     "(line {#})": "（第 {} 行）",
                     "{}{} ignored": "略過{}{}",
                     "One is enough.": "一個就夠了。",
-                    "a window of {} frames": "{} 個影格的視窗"
+                    "a window of {} frames": "{} 個影格的視窗",
+                    "{} to {}": "{} → {}", "{} with {}": "{} 加上 {}",
+                    "B keeps step with A": "B 與 A 同步"
                 }
             }"#
             .as_bytes(),
@@ -373,6 +406,14 @@ mod tests {
             ("Walk, left", "走、左"),
             ("samples: 3.2 s", "範例：3.2 s"),
             ("A window of 5 frames.", "5 個影格的視窗。"),
+            ("One is enough", "(One is enough)"),
+            ("B keeps step with A.", "B 與 A 同步。"),
+            ("27 seam °/s best", "27 接縫 °/s 最佳"),
+            ("walk, turn left, 3 bones", "走、左轉、3 個骨頭"),
+            ("walk turn left, 3 bones best", "走 左轉， 3 個骨頭 最佳"),
+            ("28 cm", "(28 cm)"),
+            ("walk to seam", "走 → 接縫"),
+            ("press to type a value", "(press to type a value)"),
         ] {
             assert_eq!(told(english), expected, "{english}");
         }

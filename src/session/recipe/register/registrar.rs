@@ -1,10 +1,11 @@
-use super::{DistanceMap, Made, RegisterInputs, read_pins, sentence};
+use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
 use crate::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
 };
 use crate::session::compare::MAX_PANES;
+use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
-use crate::session::recipe::pair::Pair;
+use crate::session::recipe::pair::{Pair, Pairs};
 use std::sync::Arc;
 
 /// Up to so many pairs of frames everything is done at once: a few seconds of motion need no second slice.
@@ -31,9 +32,91 @@ pub(super) struct Found {
     pub(super) lockstep: Arc<Registration>,
 }
 
+/// Registers every clip of a blend to A.
+#[derive(Debug, Default)]
+pub(in crate::session) struct Registrars {
+    b: Registrar,
+    also: Vec<(Pairs, Registrar)>,
+}
+
+impl Registrars {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(in crate::session) fn ask_anew(&mut self) {
+        self.all_mut().for_each(Registrar::ask_anew);
+    }
+
+    /// Brings everything to the point where the result is a pure function; `also` are the further clips with their weights. `None` when that takes longer than
+    /// a frame: [`work`](Self::work), then ask again.
+    pub(in crate::session) fn inputs(
+        &mut self,
+        pair: &Arc<Pair>,
+        also: &[(Arc<Motion>, f64)],
+        params: &Params,
+    ) -> Result<Option<RegisterInputs>, String> {
+        let pins = read_pins(params.text(Key::Pins))?;
+        let found = self.b.found(pair, wanted_of(pair, params, pins)?)?;
+        let made = Made::of(params)?;
+        let also = if matches!(made, Made::Join { .. }) { &[] } else { also };
+        self.also.resize_with(also.len(), Default::default);
+        let mut more = Vec::with_capacity(also.len());
+        for ((motion, weight), (pairs, registrar)) in also.iter().zip(&mut self.also) {
+            let pair = pairs.of(&pair.a, motion)?;
+            // Pins are pairs of A and B.
+            let wanted = wanted_of(&pair, params, Vec::new())?;
+            let found = registrar.found(&pair, wanted)?;
+            more.push(found.map(|found| Also {
+                pair,
+                found,
+                weight: *weight,
+            }));
+        }
+        let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
+            return Ok(None);
+        };
+        Ok(Some(RegisterInputs {
+            pair: Arc::clone(pair),
+            found,
+            also,
+            made,
+            is_plain: params.text(Key::WarpWith) == "plain",
+            foot_lock: params.is_on(Key::FootLock),
+        }))
+    }
+
+    /// The distances of A and B that were asked for last.
+    pub(in crate::session) fn last_map(&self) -> Option<&Arc<DistanceMap>> {
+        self.b.last_map()
+    }
+
+    /// One slice of what panes wait for. `false` when there was nothing to do.
+    pub(in crate::session) fn work(&mut self) -> bool {
+        self.all_mut().any(Registrar::work)
+    }
+
+    /// Whether something that panes wait for is there, so that they should ask again.
+    pub(in crate::session) fn is_ready(&self) -> bool {
+        self.all().any(Registrar::is_ready)
+    }
+
+    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    pub(in crate::session) fn progress(&self) -> Option<f32> {
+        let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
+        let ended = self.also.len() + 1 - under_way.len();
+        (!under_way.is_empty()).then(|| (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32)
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Registrar> {
+        std::iter::once(&self.b).chain(self.also.iter().map(|(_, registrar)| registrar))
+    }
+
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut Registrar> {
+        std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, registrar)| registrar))
+    }
+}
+
 /// Registers clips slice by slice, and keeps what a change leaves as it is: products of frames for a new window, distances for a new path.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Registrar {
+struct Registrar {
     pair: Option<Arc<Pair>>,
     terms: Option<PairTerms>,
     sweep: Option<PausedSweep>,
@@ -48,25 +131,18 @@ pub(in crate::session) struct Registrar {
 
 impl Registrar {
     /// Nobody waits any more: everybody is about to ask again.
-    pub(in crate::session) fn ask_anew(&mut self) {
+    fn ask_anew(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }
 
-    /// Brings everything to the point where the result is a pure function. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
-    pub(in crate::session) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Option<RegisterInputs>, String> {
-        let wanted = wanted_of(pair, params)?;
+    /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
+    fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, String> {
         self.meet(pair)?;
         let at_once = pair.a.clip.frames().saturating_mul(pair.incoming.clip.frames()) <= AT_ONCE;
         loop {
             if let Some((_, found)) = self.found.iter().find(|(known, _)| *known == wanted) {
-                return Ok(Some(RegisterInputs {
-                    pair: Arc::clone(pair),
-                    found: found.clone()?,
-                    made: Made::of(params)?,
-                    is_plain: params.text(Key::WarpWith) == "plain",
-                    foot_lock: params.is_on(Key::FootLock),
-                }));
+                return found.clone().map(Some);
             }
             if !at_once {
                 self.wanted.push(wanted);
@@ -77,12 +153,12 @@ impl Registrar {
     }
 
     /// The distances that were asked for last.
-    pub(in crate::session) fn last_map(&self) -> Option<&Arc<DistanceMap>> {
+    fn last_map(&self) -> Option<&Arc<DistanceMap>> {
         self.maps.last()
     }
 
     /// One slice of what panes wait for. `false` when there was nothing to do.
-    pub(in crate::session) fn work(&mut self) -> bool {
+    fn work(&mut self) -> bool {
         let Some(wanted) = self.next().cloned() else {
             return false;
         };
@@ -92,7 +168,7 @@ impl Registrar {
     }
 
     /// Whether what panes wait for is there, so that they should ask again.
-    pub(in crate::session) fn is_ready(&self) -> bool {
+    fn is_ready(&self) -> bool {
         self.is_ready
     }
 
@@ -102,7 +178,7 @@ impl Registrar {
     }
 
     /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
-    pub(in crate::session) fn progress(&self) -> Option<f32> {
+    fn progress(&self) -> Option<f32> {
         let wanted = self.next()?;
         let share = |progress: crate::registration::Progress| progress.done as f32 / progress.total.max(1) as f32;
         let terms = self.terms.as_ref().map_or(0.0, |terms| share(terms.progress()));
@@ -179,7 +255,7 @@ impl Registrar {
     }
 }
 
-fn wanted_of(pair: &Pair, params: &Params) -> Result<Wanted, String> {
+fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, String> {
     let window = params.number(Key::RegistrationWindow) as usize;
     let slack = params.number(Key::EndSlack) / 100.0;
     let end = if params.text(Key::Ends) == "corner" {
@@ -187,7 +263,6 @@ fn wanted_of(pair: &Pair, params: &Params) -> Result<Wanted, String> {
     } else {
         PathEnd::Border { slack }
     };
-    let pins = read_pins(params.text(Key::Pins))?;
     let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
     if let Some((a, b)) = pins.iter().find(|(a, b)| *a >= frames_a || *b >= frames_b) {
         return Err(format!(

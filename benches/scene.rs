@@ -1,0 +1,54 @@
+//! A frame of the screen with a hundred characters: everything on the processor up to what the graphics card is told.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use segue::scene::{Colors, Director, Look, Viewport, rgb};
+use segue::session::{Command, Session};
+use segue::skeleton::Roles;
+use segue::skin::{Build, SkinnedMesh};
+use segue::synth::humanoid;
+use std::hint::black_box;
+
+fn frame(c: &mut Criterion) {
+    let colors = Colors {
+        a: rgb(0xf2_a3_5e),
+        b: rgb(0x5f_a8_f5),
+        result: rgb(0x58_d6_a9),
+        bad: rgb(0xff_7a_6b),
+        warning: rgb(0xf0_c0_5a),
+        others: [rgb(0xc0_8d_f0); 4],
+        ghost_alpha: 0.4,
+    };
+    let shown = [(
+        0,
+        Viewport {
+            width: 1440,
+            height: 900,
+            ..Viewport::default()
+        },
+    )];
+    for count in [1, 100] {
+        let mut session = Session::new();
+        session
+            .apply(Command::OpenLink(format!("lab=match&crowd={count}")))
+            .expect("the link is read");
+        while session.work() {}
+        for _ in 0..60 {
+            session.tick(1.0 / 60.0);
+        }
+        let mut director = Director::default();
+        c.bench_function(&format!("scene of {count} characters"), |bench| {
+            bench.iter(|| director.stage(black_box(&session), &shown, 1.0, Look::DARK, &colors, 1.0 / 60.0));
+        });
+    }
+}
+
+fn mesh(c: &mut Criterion) {
+    let skeleton = humanoid(1.75).expect("a person");
+    let roles = Roles::detect(&skeleton);
+    c.bench_function("a body about a skeleton", |bench| {
+        bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, Build::default()));
+    });
+}
+
+criterion_group!(benches, frame, mesh);
+criterion_main!(benches);

@@ -1,0 +1,224 @@
+//! What the main light sees: the box about the bodies of a pane, and the map of depths that it is drawn into.
+
+use super::pipelines::Pipelines;
+use eframe::wgpu;
+use glam::{Vec2, Vec3};
+use segue::scene::{Figure, Pane, Viewport};
+
+/// Width and height of the map of all panes, texels.
+pub(super) const MAP_SIZE: u32 = 2048;
+pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+/// A body farther than this from the middle of the picture casts no shadow: the others' would get coarse, metres.
+const FARTHEST: f32 = 16.0;
+/// About every body, for what its limbs do not tell of its skin, metres.
+const MARGIN: f32 = 0.08;
+
+/// Whether a figure stands in the main light: solid ones do, and those that are only seen through.
+pub(super) fn keeps_off_light(figure: &Figure) -> bool {
+    figure.shadow >= 1.0
+}
+
+/// The box of a pane's bodies, along the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LightBox {
+    /// Its middle, metres in the world.
+    pub(super) center: Vec3,
+    /// Unit: to the right of the map, up on it.
+    pub(super) right: Vec3,
+    pub(super) up: Vec3,
+    /// Half of its width and height, metres.
+    pub(super) half_width: f32,
+    /// Half of its depth, metres.
+    pub(super) half_depth: f32,
+}
+
+/// The main light's direction in a pane, from its camera's axes: it stands over the left shoulder, so that the body is modelled from all sides.
+pub(super) fn key_direction(right: Vec3, yaw: f32) -> Vec3 {
+    let level_back = Vec3::new(yaw.sin(), 0.0, yaw.cos());
+    (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y)
+}
+
+/// The parts of the map for so many panes: equal squares.
+pub(super) fn tile(index: usize, panes: usize) -> Viewport {
+    let columns = (1u32..).find(|columns| (columns * columns) as usize >= panes).unwrap_or(1);
+    let side = MAP_SIZE / columns;
+    let index = index as u32;
+    Viewport {
+        x: index % columns * side,
+        y: index / columns * side,
+        width: side,
+        height: side,
+    }
+}
+
+impl LightBox {
+    /// About every solid body that casts a shadow in the pane and the ground that it falls on; `None` where there is none.
+    ///
+    /// Shadows must not crawl while a body walks: the box grows in steps, and moves by whole texels of a map of `texels` × `texels`.
+    pub(super) fn about(pane: &Pane, key: Vec3, texels: u32) -> Option<Self> {
+        let right = Vec3::Y.cross(key).try_normalize()?;
+        let up = key.cross(right);
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+        for figure in pane.figures.iter().filter(|figure| keeps_off_light(figure)) {
+            for limb in pane.limbs.get(figure.limbs.clone()).unwrap_or_default() {
+                for (point, radius) in [(limb.a, limb.radius_a), (limb.b, limb.radius_b)] {
+                    let is_near = (point - pane.focus).abs().max_element() < FARTHEST;
+                    if !(is_near && radius.is_finite()) {
+                        continue;
+                    }
+                    let on_map = Vec2::new(point.dot(right), point.dot(up));
+                    let along = point.dot(key);
+                    let reach = radius + MARGIN;
+                    (low, high) = (low.min(on_map - reach), high.max(on_map + reach));
+                    near = near.max(along + reach);
+                    // From the ball's lower end along the light to the ground.
+                    far = far.min(along - reach - (point.y + reach).max(0.0) / key.y.max(0.1));
+                }
+            }
+        }
+        let half = ((high - low) * 0.5).max_element();
+        if !(half.is_finite() && near > far) {
+            return None;
+        }
+        let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5).exp2();
+        let texel = 2.0 * half_width / texels.max(1) as f32;
+        let middle = ((low + high) * (0.5 / texel)).round() * texel;
+        // Depths are of the texture's steps, not of the texels': they need not be snapped, but a still body's must stay.
+        let (far, near) = ((far * 4.0).floor() * 0.25, (near * 4.0).ceil() * 0.25);
+        Some(Self {
+            center: right * middle.x + up * middle.y + key * ((near + far) * 0.5),
+            right,
+            up,
+            half_width,
+            half_depth: (near - far) * 0.5,
+        })
+    }
+}
+
+/// The map, and how shaders read it.
+pub(super) struct LightMap {
+    pub(super) depths: wgpu::TextureView,
+    pub(super) bound: wgpu::BindGroup,
+}
+
+impl LightMap {
+    /// A map of `size` × `size` texels.
+    pub(super) fn new(device: &wgpu::Device, pipelines: &Pipelines, size: u32) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("light map"),
+            size: wgpu::Extent3d {
+                width: size,
+                height: size,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: MAP_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let depths = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("light map"),
+            layout: &pipelines.light_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&depths),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::Sampler(&pipelines.light_compare),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::TextureView(&depths),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::Sampler(&pipelines.light_exactly),
+                },
+            ],
+        });
+        Self { depths, bound }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segue::scene::Limb;
+
+    fn pane(centers: &[Vec3]) -> Pane {
+        let limbs: Vec<Limb> = centers
+            .iter()
+            .map(|&center| Limb {
+                a: center,
+                b: center,
+                radius_a: 0.2,
+                radius_b: 0.2,
+                flat: Vec3::ZERO,
+                flatness: 1.0,
+                color: [1.0; 4],
+            })
+            .collect();
+        Pane {
+            figures: vec![Figure {
+                limbs: 0..limbs.len(),
+                skin: None,
+                ghost: false,
+                shadow: 1.0,
+            }],
+            limbs,
+            ..Pane::default()
+        }
+    }
+
+    const KEY: Vec3 = Vec3::new(0.48, 0.64, 0.6);
+
+    #[test]
+    fn bodies_and_the_ground_below_them_are_inside() {
+        let centers = [Vec3::new(0.4, 1.7, -0.3), Vec3::new(-0.9, 0.1, 1.2), Vec3::new(90.0, 0.0, 0.0)];
+        let fit = LightBox::about(&pane(&centers), KEY, 1024).unwrap();
+        for center in &centers[..2] {
+            for point in [*center, *center - KEY * (center.y / KEY.y)] {
+                let from = point - fit.center;
+                assert!(from.dot(fit.right).abs() < fit.half_width && from.dot(fit.up).abs() < fit.half_width);
+                assert!(from.dot(KEY).abs() < fit.half_depth);
+            }
+        }
+        // What is far off does not make the others' shadows coarse.
+        assert!(fit.half_width < 3.0);
+        assert_eq!(LightBox::about(&Pane::default(), KEY, 1024), None);
+        assert_eq!(LightBox::about(&pane(&[Vec3::NAN]), KEY, 1024), None);
+    }
+
+    #[test]
+    fn a_body_that_walks_keeps_the_texels() {
+        let fit = |x: f32| LightBox::about(&pane(&[Vec3::new(x, 1.0, 0.0), Vec3::new(x, 0.2, 0.5)]), KEY, 1024).unwrap();
+        let first = fit(0.0);
+        let texel = 2.0 * first.half_width / 1024.0;
+        for step in 1..40u8 {
+            let fit = fit(0.0137 * f32::from(step));
+            assert_eq!(fit.half_width, first.half_width);
+            for axis in [fit.right, fit.up] {
+                let moved = fit.center.dot(axis) / texel;
+                assert!((moved - moved.round()).abs() < 1e-2, "{moved}");
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_lie_side_by_side() {
+        assert_eq!(tile(0, 1).width, MAP_SIZE);
+        let tiles: Vec<_> = (0..4).map(|index| tile(index, 4)).collect();
+        assert!(
+            tiles
+                .iter()
+                .all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE)
+        );
+        assert_eq!((tiles[3].x, tiles[3].y), (MAP_SIZE / 2, MAP_SIZE / 2));
+    }
+}

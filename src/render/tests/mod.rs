@@ -1,0 +1,161 @@
+//! Pictures from a device without a window: run with `cargo test --bin segue render` and look at `target/stage/*.png`.
+
+mod exact;
+mod light;
+mod pictures;
+mod sessions;
+mod shaders;
+mod skins;
+
+use super::{Image, Quality, StageRenderer, render_to_image};
+use eframe::wgpu;
+use glam::Vec3;
+use segue::clip::Clip;
+use segue::math::Planar;
+use segue::scene::{Body, Camera, Colors, Layer, Look, Pane, Stage, Viewport, rgb, with_alpha};
+use segue::skeleton::Roles;
+use segue::synth::{Action, Params, synthesize};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// The colours of the dark theme, or of the light one.
+fn colors(theme: usize) -> Colors {
+    Colors {
+        a: rgb(A[theme]),
+        b: rgb(B[theme]),
+        result: rgb(RESULT[theme]),
+        bad: rgb(0xff_7a_6b),
+        warning: rgb([0xf0_c0_5a, 0x85_5d_00][theme]),
+        others: [rgb(B[theme]), rgb(0xc0_8d_f0), rgb(0xf0_8f_b4), rgb(0xa9_c7_5a)],
+        ghost_alpha: 0.4,
+    }
+}
+
+struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    renderer: StageRenderer,
+}
+
+impl Gpu {
+    /// Draws as on a machine with a graphics card, and keeps the picture.
+    fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
+        self.renderer.set_quality(Quality::Full);
+        let start = Instant::now();
+        let image = render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
+        eprintln!("{name}: {:.2} s", start.elapsed().as_secs_f64());
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/stage");
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join(format!("{name}.png")), image.to_png().unwrap()).unwrap();
+        image
+    }
+}
+
+/// `None` where the machine has nothing to draw with.
+fn gpu() -> Option<Gpu> {
+    gpu_for(wgpu::TextureFormat::Bgra8Unorm)
+}
+
+fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
+    // `WGPU_BACKEND=gl` draws as WebGL does.
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let options = wgpu::RequestAdapterOptions::default();
+    let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
+        eprintln!("no graphics adapter: the picture is not drawn");
+        return None;
+    };
+    let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
+    let descriptor = wgpu::DeviceDescriptor {
+        required_limits: limits,
+        ..Default::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
+    let renderer = StageRenderer::new(&device, &adapter, output);
+    Some(Gpu { device, queue, renderer })
+}
+
+struct Actors {
+    walk: Clip,
+    run: Clip,
+    body: Body,
+}
+
+fn actors() -> Actors {
+    let walk = synthesize(&Params {
+        duration_secs: 4.0,
+        ..Params::new(Action::Walk)
+    })
+    .unwrap()
+    .clip;
+    let run = synthesize(&Params {
+        duration_secs: 3.0,
+        ..Params::new(Action::Run)
+    })
+    .unwrap()
+    .clip;
+    let body = Body::new(walk.skeleton(), Some(&Roles::detect(walk.skeleton())));
+    Actors { walk, run, body }
+}
+
+const A: [u32; 2] = [0xf2_a3_5e, 0xd9_79_2a];
+const B: [u32; 2] = [0x5f_a8_f5, 0x2f_7f_d6];
+const RESULT: [u32; 2] = [0x58_d6_a9, 0x16_9d_72];
+
+/// A walker with two ghosts behind and two runners before, paths on the ground, and a planted foot.
+fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) -> Pane {
+    let theme = usize::from(light);
+    let look = if light { Look::LIGHT } else { Look::DARK };
+    let mut pane = Pane {
+        viewport,
+        ..Pane::default()
+    };
+    let alpha = if light { 0.32 } else { 0.34 };
+    let walk = |frame: usize| actors.walk.world_pose(frame.min(actors.walk.frames() - 1));
+    let now = walk(frame);
+    let here = now.positions[0].with_y(0.0);
+    let (tint_a, tint_b) = (rgb(A[theme]), rgb(B[theme]));
+    for (steps, fade) in [(22, 1.0), (44, 0.62)] {
+        pane.add_ghost(&actors.body, &walk(frame.saturating_sub(steps)), with_alpha(tint_a, alpha * fade));
+    }
+    let entry = Planar::new(0.0, f64::from(here.x), f64::from(here.z));
+    for (ahead, fade) in [(16, 1.0), (34, 0.62)] {
+        let mut pose = actors.run.world_pose(ahead);
+        pose.apply(&entry);
+        pane.add_ghost(&actors.body, &pose, with_alpha(tint_b, alpha * fade));
+    }
+    pane.add_body(&actors.body, &now, look.clay);
+    let path = (0..=frame).map(|f| {
+        (
+            actors.walk.root_translations()[f].with_y(0.0),
+            with_alpha(tint_a, (f as f32 / frame as f32).powf(0.7)),
+        )
+    });
+    pane.add_path(path, 2.0, Layer::Ground);
+    let ahead = (0..60).map(|f| entry.apply(actors.run.root_translations()[f].with_y(0.0)));
+    pane.add_dashed_path(ahead, tint_b, 0.12, 2.0, Layer::Ground);
+    let planted = [4, 8].map(|toe| now.positions[toe.min(now.positions.len() - 1)]);
+    let foot = if planted[0].y < planted[1].y { planted[0] } else { planted[1] };
+    pane.add_contact(foot, rgb(RESULT[theme]), false);
+    pane.focus = here;
+    pane.camera = Camera {
+        target: here + Vec3::Y * 0.93,
+        yaw: 0.95,
+        pitch: 0.13,
+        distance: 4.6,
+        ..Camera::default()
+    };
+    pane
+}
+
+fn stage(actors: &Actors, size: [u32; 2], panes: u32, light: bool, pixels_per_point: f32) -> Stage {
+    let panes = Viewport::columns(size[0], size[1], panes, 1)
+        .enumerate()
+        .map(|(i, viewport)| blend_pane(actors, viewport, light, 104 + 9 * i))
+        .collect();
+    Stage {
+        panes,
+        look: if light { Look::LIGHT } else { Look::DARK },
+        pixels_per_point,
+        ..Stage::default()
+    }
+}

@@ -1,0 +1,278 @@
+//! Bodies in skins.
+
+use super::{colors, gpu};
+use crate::render::{Quality, frame::Frame, render_to_image};
+use glam::{Quat, Vec3};
+use segue::scene::{Camera, Director, Figure, Lens, Look, Pane, Skin, Skinning, Stage, Viewport};
+use segue::session::{Command, Session};
+use segue::skin::{RigidTransform, SkinnedMesh, dual_quaternion, linear_blend};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A rod along x, from -0.5 m to 0.5 m about the height of 1 m, that one joint moves at one end and another at the other.
+fn rod() -> SkinnedMesh {
+    const SIDES: u32 = 24;
+    const RINGS: u32 = 40;
+    let mut mesh = SkinnedMesh {
+        bind: vec![RigidTransform::IDENTITY; 2],
+        ..SkinnedMesh::default()
+    };
+    for ring in 0..=RINGS {
+        let along = ring as f32 / RINGS as f32;
+        for side in 0..SIDES {
+            let (sin, cos) = (std::f32::consts::TAU * side as f32 / SIDES as f32).sin_cos();
+            mesh.normals.push(Vec3::new(0.0, cos, sin));
+            mesh.positions.push(Vec3::new(along - 0.5, 1.0 + 0.15 * cos, 0.15 * sin));
+            let second = if along > 0.5 { 1 } else { 0 };
+            mesh.joints.push([second, 1 - second, 0, 0]);
+            mesh.weights.push([along.max(1.0 - along), along.min(1.0 - along), 0.0, 0.0]);
+        }
+    }
+    for ring in 0..RINGS {
+        for side in 0..SIDES {
+            let at = |ring: u32, side: u32| ring * SIDES + side % SIDES;
+            mesh.triangles.push([at(ring, side), at(ring, side + 1), at(ring + 1, side + 1)]);
+            mesh.triangles.push([at(ring, side), at(ring + 1, side + 1), at(ring + 1, side)]);
+        }
+    }
+    mesh
+}
+
+fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinning) -> Stage {
+    let viewport = Viewport {
+        width: SIZE,
+        height: SIZE,
+        ..Viewport::default()
+    };
+    let camera = Camera {
+        target: Vec3::Y,
+        yaw: 0.4,
+        pitch: 0.3,
+        distance: 2.2,
+        lens: Lens::Orthographic,
+        ..Camera::default()
+    };
+    let skin = Skin {
+        mesh: Arc::clone(mesh),
+        joints: 0..joints.len(),
+        color: [0.8, 0.8, 0.8, 1.0],
+        colored: false,
+    };
+    Stage {
+        panes: vec![Pane {
+            viewport,
+            camera,
+            figures: vec![Figure {
+                limbs: 0..0,
+                skin: Some(skin),
+                ghost: false,
+                shadow: 0.0,
+            }],
+            joints: joints.to_vec(),
+            joint_colors: vec![[1.0, 0.0, 0.0, 1.0]; joints.len()],
+            skinning,
+            ..Pane::default()
+        }],
+        ..Stage::default()
+    }
+}
+
+const SIZE: u32 = 240;
+
+#[test]
+fn the_gpu_skins_as_the_plain_sums_do() {
+    let Some(mut gpu) = gpu() else { return };
+    let mesh = Arc::new(rod());
+    let twist = RigidTransform {
+        rotation: Quat::from_rotation_z(0.6) * Quat::from_rotation_x(2.8),
+        translation: Vec3::new(0.3, 0.1, -0.2),
+    };
+    // The same rotation, said by the quaternion on the other side.
+    let first = RigidTransform {
+        rotation: -Quat::from_rotation_y(0.3),
+        translation: Vec3::new(-0.1, 0.0, 0.05),
+    };
+    let mut pictures = Vec::new();
+    for (name, skinning) in [("dual", Skinning::Dual), ("linear", Skinning::Linear)] {
+        let image = gpu.draw(&format!("rod-{name}"), &stage_of(&mesh, &[first, twist], skinning), [SIZE, SIZE]);
+        let mut still = rod();
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        if skinning == Skinning::Dual {
+            dual_quaternion(&mesh, &[first, twist], &mut positions, &mut normals);
+        } else {
+            linear_blend(&mesh, &[first, twist], &mut positions, &mut normals);
+        }
+        (still.positions, still.normals) = (positions, normals);
+        let stage = stage_of(&Arc::new(still), &[RigidTransform::IDENTITY; 2], skinning);
+        let expected = render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
+        let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).any(|(&a, &b)| a.abs_diff(b) > 6);
+        let pixels = || image.rgba.chunks_exact(4).zip(expected.rgba.chunks_exact(4));
+        let wrong = pixels().filter(|(a, b)| differ(a, b)).count();
+        assert!(wrong < 40, "{name}: {wrong} pixels differ");
+        pictures.push(image);
+    }
+    let differ = pictures[0]
+        .rgba
+        .iter()
+        .zip(&pictures[1].rgba)
+        .filter(|(a, b)| a.abs_diff(**b) > 30)
+        .count();
+    assert!(differ > 1_000, "a candy wrapper is to be seen");
+}
+
+#[test]
+fn joints_that_are_none_and_lists_that_do_not_fit_are_drawn_somehow() {
+    let Some(mut gpu) = gpu() else { return };
+    let mut odd = rod();
+    odd.joints[3] = [900, 2, 65_535, 7];
+    odd.positions[5] = Vec3::NAN;
+    odd.triangles.push([0, 1, u32::MAX]);
+    odd.normals.truncate(10);
+    let odd = Arc::new(odd);
+    let nowhere = RigidTransform {
+        rotation: Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0),
+        translation: Vec3::INFINITY,
+    };
+    let mut stage = stage_of(&odd, &[RigidTransform::IDENTITY, nowhere], Skinning::Dual);
+    render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
+    stage.panes[0].joints.clear();
+    render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
+    stage.panes[0].figures[0].ghost = true;
+    let again = stage.panes[0].figures[0].clone();
+    stage.panes[0].figures.push(again);
+    render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
+}
+
+fn session(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    session
+}
+
+#[test]
+fn a_twisted_forearm_in_both_ways_of_skinning() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1200, 700];
+    let session =
+        session("lab=view&a=idle&t=0.4&compare=skinning:dual,linear&twist=170&camera_distance=1.3&follow_joint=left%20hand&trail=off");
+    let panes = session.panes().len();
+    assert_eq!(panes, 2);
+    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
+    let stage = Director::default().stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    assert_eq!(
+        stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(),
+        [Skinning::Dual, Skinning::Linear]
+    );
+    gpu.draw("twist", &stage, size);
+}
+
+#[test]
+fn statures() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1400, 560];
+    let viewports: Vec<Viewport> = Viewport::columns(size[0], size[1], 4, 1).collect();
+    let mut all = Stage::default();
+    for (viewport, stature) in viewports
+        .into_iter()
+        .zip(["figure_height=1", "figure_height=0.6", "figure_build=0.7", "figure_build=1.5"])
+    {
+        let session = session(&format!("lab=view&a=walk&t=1.2&{stature}"));
+        let stage = Director::default().stage(&session, &[(0, viewport)], 1.0, Look::LIGHT, &colors(1), 0.0);
+        // The world about a figure of 60 % is shown smaller by as much: from so much farther off, and with wider cells.
+        let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
+        assert!((stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4 && (stage.grid_metres * height - 1.0).abs() < 1e-6);
+        all.panes.push(stage.panes[0].clone());
+        (all.look, all.grid_metres) = (stage.look, 1.0);
+    }
+    gpu.draw("statures", &all, size);
+}
+
+#[test]
+fn a_hundred_characters() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1440, 900];
+    let mut session = session("lab=match&crowd=100&camera_distance=16&camera_pitch=22");
+    for _ in 0..120 {
+        session.tick(1.0 / 60.0);
+    }
+    let shown = [(
+        0,
+        Viewport {
+            width: size[0],
+            height: size[1],
+            ..Viewport::default()
+        },
+    )];
+    let mut director = Director::default();
+    let mut frame = Frame::default();
+    let (mut scene, mut build, mut encode) = (0.0, 0.0, 0.0);
+    const ROUNDS: u32 = 60;
+    gpu.renderer.set_quality(Quality::Full);
+    for round in 0..=ROUNDS {
+        let start = Instant::now();
+        let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
+        let made = Instant::now();
+        frame.build(&stage, size, size, Quality::Full);
+        let built = Instant::now();
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+        gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, &stage, size);
+        if round == 0 {
+            // One draw for all of them.
+            assert_eq!(
+                (stage.panes[0].figures.len(), frame.solid_skins.len(), frame.meshes.len()),
+                (100, 1, 1)
+            );
+            continue;
+        }
+        scene += (made - start).as_secs_f64();
+        build += (built - made).as_secs_f64();
+        encode += built.elapsed().as_secs_f64();
+        session.tick(1.0 / 60.0);
+    }
+    let each = |secs: f64| secs * 1e3 / f64::from(ROUNDS);
+    eprintln!(
+        "100 characters: scene {:.2} ms, frame {:.2} ms, build + upload + encode {:.2} ms",
+        each(scene),
+        each(build),
+        each(encode)
+    );
+    let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    gpu.draw("crowd", &stage, size);
+}
+
+#[test]
+fn time_in_software() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1440, 900];
+    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
+    for look in ["body", "limbs"] {
+        let mut session = session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
+        let mut director = Director::default();
+        let made = Instant::now();
+        director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+        eprintln!("{look}: made in {:.1} ms", made.elapsed().as_secs_f64() * 1e3);
+        for quality in [Quality::Plain, Quality::Full] {
+            gpu.renderer.set_quality(quality);
+            let mut secs = Vec::new();
+            for round in 0..5 {
+                session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
+                let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+                let start = Instant::now();
+                let mut encoder = gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+                gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 9, &stage, size);
+                let submitted = gpu.queue.submit([encoder.finish()]);
+                let wait = eframe::wgpu::PollType::Wait {
+                    submission_index: Some(submitted),
+                    timeout: None,
+                };
+                gpu.device.poll(wait).unwrap();
+                secs.push(start.elapsed().as_secs_f64());
+            }
+            secs.sort_by(f64::total_cmp);
+            eprintln!("{look}, {quality:?}: {:.0} ms", secs[2] * 1e3);
+        }
+    }
+}

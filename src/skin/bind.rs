@@ -1,0 +1,81 @@
+//! The pose in which a mesh is made: limbs away from each other and from the trunk.
+
+use super::RigidTransform;
+use crate::math::quat;
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
+use glam::{Quat, Vec3};
+
+/// Arms hang so far from the side, radians (40° under level): between where they are most often and where they can go, so that the shoulders bend least.
+const ARMS_DOWN: f32 = 0.70;
+/// Legs stand so far out, radians (7°): the thighs part below the crotch.
+const LEGS_OUT: f32 = 0.12;
+
+/// The bind pose: limbs that roles tell are spread, all else rests. The root stands at the origin.
+pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles) -> WorldPose {
+    let rest = skeleton.rest_positions();
+    let joint = |role| roles.get_within(role, rest.len());
+    let at = |role| joint(role).map(|joint| rest[joint]);
+    // How far each joint turns against its rest, in the world; the rest of the limb follows.
+    let mut turns: Vec<Option<Quat>> = vec![None; rest.len()];
+    if let Some((left, up)) = axes(&rest, roles) {
+        for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
+            let out = left * sign;
+            let arm = out * ARMS_DOWN.cos() - up * ARMS_DOWN.sin();
+            let leg = out * LEGS_OUT.sin() - up * LEGS_OUT.cos();
+            let bones = [
+                (Role::upper_arm(side), Role::forearm(side), arm),
+                (Role::forearm(side), Role::hand(side), arm),
+                (Role::thigh(side), Role::shin(side), leg),
+                (Role::shin(side), Role::foot(side), leg),
+            ];
+            for (start, end, direction) in bones {
+                let (Some(index), Some(from), Some(to)) = (joint(start), at(start), at(end)) else {
+                    continue;
+                };
+                turns[index] = (to - from).try_normalize().map(|bone| turn(bone, direction, left));
+            }
+        }
+    }
+    let mut world = WorldPose::default();
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        let (above, position) = match joint.parent {
+            None => (Quat::IDENTITY, Vec3::ZERO),
+            Some(parent) => {
+                let above = world.rotations[parent];
+                (above, world.positions[parent] + above * joint.offset)
+            }
+        };
+        world.rotations.push(turns[index].unwrap_or(above));
+        world.positions.push(position);
+    }
+    world
+}
+
+/// The turn from one direction to another; half a turn is one about `left`, as legs bend.
+fn turn(from: Vec3, to: Vec3, left: Vec3) -> Quat {
+    if from.dot(to) < -0.99 {
+        let half = Quat::from_axis_angle(left, std::f32::consts::PI);
+        return quat::renormalize(quat::between_directions(half * from, to) * half);
+    }
+    quat::between_directions(from, to)
+}
+
+/// From right to left, and up the back: unit vectors at right angles. `None` where the roles do not tell.
+fn axes(rest: &[Vec3], roles: &Roles) -> Option<(Vec3, Vec3)> {
+    let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
+    let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?);
+    let middle = |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
+    let low = middle(Role::thigh)?;
+    let up = (at(Role::Head).or_else(|| middle(Role::upper_arm))? - low).try_normalize()?;
+    let across = across(Role::thigh)? + across(Role::upper_arm).unwrap_or_default();
+    let left = across.reject_from_normalized(up).try_normalize()?;
+    Some((left, up))
+}
+
+/// `joint_from_bind` of every joint.
+pub(super) fn joint_from_bind(bind: &WorldPose) -> Vec<RigidTransform> {
+    let joints = bind.positions.iter().zip(&bind.rotations);
+    joints
+        .map(|(&translation, &rotation)| RigidTransform { rotation, translation }.inverse())
+        .collect()
+}

@@ -1,0 +1,177 @@
+//! A character of a file, moved by clips of other skeletons.
+
+use super::{RigidTransform, SkinnedMesh};
+use crate::clip::Clip;
+use crate::math::stats;
+use crate::skeleton::{Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use std::sync::Arc;
+
+/// Frames of a clip that are looked at for where its ground is.
+const SAMPLES: usize = 48;
+/// Vertices of the sole that are looked at.
+const SOLE_VERTICES: usize = 32;
+/// The lowest point of a clip's feet lies within this share of the leg's length of the ground where the clip stands on it.
+const NEAR_GROUND: f32 = 0.2;
+/// The share of frames, per cent, in which a foot is lower than what counts as its ground: slips of single frames.
+const GROUND_PERCENTILE: f32 = 5.0;
+
+/// A skeleton with a mesh of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Character {
+    /// The skeleton.
+    pub skeleton: Arc<Skeleton>,
+    /// What its joints are for.
+    pub roles: Roles,
+    /// The mesh, bound to `skeleton`.
+    pub mesh: Arc<SkinnedMesh>,
+}
+
+/// How the poses of one skeleton move a [`Character`], rest poses considered (see [`Retargeting`]).
+///
+/// ```
+/// use segue::skeleton::{Roles, WorldPose};
+/// use segue::skin::{Build, Character, Drive, SkinnedMesh, linear_blend};
+/// use segue::synth::{Action, Params, humanoid, synthesize};
+/// use std::sync::Arc;
+///
+/// let skeleton = humanoid(1.5)?;
+/// let roles = Roles::detect(&skeleton);
+/// let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, Build::default()));
+/// let child = Character { skeleton, roles, mesh };
+///
+/// let walk = synthesize(&Params::new(Action::Walk))?.clip;
+/// let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).expect("two people have joints in common");
+/// let (mut pose, mut transforms, mut positions, mut normals) = (WorldPose::default(), vec![], vec![], vec![]);
+/// drive.pose(&walk.world_pose(30), &mut pose);
+/// child.mesh.joint_transforms(&pose, &mut transforms);
+/// linear_blend(&child.mesh, &transforms, &mut positions, &mut normals);
+/// let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+/// assert!(lowest.abs() < 0.03, "the soles are at {lowest} m");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Drive {
+    source: Arc<Skeleton>,
+    target: Arc<Skeleton>,
+    /// `None` where both have the same skeleton.
+    way: Option<Retargeting>,
+    /// What is added to the height of all joints, metres.
+    lift: f32,
+}
+
+impl Drive {
+    /// Prepares the way from the skeleton of `clip` to the character; `None` when they have no joint in common. Some frames of the clip are looked at,
+    /// so that the character's soles stand where the clip's feet stand: on the ground. The clip may be any that is like those to come.
+    #[must_use]
+    pub fn new(clip: &Clip, roles: &Roles, character: &Character) -> Option<Self> {
+        let (source, target) = (clip.skeleton(), &character.skeleton);
+        let way = if Arc::ptr_eq(source, target) || source == target {
+            None
+        } else {
+            Some(Retargeting::new(source, roles, target, &character.roles)?)
+        };
+        let mut drive = Self {
+            source: Arc::clone(source),
+            target: Arc::clone(target),
+            lift: 0.0,
+            way,
+        };
+        drive.lift = drive
+            .way
+            .as_ref()
+            .map_or(0.0, |way| drive.found_lift(clip, roles, character, way.scale()));
+        Some(drive)
+    }
+
+    /// The pose of the character for a pose of the clip's skeleton; both in the world.
+    pub fn pose(&self, source: &WorldPose, out: &mut WorldPose) {
+        let Some(way) = &self.way else {
+            out.clone_from(source);
+            return;
+        };
+        let pose = way.pose(&local_pose(&self.source, source));
+        world_pose_into(
+            &self.target,
+            pose.root_translation,
+            &pose.rotations,
+            pose.translations.iter().copied(),
+            out,
+        );
+        for position in &mut out.positions {
+            position.y += self.lift;
+        }
+    }
+
+    /// The transforms that move the character's mesh for a pose of the clip's skeleton: [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
+    pub fn transforms(&self, source: &WorldPose, mesh: &SkinnedMesh, out: &mut Vec<RigidTransform>) {
+        let mut pose = WorldPose::default();
+        self.pose(source, &mut pose);
+        mesh.joint_transforms(&pose, out);
+    }
+
+    fn found_lift(&self, clip: &Clip, roles: &Roles, character: &Character, scale: f32) -> f32 {
+        let sole = Sole::of(character);
+        let feet = |pose: &WorldPose| {
+            let points = Side::BOTH.into_iter().flat_map(|side| roles.foot_points(&self.source, side));
+            let heights = points.filter_map(|(joint, point)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y));
+            heights.min_by(f32::total_cmp)
+        };
+        let (mut from, mut to) = (WorldPose::default(), WorldPose::default());
+        let (mut theirs, mut ours) = (Vec::new(), Vec::new());
+        let step = clip.frames().div_ceil(SAMPLES).max(1);
+        for frame in (0..clip.frames()).step_by(step) {
+            clip.world_pose_into(frame, &mut from);
+            self.pose(&from, &mut to);
+            theirs.extend(feet(&from));
+            ours.extend(sole.height(&to));
+        }
+        let (Some(theirs), Some(ours)) = (
+            stats::percentile(&theirs, GROUND_PERCENTILE),
+            stats::percentile(&ours, GROUND_PERCENTILE),
+        ) else {
+            return 0.0;
+        };
+        let reach = NEAR_GROUND * roles.leg_length(&self.source).unwrap_or(0.0);
+        let ground = if theirs.abs() < reach { 0.0 } else { theirs * scale };
+        let lift = ground - ours;
+        if lift.is_finite() { lift } else { 0.0 }
+    }
+}
+
+/// The lowest vertices of a character's feet, each with the joint that it follows most.
+struct Sole {
+    points: Vec<(usize, glam::Vec3)>,
+}
+
+impl Sole {
+    fn of(character: &Character) -> Self {
+        let mesh = &character.mesh;
+        let roles = &character.roles;
+        let feet: Vec<usize> = (Side::BOTH.into_iter())
+            .flat_map(|side| [roles.get(Role::foot(side)), roles.get(Role::toe(side))])
+            .flatten()
+            .collect();
+        let vertices = mesh.positions.iter().zip(&mesh.joints);
+        let mut points: Vec<(usize, glam::Vec3)> = vertices
+            .filter_map(|(&position, joints)| {
+                let joint = usize::from(*joints.first()?);
+                let in_joint = mesh.bind.get(joint)?.point(position);
+                feet.contains(&joint).then_some((joint, in_joint))
+            })
+            .collect();
+        // Joints rest without rotation, so down is down in all of their frames; the lowest at rest, over all of the foot.
+        let rest = character.skeleton.rest_positions();
+        points.sort_by(|x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
+        // Every so often one, over the lower half: heel, ball and tips.
+        points.truncate(points.len() / 2);
+        let step = points.len().div_ceil(SOLE_VERTICES).max(1);
+        Self {
+            points: points.into_iter().step_by(step).collect(),
+        }
+    }
+
+    fn height(&self, pose: &WorldPose) -> Option<f32> {
+        let height = |&(joint, point): &(usize, glam::Vec3)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y);
+        self.points.iter().filter_map(height).min_by(f32::total_cmp)
+    }
+}

@@ -1,0 +1,287 @@
+//! From a field to a closed mesh: dual contouring on an octree that is as fine as what is thin there (Ju, Losasso, Schaefer, Warren, "Dual Contouring
+//! of Hermite Data", 2002), with vertices on the field's zero instead of at features: nothing here has sharp edges.
+//!
+//! Each cell that an edge with a change of sign touches has one vertex; the cells around such an edge are one face. An edge is looked at where it is
+//! smallest, so cells of different sizes meet without a crack.
+
+use super::field::{Field, Measured};
+use glam::{IVec3, Vec3};
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// Levels of the tree, at most: coordinates in the finest cells fit into 16 bits.
+const MOST_LEVELS: u32 = 12;
+
+/// Vertices on the zero of a field, and the faces between them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contour {
+    pub(super) positions: Vec<Vec3>,
+    /// Counter-clockwise from outside.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// For each vertex the shape of the field that it is nearest to, and where along its axis.
+    pub(super) owners: Vec<(usize, f32)>,
+}
+
+/// Meshes a field. `sizes` holds for each shape how large a cell may be where its surface is, metres, above 0.
+pub(super) fn contour(field: &Field, sizes: &[f32]) -> Contour {
+    let bounds = field.cones.iter().map(super::field::Cone::bounds);
+    let Some([low, high]) = bounds.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]) else {
+        return Contour::default();
+    };
+    let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
+    let extent = (high - low).max_element() + 4.0 * finest;
+    if !(extent.is_finite() && finest > 0.0) {
+        return Contour::default();
+    }
+    let levels = (extent / finest).log2().ceil().clamp(1.0, MOST_LEVELS as f32) as u32;
+    let cell = finest.max(extent / (1u32 << levels) as f32);
+    let mut tree = Octree {
+        field,
+        sizes,
+        origin: (low + high) * 0.5 - Vec3::splat(0.5 * cell * (1u32 << levels) as f32),
+        cell,
+        coarsest: sizes.iter().copied().fold(0.0, f32::max),
+        levels,
+        cells: HashMap::default(),
+        leaves: Vec::new(),
+        near: Vec::new(),
+        corners: HashMap::default(),
+        scratch: Vec::new(),
+    };
+    let all: Vec<u16> = (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
+    tree.grow(IVec3::ZERO, levels, &all);
+    tree.faces()
+}
+
+/// Hashes of small keys: one multiplication (Fibonacci hashing).
+#[derive(Default)]
+struct KeyHasher(u64);
+
+impl Hasher for KeyHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u64(u64::from(byte));
+        }
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        let mixed = (self.0 ^ key).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = mixed ^ (mixed >> 29);
+    }
+}
+
+type Map<V> = HashMap<u64, V, BuildHasherDefault<KeyHasher>>;
+
+fn key(at: IVec3, level: u32) -> u64 {
+    // Coordinates lie in 0..=4096.
+    let [x, y, z] = at.to_array().map(|v| v as u64 & 0xffff);
+    x | y << 16 | z << 32 | u64::from(level) << 48
+}
+
+struct Octree<'a> {
+    field: &'a Field,
+    sizes: &'a [f32],
+    origin: Vec3,
+    /// Edge of the finest cells, metres.
+    cell: f32,
+    /// The largest of `sizes`.
+    coarsest: f32,
+    levels: u32,
+    /// Leaves by corner and level.
+    cells: Map<u32>,
+    leaves: Vec<Leaf>,
+    /// The shapes that matter to leaves, one list after the other.
+    near: Vec<u16>,
+    /// Values at corners.
+    corners: Map<f32>,
+    scratch: Vec<(usize, Measured)>,
+}
+
+struct Leaf {
+    at: IVec3,
+    level: u32,
+    near: (u32, u32),
+    /// Whether the surface may pass through it.
+    is_near: bool,
+    /// The sum and number of the points where the surface crosses an edge of the cell.
+    crossings: Vec3,
+    count: f32,
+    vertex: u32,
+}
+
+impl Octree<'_> {
+    fn place(&self, at: IVec3) -> Vec3 {
+        self.origin + at.as_vec3() * self.cell
+    }
+
+    fn grow(&mut self, at: IVec3, level: u32, near: &[u16]) {
+        let size = self.cell * (1u32 << level) as f32;
+        let center = self.place(at) + Vec3::splat(0.5 * size);
+        let reach = 0.5 * size * 3f32.sqrt();
+        let mut narrowed = Vec::with_capacity(near.len());
+        let around = self.field.narrowed(center, reach, near, self.sizes, &mut narrowed);
+        let is_near = around.least <= 1.1 * reach && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
+        // Where no single surface is near there may still be the blend of two.
+        let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
+        if is_near && level > 0 && size > 1.01 * wanted {
+            let half = 1 << (level - 1);
+            for child in 0..8 {
+                let offset = IVec3::new(child & 1, child >> 1 & 1, child >> 2) * half;
+                self.grow(at + offset, level - 1, &narrowed);
+            }
+            return;
+        }
+        self.cells.insert(key(at, level), self.leaves.len() as u32);
+        let start = self.near.len() as u32;
+        self.near.extend(&narrowed);
+        self.leaves.push(Leaf {
+            at,
+            level,
+            near: (start, self.near.len() as u32),
+            is_near,
+            crossings: Vec3::ZERO,
+            count: 0.0,
+            vertex: u32::MAX,
+        });
+    }
+
+    fn near_of(&self, leaf: usize) -> &[u16] {
+        let (start, end) = self.leaves[leaf].near;
+        &self.near[start as usize..end as usize]
+    }
+
+    fn sample(&mut self, point: Vec3, leaf: usize) -> super::field::Sample {
+        let (start, end) = self.leaves[leaf].near;
+        let near = &self.near[start as usize..end as usize];
+        self.field.sample(point, near, &mut self.scratch)
+    }
+
+    fn corner(&mut self, at: IVec3, leaf: usize) -> f32 {
+        if let Some(&value) = self.corners.get(&key(at, 0)) {
+            return value;
+        }
+        let value = self.sample(self.place(at), leaf).value;
+        self.corners.insert(key(at, 0), value);
+        value
+    }
+
+    /// The leaf that a finest cell lies in.
+    fn leaf_of(&self, cell: IVec3) -> Option<usize> {
+        (0..=self.levels)
+            .find_map(|level| self.cells.get(&key(cell & IVec3::splat(-(1 << level)), level)))
+            .map(|&leaf| leaf as usize)
+    }
+
+    fn faces(mut self) -> Contour {
+        let mut rings: Vec<[usize; 4]> = Vec::new();
+        for leaf in 0..self.leaves.len() {
+            if !self.leaves[leaf].is_near {
+                continue;
+            }
+            let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
+            let values: [f32; 8] = std::array::from_fn(|c| {
+                let offset = IVec3::new(c as i32 & 1, c as i32 >> 1 & 1, c as i32 >> 2) << level as i32;
+                self.corner(at + offset, leaf)
+            });
+            if values.iter().all(|v| *v < 0.0) || values.iter().all(|v| *v >= 0.0) {
+                continue;
+            }
+            for axis in 0..3 {
+                for quadrant in 0..4 {
+                    // The edge lies at this side of the cell in each of the other two directions.
+                    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                    let (side_u, side_v) = (quadrant & 1, quadrant >> 1);
+                    let low = side_u << u | side_v << v;
+                    let (from, to) = (values[low], values[low | 1 << axis]);
+                    if (from < 0.0) != (to < 0.0)
+                        && let Some(ring) = self.ring(leaf, axis, [side_u as i32, side_v as i32])
+                    {
+                        self.cross(leaf, low, axis, [from, to], &ring);
+                        rings.push(if from < 0.0 { ring } else { [ring[3], ring[2], ring[1], ring[0]] });
+                    }
+                }
+            }
+        }
+        self.finish(&rings)
+    }
+
+    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end; `None` unless the edge is smallest here and this leaf is the
+    /// first that has it.
+    fn ring(&self, leaf: usize, axis: usize, side: [i32; 2]) -> Option<[usize; 4]> {
+        let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
+        let size = 1 << level;
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut ring = [leaf; 4];
+        for (place, (du, dv)) in [(-1, -1), (0, -1), (0, 0), (-1, 0)].into_iter().enumerate() {
+            let mut cell = at;
+            cell[u] += side[0] * size + du;
+            cell[v] += side[1] * size + dv;
+            let other = self.leaf_of(cell)?;
+            let same_size = self.leaves[other].level == level && self.leaves[other].is_near;
+            if self.leaves[other].level < level || (same_size && other < leaf) {
+                return None;
+            }
+            ring[place] = other;
+        }
+        Some(ring)
+    }
+
+    /// Notes with the leaves around an edge where the surface crosses it.
+    fn cross(&mut self, leaf: usize, low: usize, axis: usize, [from, to]: [f32; 2], ring: &[usize; 4]) {
+        let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
+        let offset = IVec3::new(low as i32 & 1, low as i32 >> 1 & 1, low as i32 >> 2) << level as i32;
+        let mut end = at + offset;
+        end[axis] += 1 << level;
+        let (start, end) = (self.place(at + offset), self.place(end));
+        let point = start.lerp(end, (from / (from - to)).clamp(0.0, 1.0));
+        for &leaf in ring {
+            let leaf = &mut self.leaves[leaf];
+            leaf.crossings += point;
+            leaf.count += 1.0;
+        }
+    }
+
+    fn finish(mut self, rings: &[[usize; 4]]) -> Contour {
+        let mut contour = Contour::default();
+        for leaf in 0..self.leaves.len() {
+            let Leaf {
+                crossings, count, level, ..
+            } = self.leaves[leaf];
+            if count == 0.0 {
+                continue;
+            }
+            let mean = crossings / count;
+            let farthest = 0.5 * self.cell * (1u32 << level) as f32;
+            let mut point = mean;
+            for _ in 0..2 {
+                let sample = self.sample(point, leaf);
+                point -= sample.normal * sample.value.clamp(-farthest, farthest);
+            }
+            if point.distance(mean) > farthest {
+                point = mean;
+            }
+            self.leaves[leaf].vertex = contour.positions.len() as u32;
+            contour.positions.push(point);
+            contour
+                .owners
+                .push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
+        }
+        for ring in rings {
+            let [a, b, c, d] = ring.map(|leaf| self.leaves[leaf].vertex);
+            let between = |x: u32, y: u32| contour.positions[x as usize].distance_squared(contour.positions[y as usize]);
+            // The shorter diagonal; a ring of three leaves is one triangle.
+            let pair = if between(a, c) <= between(b, d) {
+                [[a, b, c], [a, c, d]]
+            } else {
+                [[a, b, d], [b, c, d]]
+            };
+            let is_one = |[x, y, z]: &[u32; 3]| x != y && y != z && z != x;
+            contour.triangles.extend(pair.into_iter().filter(is_one));
+        }
+        contour
+    }
+}

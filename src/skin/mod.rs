@@ -1,0 +1,146 @@
+//! The skinned body: one smooth mesh that follows a skeleton.
+//!
+//! A [`SkinnedMesh`] lies in its *bind pose*; every vertex says which joints move it and by how much. For a pose of the skeleton,
+//! [`SkinnedMesh::joint_transforms`] gives one rigid transform per joint (`world_from_bind`), and the vertices are mixed from those of their joints:
+//! either by the weighted mean of the moved points ([`linear_blend`]), which loses volume where a limb twists, or by the weighted mean of the
+//! motions themselves ([`dual_quaternion`]), which keeps it. Both are written here plainly, one vertex after the other; the renderer does the same on
+//! the GPU.
+//!
+//! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known. A mesh that came with a file is a
+//! [`SkinnedMesh`], too.
+
+mod around;
+mod bind;
+mod capsules;
+mod character;
+mod contour;
+mod deform;
+mod field;
+#[cfg(test)]
+mod gallery;
+pub(crate) mod shapes;
+mod weights;
+
+pub use character::{Character, Drive};
+pub use deform::{RigidTransform, dual_quaternion, linear_blend};
+pub(crate) use weights::normals;
+
+use crate::skeleton::{Roles, Skeleton, WorldPose};
+use glam::{Quat, Vec3};
+
+/// A mesh bound to a skeleton, in its bind pose. All lists of vertices are of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinnedMesh {
+    /// Metres, in the world of the bind pose, Y up.
+    pub positions: Vec<Vec3>,
+    /// Unit vectors out of the surface.
+    pub normals: Vec<Vec3>,
+    /// The joints of the skeleton that move each vertex. Unused ones have weight 0 and are joints nevertheless.
+    pub joints: Vec<[u16; 4]>,
+    /// How much each of them does: the greatest first, none negative, their sum 1.
+    pub weights: Vec<[f32; 4]>,
+    /// Three vertices each, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Base colour of each vertex, red, green, blue and alpha in 0–1 as written in a palette (sRGB-encoded, alpha straight). Empty where the mesh
+    /// has no colours of its own.
+    pub colors: Vec<[f32; 4]>,
+    /// `joint_from_bind` of every joint of the skeleton: where the bind pose lies in the joint's frame.
+    pub bind: Vec<RigidTransform>,
+}
+
+/// The stature of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Build {
+    /// The whole figure is so many times as high as the skeleton; 1 is as the skeleton. See [`Build::scale`].
+    pub height: f32,
+    /// Girths beside those of an average adult; 1 is average.
+    pub girth: f32,
+}
+
+impl Default for Build {
+    fn default() -> Self {
+        Self { height: 1.0, girth: 1.0 }
+    }
+}
+
+impl Build {
+    /// The same build with numbers that make a body: height within 0.1–10, girth within 0.4–2.5, what is no number 1.
+    #[must_use]
+    pub fn clamped(self) -> Self {
+        let within = |value: f32, low: f32, high: f32| if value.is_nan() { 1.0 } else { value.clamp(low, high) };
+        Self {
+            height: within(self.height, 0.1, 10.0),
+            girth: within(self.girth, 0.4, 2.5),
+        }
+    }
+
+    /// Scales a pose of the skeleton to the figure's height, about the fixed point `ground` (metres).
+    ///
+    /// The mesh of [`SkinnedMesh::around`] is made at the figure's height, so the poses that move it must be scaled as well, and with them all that
+    /// is shown of the motion: paths, contact marks. When `ground` is the same in all frames, what stands still keeps standing still and what
+    /// slides, slides `height` times as far: foot skate is neither made nor hidden.
+    pub fn scale(self, world: &mut WorldPose, ground: Vec3) {
+        let height = self.clamped().height;
+        for position in &mut world.positions {
+            *position = ground + (*position - ground) * height;
+        }
+    }
+}
+
+impl SkinnedMesh {
+    /// Makes a body for a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. The joints of
+    /// the mesh are those of the skeleton (at most the first 65,536 of them). The same input gives the same mesh.
+    #[must_use]
+    pub fn around(skeleton: &Skeleton, roles: &Roles, build: Build) -> Self {
+        let build = build.clamped();
+        let mut mesh = around::around(skeleton, roles, build);
+        mesh.scale(build.height);
+        mesh
+    }
+
+    /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind pose that follows this joint alone. Joints that the
+    /// pose does not have stay where the bind pose is.
+    pub fn world_from_bind(&self, world: &WorldPose) -> impl Iterator<Item = RigidTransform> {
+        self.bind.iter().enumerate().map(
+            |(joint, joint_from_bind)| match (world.positions.get(joint), world.rotations.get(joint)) {
+                (Some(&translation), Some(&rotation)) => RigidTransform { rotation, translation } * *joint_from_bind,
+                _ => RigidTransform::IDENTITY,
+            },
+        )
+    }
+
+    /// The same in a list that is overwritten.
+    pub fn joint_transforms(&self, world: &WorldPose, out: &mut Vec<RigidTransform>) {
+        out.clear();
+        out.extend(self.world_from_bind(world));
+    }
+
+    /// Scales the mesh and its bind pose about the origin.
+    pub(crate) fn scale(&mut self, factor: f32) {
+        for position in &mut self.positions {
+            *position *= factor;
+        }
+        for transform in &mut self.bind {
+            transform.translation *= factor;
+        }
+    }
+
+    /// Turns the mesh about the origin, and the joints' axes with it, so that they rest without rotation again.
+    pub(crate) fn turn(&mut self, turn: Quat) {
+        for position in &mut self.positions {
+            *position = turn * *position;
+        }
+        for normal in &mut self.normals {
+            *normal = turn * *normal;
+        }
+        for transform in &mut self.bind {
+            *transform = RigidTransform {
+                rotation: turn * transform.rotation * turn.conjugate(),
+                translation: turn * transform.translation,
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,95 @@
+//! What a skeleton looks like: tapered limbs from nothing but its bones, and a mannequin's where the roles of a human are known.
+//!
+//! One table for both bodies: the limbs that are drawn as they are (`scene`), and the smooth mesh that is made around them.
+
+mod bones;
+mod human;
+
+use crate::skeleton::{Roles, Skeleton, WorldPose};
+use glam::Vec3;
+
+/// A point that moves with a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Anchor {
+    pub(crate) joint: usize,
+    /// In the joint's frame, metres.
+    pub(crate) point: Vec3,
+}
+
+/// A rounded cone before it is posed: two balls and their common hull, as a scene's `Limb`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shape {
+    pub(crate) a: Anchor,
+    pub(crate) b: Anchor,
+    pub(crate) radius_a: f32,
+    pub(crate) radius_b: f32,
+    /// In the frame of the joint of `a`; zero where the shape is round.
+    pub(crate) flat: Vec3,
+    pub(crate) flatness: f32,
+    /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is the body's.
+    pub(crate) shell: usize,
+    /// Whether the shape is only for surfaces that flow into each other: by itself it would be a lump.
+    pub(crate) soft: bool,
+}
+
+impl Shape {
+    fn round(a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) -> Self {
+        Self {
+            a,
+            b,
+            radius_a,
+            radius_b,
+            flat: Vec3::ZERO,
+            flatness: 1.0,
+            shell: 0,
+            soft: false,
+        }
+    }
+
+    fn flattened(self, flat: Vec3, flatness: f32) -> Self {
+        Self { flat, flatness, ..self }
+    }
+
+    /// The shape in a pose; `None` where the pose lacks its joints or has numbers that are none.
+    pub(crate) fn placed(&self, pose: &WorldPose) -> Option<Placed> {
+        let at = |anchor: Anchor| Some(*pose.positions.get(anchor.joint)? + *pose.rotations.get(anchor.joint)? * anchor.point);
+        let (a, b) = (at(self.a)?, at(self.b)?);
+        let flat = *pose.rotations.get(self.a.joint)? * self.flat;
+        (a.is_finite() && b.is_finite()).then_some(Placed {
+            a,
+            b,
+            radius_a: self.radius_a,
+            radius_b: self.radius_b,
+            flat,
+            flatness: self.flatness,
+        })
+    }
+
+    /// Grows with how much of its surroundings the shape can hide.
+    pub(crate) fn weight(&self, rest: &[Vec3]) -> f32 {
+        let at = |anchor: Anchor| rest.get(anchor.joint).map_or(anchor.point, |&p| p + anchor.point);
+        let radius = self.radius_a.max(self.radius_b);
+        radius * (radius + at(self.a).distance(at(self.b)))
+    }
+}
+
+/// A [`Shape`] in a pose: everything in the world, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Placed {
+    pub(crate) a: Vec3,
+    pub(crate) b: Vec3,
+    pub(crate) radius_a: f32,
+    pub(crate) radius_b: f32,
+    pub(crate) flat: Vec3,
+    pub(crate) flatness: f32,
+}
+
+/// The shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin): a mannequin's where the roles are those of a human,
+/// else one per bone. None of them has a number that is not finite.
+pub(crate) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
+    let mut shapes = roles
+        .and_then(|roles| human::shapes(skeleton, rest, roles))
+        .unwrap_or_else(|| bones::shapes(skeleton, rest));
+    shapes.retain(|s| s.radius_a.is_finite() && s.radius_b.is_finite() && s.a.point.is_finite() && s.b.point.is_finite());
+    shapes
+}

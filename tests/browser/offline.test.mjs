@@ -1,0 +1,89 @@
+// What a page keeps for the visits after the first, and how it comes to a newer build.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import { fileURLToPath } from "node:url";
+import { onBackend } from "./harness.mjs";
+import { until } from "./help.mjs";
+
+const SMALL = { viewport: [640, 480], keeps: true };
+const DIST = new URL("../../dist/", import.meta.url);
+const TYPES = { html: "text/html", js: "text/javascript", wasm: "application/wasm", webmanifest: "application/manifest+json", svg: "image/svg+xml" };
+
+/** The build that a page is of. */
+const buildOf = (page) => page.evaluate(() => document.querySelector('meta[name="build"]').content);
+const keptBuilds = (page) => page.evaluate(() => caches.keys());
+/** Until the worker has kept everything and looks after this page. */
+const isKept = (page) => until("the page is kept", () => page.evaluate(() => Boolean(navigator.serviceWorker.controller)));
+
+/** A host whose build changes under the page's feet: `html` and `worker` are the names that its two entry files go by. */
+async function host(t) {
+  const real = (await readFile(new URL("index.html", DIST), "utf8")).match(/name="build" content="(\w+)"/)[1];
+  const now = { html: real, worker: real, real };
+  const server = createServer(async (request, response) => {
+    const name = decodeURI(new URL(request.url, "http://host").pathname.slice("/somewhere/".length)) || "index.html";
+    let bytes;
+    try {
+      bytes = await readFile(fileURLToPath(new URL(name, DIST)));
+    } catch {
+      return response.writeHead(404).end();
+    }
+    if (name === "index.html") bytes = String(bytes).replaceAll(real, now.html);
+    if (name === "sw.js") bytes = String(bytes).replaceAll(real, now.worker);
+    response.writeHead(200, { "Content-Type": TYPES[name.split(".").pop()] ?? "application/octet-stream", "Cache-Control": "no-cache" });
+    response.end(bytes);
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  t.after(() => server.close());
+  return { now, base: `http://127.0.0.1:${server.address().port}/somewhere/` };
+}
+
+// Fails when a file of the first visit is not kept, and when the kept page asks the network for anything.
+onBackend("webgl2", "the second visit needs no network", async ({ open }) => {
+  const { page, ready, segue } = await open("lab=make&gait_speed=1.2", SMALL);
+  await isKept(page);
+  await page.context().setOffline(true);
+  await page.goto(page.url().replace("1.2", "1.4"), { waitUntil: "commit" });
+  await ready();
+  assert.equal((await segue("params")).gait_speed, 1.4);
+  assert.ok((await segue("pose", "result", 0.1)).joints.length > 10);
+});
+
+// Fails when a worker keeps files of two builds, and when a reload stays with the old one for ever.
+onBackend("webgl2", "a newer build comes whole, with the next reload", async ({ open, t }) => {
+  const { now, base } = await host(t);
+  const { page, ready } = await open("play=off", { ...SMALL, base });
+  await isKept(page);
+  assert.equal(await buildOf(page), now.real);
+
+  // The host is in the middle of an update: the worker is new, the page is not.
+  now.worker = "1111111111111111";
+  const refused = await page.evaluate(async () => {
+    const registration = await navigator.serviceWorker.getRegistration();
+    await registration.update().catch(() => {});
+    while (registration.installing) await new Promise((later) => setTimeout(later, 50));
+    return registration.waiting === null;
+  });
+  assert.ok(refused, "half a build is none");
+  assert.deepEqual((await keptBuilds(page)).map((name) => name.split(" ").pop()), [now.real]);
+
+  now.html = now.worker = "2222222222222222";
+  await page.evaluate(async () => (await navigator.serviceWorker.getRegistration()).update());
+  await until("the new build is kept", () => page.evaluate(async () => Boolean((await navigator.serviceWorker.getRegistration()).waiting)));
+  assert.equal(await buildOf(page), now.real, "the open page stays what it is");
+
+  await page.reload({ waitUntil: "commit" });
+  await until("the new build is shown", async () => (await buildOf(page).catch(() => "")) === now.html);
+  await ready();
+  assert.deepEqual((await keptBuilds(page)).map((name) => name.split(" ").pop()), [now.html]);
+});
+
+onBackend("webgl2", "who wants little motion starts it by hand", async ({ open }) => {
+  const { segue } = await open("", { viewport: [640, 480], motion: "reduce" });
+  const before = await segue("time");
+  assert.equal((await segue("params")).play, false);
+  assert.equal(await segue("time"), before);
+  await segue("play");
+  await until("it plays", async () => (await segue("time")) !== before);
+});

@@ -1,0 +1,152 @@
+//! The last step of a build: what belongs together is named so that it can never be mixed, and the service worker learns what there is.
+//!
+//! Trunk calls it as a hook (Trunk.toml), so that every way to build makes the same folder.
+
+use std::fs;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Result, fail};
+
+/// What is fetched when somebody asks for it, and kept from then on.
+const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
+/// The two that everything else is reached from: their names stay.
+const PAGE: &str = "index.html";
+const WORKER: &str = "sw.js";
+
+/// Seals the folder that Trunk is about to hand over.
+pub fn run() -> Result<()> {
+    let Some(folder) = std::env::var_os("TRUNK_STAGING_DIR") else {
+        return fail("`seal` is called by Trunk, after a build: TRUNK_STAGING_DIR names the folder");
+    };
+    // While one works on the page, a worker that keeps old pages is in the way.
+    let is_release = std::env::var("TRUNK_PROFILE").is_ok_and(|profile| profile == "release");
+    seal(Path::new(&folder), is_release)
+}
+
+fn seal(folder: &Path, is_release: bool) -> Result<()> {
+    rename_scripts(folder)?;
+    if !is_release {
+        return Ok(fs::remove_file(folder.join(WORKER))?);
+    }
+    let files = files_of(folder)?;
+    let version = hash_of(folder, &files)?;
+    let page = folder.join(PAGE);
+    let html = fs::read_to_string(&page)?;
+    let Some((head, body)) = html.split_once("</head>") else {
+        return fail("index.html has no head to put the build's name into");
+    };
+    fs::write(&page, format!("{head}<meta name=\"build\" content=\"{version}\">\n</head>{body}"))?;
+    let is_first = |file: &&String| *file != WORKER && !LATER.iter().any(|later| file.starts_with(later));
+    let first: Vec<String> = files.iter().filter(is_first).map(|file| format!("  {file:?},\n")).collect();
+    let worker = folder.join(WORKER);
+    let script = fs::read_to_string(&worker)?;
+    for mark in ["\"BUILD\"", "[/* FILES */]"] {
+        if !script.contains(mark) {
+            return fail(format!("web/{WORKER} has no {mark} to fill in"));
+        }
+    }
+    let script = script
+        .replace("\"BUILD\"", &format!("{version:?}"))
+        .replace("[/* FILES */]", &format!("[\n{}]", first.concat()));
+    Ok(fs::write(worker, script)?)
+}
+
+/// Puts the page's own scripts into a folder that is named after what they say: a browser that keeps them never gives an old one to a new page.
+fn rename_scripts(folder: &Path) -> Result<()> {
+    let scripts: Vec<String> = files_of(folder)?.into_iter().filter(|file| file.starts_with("js/")).collect();
+    if scripts.is_empty() {
+        return fail("the build has no folder js/");
+    }
+    let named = format!("js-{}", hash_of(folder, &scripts)?);
+    fs::rename(folder.join("js"), folder.join(&named))?;
+    let page = folder.join(PAGE);
+    let html = fs::read_to_string(&page)?.replace("/js/", &format!("/{named}/"));
+    Ok(fs::write(page, html)?)
+}
+
+/// All files, by their paths in the folder, in order.
+fn files_of(folder: &Path) -> Result<Vec<String>> {
+    fn collect(folder: &Path, prefix: &str, files: &mut Vec<String>) -> Result<()> {
+        let mut entries: Vec<PathBuf> = fs::read_dir(folder)?
+            .map(|entry| entry.map(|entry| entry.path()))
+            .collect::<std::io::Result<_>>()?;
+        entries.sort();
+        for path in entries {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if path.is_dir() {
+                collect(&path, &format!("{prefix}{name}/"), files)?;
+            } else {
+                files.push(format!("{prefix}{name}"));
+            }
+        }
+        Ok(())
+    }
+    let mut files = Vec::new();
+    collect(folder, "", &mut files)?;
+    Ok(files)
+}
+
+/// Changes with every name and every byte.
+fn hash_of(folder: &Path, files: &[String]) -> Result<String> {
+    let mut hasher = DefaultHasher::new();
+    for file in files {
+        file.hash(&mut hasher);
+        fs::read(folder.join(file))?.hash(&mut hasher);
+    }
+    Ok(format!("{:016x}", hasher.finish()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str, boot: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("segue-seal-{}-{name}", std::process::id()));
+        drop(fs::remove_dir_all(&folder));
+        fs::create_dir_all(folder.join("js")).unwrap();
+        fs::create_dir_all(folder.join("samples")).unwrap();
+        for (file, text) in [
+            ("index.html", "<html><head></head><script>import \"./js/boot.js\"</script></html>"),
+            ("js/boot.js", boot),
+            ("segue-1.wasm", "\0asm"),
+            ("samples/walk.gz", "packed"),
+            ("sw.js", "const BUILD = \"BUILD\"; const FILES = [/* FILES */];"),
+        ] {
+            fs::write(folder.join(file), text).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn what_changes_gets_another_name() {
+        let read = |name: &str, boot: &str| {
+            let folder = folder(name, boot);
+            seal(&folder, true).unwrap();
+            let texts = [PAGE, WORKER].map(|file| fs::read_to_string(folder.join(file)).unwrap());
+            let names = files_of(&folder).unwrap();
+            fs::remove_dir_all(&folder).unwrap();
+            (texts, names)
+        };
+        let ([page, worker], files) = read("a", "1");
+        let scripts = files.iter().find(|file| file.starts_with("js-")).unwrap();
+        assert!(
+            page.contains(&format!("./{scripts}")) && worker.contains(scripts),
+            "{page} {worker}"
+        );
+        assert!(worker.contains("segue-1.wasm") && worker.contains("\"index.html\""), "{worker}");
+        assert!(!worker.contains("samples") && !worker.contains("sw.js"), "{worker}");
+        assert_eq!(read("b", "1"), ([page.clone(), worker.clone()], files.clone()), "the same again");
+        let ([other_page, other_worker], other_files) = read("c", "2");
+        assert!(page != other_page && worker != other_worker && files != other_files);
+    }
+
+    #[test]
+    fn while_one_works_on_it_nothing_is_kept() {
+        let folder = folder("dev", "1");
+        seal(&folder, false).unwrap();
+        assert!(!folder.join(WORKER).exists());
+        assert!(!fs::read_to_string(folder.join(PAGE)).unwrap().contains("name=\"build\""));
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}
