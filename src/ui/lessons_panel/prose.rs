@@ -95,9 +95,9 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
         _ => step,
     });
     let line_height = (font.size * 1.42).round();
-    // Letters that Inter does not have come in one weight only: colour says there what is bold.
+    // Letters that Inter does not have come in one weight and upright: colour says there what stands out.
     let is_in_one_weight = span.text.chars().any(|letter| letter >= '\u{2e80}');
-    let color = if span.target.is_some() || (span.strong && is_in_one_weight) {
+    let color = if span.target.is_some() || ((span.strong || span.emphasis) && is_in_one_weight) {
         palette.accent_ink
     } else if muted {
         palette.muted
@@ -105,7 +105,7 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
         palette.text
     };
     TextFormat {
-        italics: span.emphasis,
+        italics: span.emphasis && !is_in_one_weight,
         background: if span.code {
             palette.panel_raised
         } else {
