@@ -22,7 +22,7 @@ use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
 use segue::session::reading::{Content, LARGE_BYTES};
-use segue::session::{Command, CommandError, Key, Level, Request, Session, Value, link};
+use segue::session::{Command, CommandError, Key, Lesson, Level, Request, Session, Value, link};
 use speech::{Speech, Spoken};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -284,7 +284,7 @@ impl Segue {
 
     /// Whether something is under way that soon changes what is shown. A large file that is read elsewhere takes its time.
     pub(crate) fn is_busy(&self) -> bool {
-        let soon = self.session.jobs().iter().any(|job| job.task.is_none());
+        let soon = self.session.jobs().iter().any(|job| job.task.is_none()) || matches!(self.session.lesson(), Some(Lesson::Waiting));
         self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || soon
     }
 

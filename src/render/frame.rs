@@ -547,7 +547,10 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
         key: key.extend(scale).to_array(),
         background_top: look.background_top,
         background_bottom: look.background_bottom,
-        floor: Vec4::from(look.floor).with_w(look.floor_radius.max(0.1)).to_array(),
+        // From far the light falls on more of the ground: it is the middle of the picture that is lit.
+        floor: Vec4::from(look.floor)
+            .with_w(look.floor_radius.max(0.55 * camera.distance).max(0.1))
+            .to_array(),
         focus: pane.focus.extend(look.shadow).to_array(),
         grid: look.grid,
         edge: look.edge,

@@ -136,6 +136,10 @@ impl LightMap {
                     binding: 2,
                     resource: wgpu::BindingResource::TextureView(&depths),
                 },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::Sampler(&pipelines.light_exactly),
+                },
             ],
         });
         Self { depths, bound }

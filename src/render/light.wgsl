@@ -4,6 +4,8 @@
 @group(1) @binding(1) var light_compare: sampler_comparison;
 // The same texture once more: its depths themselves.
 @group(1) @binding(2) var light_depths: texture_2d<f32>;
+// Without it, WebGL takes a texture of depths for an unfinished one.
+@group(1) @binding(3) var light_exactly: sampler;
 
 // Where a point is in the pane's part of the map: -1 to 1 to the right and up, depth 0 to 1 away from the light.
 fn on_map(world: vec3f) -> vec3f {
@@ -59,12 +61,10 @@ fn key_on_ground(world: vec3f, pixel: vec2f) -> f32 {
     let turn = turn_of(pixel);
     let spread = view.light_tile_metres.y;
     let farthest = max(view.light_tile_metres.z, 3.0 * view.light_tile_metres.x);
-    let size = vec2f(textureDimensions(light_depths));
     var above = 0.0;
     var found = 0.0;
     for (var i = 0u; i < 14u; i++) {
-        let uv = map_uv(at, disk_point(i, 14.0, turn) * farthest);
-        let depth = textureLoad(light_depths, vec2i(uv * size), 0).r;
+        let depth = textureSampleLevel(light_depths, light_exactly, map_uv(at, disk_point(i, 14.0, turn) * farthest), 0.0).r;
         let hides = select(0.0, 1.0, depth < at.z);
         above += hides * (at.z - depth);
         found += hides;

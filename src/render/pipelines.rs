@@ -89,6 +89,7 @@ pub(super) struct Pipelines {
     pub(super) joints_layout: wgpu::BindGroupLayout,
     pub(super) light_layout: wgpu::BindGroupLayout,
     pub(super) light_compare: wgpu::Sampler,
+    pub(super) light_exactly: wgpu::Sampler,
     pub(super) composite_layout: wgpu::BindGroupLayout,
     pub(super) composite_sampler: wgpu::Sampler,
     pub(super) composite: wgpu::RenderPipeline,
@@ -222,6 +223,7 @@ fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             texture_entry(0, seen, wgpu::TextureSampleType::Depth),
             sampler_entry(1, wgpu::SamplerBindingType::Comparison),
             texture_entry(2, seen, wgpu::TextureSampleType::Float { filterable: false }),
+            sampler_entry(3, wgpu::SamplerBindingType::NonFiltering),
         ],
     })
 }
@@ -292,6 +294,10 @@ impl Pipelines {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 compare: Some(LessEqual),
+                ..wgpu::SamplerDescriptor::default()
+            }),
+            light_exactly: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("light map as it is"),
                 ..wgpu::SamplerDescriptor::default()
             }),
             composite_layout,

@@ -368,7 +368,9 @@ impl StageRenderer {
             ..
         } = view;
         self.skins.load(device, &drawn.meshes);
-        joints.write(device, queue, &self.pipelines, &drawn.joints);
+        if !drawn.skins.is_empty() {
+            joints.write(device, queue, &self.pipelines, &drawn.joints);
+        }
         skins.write(device, queue, bytemuck::cast_slice(&drawn.skins));
         limbs.write(device, queue, bytemuck::cast_slice(&drawn.limbs));
         strokes.write(device, queue, bytemuck::cast_slice(&drawn.strokes));

@@ -106,15 +106,13 @@ pub(super) struct JointTexture {
 }
 
 impl JointTexture {
-    /// Writes them, into a larger texture where that is needed.
+    /// Writes them, into a larger texture where that is needed. Those that no texture holds are left out.
     pub(super) fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, pipelines: &Pipelines, joints: &[JointTexels]) {
-        if joints.is_empty() {
+        let most = device.limits().max_texture_dimension_2d;
+        let needed = (joints.len().div_ceil(JOINTS_IN_ROW) as u32).clamp(1, most);
+        if joints.is_empty() && self.bound.is_some() {
             return;
         }
-        let needed = joints
-            .len()
-            .div_ceil(JOINTS_IN_ROW)
-            .min(device.limits().max_texture_dimension_2d as usize) as u32;
         let texture = match self.texture.take() {
             Some(texture) if texture.height() >= needed => texture,
             _ => {
@@ -122,7 +120,7 @@ impl JointTexture {
                     label: Some("joints"),
                     size: wgpu::Extent3d {
                         width: 2 * JOINTS_IN_ROW as u32,
-                        height: needed.next_power_of_two(),
+                        height: needed.next_power_of_two().min(most),
                         depth_or_array_layers: 1,
                     },
                     mip_level_count: 1,

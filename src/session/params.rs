@@ -305,20 +305,6 @@ const HYSTERESES: &[Choice] = &[
 ];
 const SEARCHES: &[Choice] = &[choice("boxes", "boxes"), choice("tree", "k-d tree"), choice("scan", "scan")];
 const JUMPS: &[Choice] = &[choice("inertialize", "inertialize"), choice("dead", "dead blend")];
-const ASKED_TAGS: &[Choice] = &[
-    choice("any", "anything"),
-    choice("walk", "walk"),
-    choice("run", "run"),
-    choice("idle", "idle"),
-    choice("turn", "turn"),
-];
-const FORBIDDEN_TAGS: &[Choice] = &[
-    choice("nothing", "nothing"),
-    choice("walk", "walk"),
-    choice("run", "run"),
-    choice("idle", "idle"),
-    choice("turn", "turn"),
-];
 const GAITS: &[Choice] = &[
     choice("walk", "walk"),
     choice("run", "run"),
@@ -469,8 +455,9 @@ parameters! {
     ClampDistance "clamp_distance" "Never farther than" Match number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
     ClampTurn "clamp_turn" "Never turned more than" Match number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
     PlantFeet "plant_feet" "Foot lock" Match Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
-    AskTag "ask_tag" "Only frames of" Match Kind::Choice(ASKED_TAGS), Start::Word("any"), "", "Frames must have this tag.";
-    ForbidTag "forbid_tag" "No frames of" Match Kind::Choice(FORBIDDEN_TAGS), Start::Word("nothing"), "", "Frames must not have this tag.";
+    AskTag "ask_tag" "Only frames of" Match Kind::Text, Start::Word("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
+    ForbidTag "forbid_tag" "No frames of" Match Kind::Text, Start::Word("nothing"), "", "Frames must not have this tag.";
+    Tags "tags" "Tags" Match Kind::Text, Start::Word(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
     ShownCandidates "shown_candidates" "Candidates shown" Match number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
     Crowd "crowd" "Characters" Match number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
 

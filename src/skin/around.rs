@@ -33,6 +33,7 @@ pub(super) fn around(skeleton: &Skeleton, roles: &Roles, build: Build) -> Skinne
         shape.radius_b *= girths[shape.b.joint];
     }
     let mut mesh = if shapes.len() > MOST_BLENDED {
+        shapes.retain(|shape| !shape.soft);
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         shapes.truncate(MOST_SHAPES);
         capsules(&shapes, &pose)
@@ -72,7 +73,7 @@ fn blended(skeleton: &Skeleton, roles: &Roles, shapes: &[Shape], pose: &WorldPos
     let paths: Vec<Vec<(f32, usize)>> = placed.iter().map(|(shape, placed)| path(skeleton, shape, placed, pose)).collect();
     let largest = LARGEST_CELL * roles.body_height(skeleton);
     // Cells are halved and halved again, so sizes are rounded to that.
-    let size = |cone: &Cone| largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.06, 1.0).log2().round().exp2();
+    let size = |cone: &Cone| largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2();
     let sizes: Vec<f32> = cones.iter().map(size).collect();
     // A surface passes through about 1.5 cells for each square of a cell's size.
     let vertices: f32 = cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();

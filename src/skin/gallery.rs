@@ -161,3 +161,42 @@ fn the_humanoid_stands_walks_and_runs() {
     poses.insert(1, rest_pose(&skeleton));
     picture("humanoid", &mesh, &poses);
 }
+
+#[test]
+fn the_takes_of_others_have_bodies_too() {
+    use crate::clip::Clip;
+    use crate::formats::{ImportOptions, acclaim, import};
+    let Some(data) = std::env::var_os("SEGUE_SHARED").map(PathBuf::from).filter(|_| folder().is_some()) else {
+        return;
+    };
+    let options = ImportOptions::default();
+    let read = |name: &str| std::fs::read(data.join(name)).unwrap();
+    let bvh = |name: &str| import(name, &read(name), &options).unwrap().clips.remove(0).clip;
+    let skeleton = acclaim::read_skeleton("16.asf", &read("cmu/16/16.asf"), &options).unwrap();
+    let amc = |name: &str| {
+        acclaim::read_motion(name, &read(name), &skeleton, &options)
+            .unwrap()
+            .clips
+            .remove(0)
+            .clip
+    };
+    let takes: [(&str, Clip); 4] = [
+        ("cmu_asf", amc("cmu/16/16_35.amc")),
+        ("cmu_bvh", bvh("cmu/01_01.bvh")),
+        ("pirouette", bvh("cmu/pirouette.bvh")),
+        ("games105", bvh("games105/run_forward.bvh")),
+    ];
+    for (name, clip) in takes {
+        let skeleton = clip.skeleton();
+        let start = std::time::Instant::now();
+        let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default());
+        eprintln!(
+            "{name}: {} joints, {} vertices, {:?}",
+            skeleton.len(),
+            mesh.positions.len(),
+            start.elapsed()
+        );
+        let at = |share: f32| clip.world_pose((clip.frames() as f32 * share) as usize);
+        picture(name, &mesh, &[bind_pose(&mesh), at(0.3), at(0.6)]);
+    }
+}

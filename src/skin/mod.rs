@@ -141,3 +141,6 @@ impl SkinnedMesh {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

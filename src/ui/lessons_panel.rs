@@ -135,7 +135,9 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
             out.commands.push(Command::Try(entry.query.clone()));
         }
         ui.add_space(-space::S);
-        indented_ui(ui, |ui| spans_ui(&entry.about, Type::Small, true, out, ui));
+        indented_ui(MENU_INDENT * theme_of(ui).scale(), ui, |ui| {
+            spans_ui(&entry.about, Type::Small, true, out, ui);
+        });
     }
 }
 
@@ -153,7 +155,7 @@ fn page_ui(shown: &LessonPage<'_>, name: &str, session: &Session, state: &mut Ui
         kit::section_header_ui(text::TRY, ui);
         for Try { label, query, about } in &page.tries {
             try_ui(label, query, session, out, ui);
-            indented_ui(ui, |ui| spans_ui(about, Type::Reading, false, out, ui));
+            indented_ui(space::M, ui, |ui| spans_ui(about, Type::Reading, false, out, ui));
             ui.add_space(space::XS);
         }
     }
@@ -215,10 +217,13 @@ fn note_ui(words: &str, is_problem: bool, ui: &mut Ui) {
     ui.add_space(space::S);
 }
 
-/// Set in as far as the words of a button.
-fn indented_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+/// How far the words of a menu's item are set in, points.
+const MENU_INDENT: f32 = 31.0;
+
+/// Set in, below a button or an item of a menu.
+fn indented_ui(by: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let margin = Margin {
-        left: space::M as i8,
+        left: by as i8,
         ..Margin::ZERO
     };
     Frame::new().inner_margin(margin).show(ui, content);

@@ -203,7 +203,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
 fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
     match session.graph_walk().filter(|walk| !walk.is_jump) {
         Some(walk) => graph::walk_panel_ui(session, walk, layout, state, out, ui),
-        None => timeline_panel::timeline_panel_ui(session, layout, curves, out, ui),
+        None => timeline_panel::timeline_panel_ui(session, layout, curves, state, out, ui),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::kit::{self, Mark, SliderRow, Source};
 use super::out::Out;
+use super::text;
 use super::theme::palette_of;
 use eframe::egui::Ui;
 use segue::session::{Command, Key, Kind, Session, Value, decimals_of};
@@ -46,6 +47,7 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
             }
         }
         Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => joint_ui(key, session, out, ui),
+        Kind::Text if key == Key::Character => character_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::Compare => {}
     });
 }
@@ -59,6 +61,25 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if let Some(name) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
         out.set_once(key, Value::Text(name.to_owned()));
+    }
+}
+
+/// The characters that files brought, and the body that is made around the bones. Nothing where no file brought one.
+fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
+    let options: Vec<(&str, &str)> = std::iter::once(("", text::MADE_BODY))
+        .chain(brought.map(|entry| (entry.id.as_str(), entry.name.as_str())))
+        .collect();
+    if options.len() < 2 {
+        return;
+    }
+    let chosen = session
+        .library()
+        .find(session.params().text(key))
+        .filter(|entry| entry.mesh.is_some());
+    let chosen = chosen.map_or("", |entry| entry.id.as_str());
+    if let Some(id) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
+        out.set_once(key, Value::Text(id.to_owned()));
     }
 }
 

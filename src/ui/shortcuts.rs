@@ -5,7 +5,7 @@ use super::out::{Action, Out};
 use super::stage_panel::frame_everything;
 use super::state::UiState;
 use super::top_bar::toggle_compare;
-use eframe::egui::{Context, Event, Key as Keyboard, Modifiers};
+use eframe::egui::{Context, Event, Key as Keyboard, Modifiers, Popup};
 use segue::session::{Command, Key, Kind, Session, Value};
 
 /// The labs, from left to right.
@@ -42,7 +42,8 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if ctx.input(|input| input.events.iter().any(|event| matches!(event, Event::Text(text) if text == "?"))) {
         state.help_open = !state.help_open;
     }
-    if pressed(none, Keyboard::Escape) {
+    // A menu that is open closes itself.
+    if !Popup::is_any_open(ctx) && pressed(none, Keyboard::Escape) {
         if lessons_panel::is_open(session) && !state.help_open && !state.library_open && state.drawing.is_none() {
             toggle_lessons(session, out);
         }

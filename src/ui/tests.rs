@@ -159,6 +159,29 @@ fn picture(name: &str, harness: &mut Harness<'_, Page>) {
     }
 }
 
+#[test]
+fn the_stage_has_its_own_colours_and_rows() {
+    for (name, size) in [("stage-desk", vec2(1440.0, 900.0)), ("stage-phone", vec2(390.0, 844.0))] {
+        let page = page("lab=view&a=walk&play=off&stage=paper&theme=dark");
+        let mut harness = harness(size, Theme::default(), page);
+        if name == "stage-desk" {
+            press(text::STAGE, &mut harness);
+            harness.get_by_label("Twist of the hands").scroll_to_me();
+            harness.run();
+            harness.get_by_label("limbs").click();
+            harness.run();
+            assert_eq!(harness.state().session.params().text(Key::Look), "limbs");
+        }
+        picture(name, &mut harness);
+    }
+    let session = |stage: &str| page(&format!("stage={stage}")).session;
+    let page = Theme::default();
+    let dark = |stage: &str| stage_theme(&session(stage), page).dark;
+    assert_eq!(["auto", "dark", "light", "paper"].map(dark), [true, true, false, false]);
+    assert_eq!(stage_look(&session("paper"), page), Look::PAPER);
+    assert_eq!(stage_look(&session("auto"), page), Look::DARK);
+}
+
 /// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
 fn file(session: &Session) -> String {
     let motion = session

@@ -27,6 +27,15 @@ pub(crate) const CLIP: &str = "Clip";
 pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
 pub(crate) const COMPARE_CLIPS_HELP: &str = "A and B as they are, side by side, with the same numbers for both";
 pub(crate) const BLEND_MORE: &str = "Blend in another clip";
+pub(crate) const TAGS: &str = "Tags";
+pub(crate) const TAGS_HELP: &str =
+    "Speed and turn rate suggest tags. Drag along a clip in the strip below the stage to tag a stretch of it by hand.";
+pub(crate) const TAG_WHAT_PLAYS: &str = "Choose what plays now";
+pub(crate) const STRETCH_FROM: &str = "Stretch from";
+pub(crate) const STRETCH_TO: &str = "Stretch to";
+pub(crate) const OWN_WORD: &str = "A word of your own";
+pub(crate) const TYPE_A_WORD: &str = "type it and press Enter";
+pub(crate) const TAKE_TAG_AWAY: &str = "Take this tag away";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
@@ -74,6 +83,7 @@ pub(crate) const JOINT_TREE: &str = "Joints of the clip";
 pub(crate) const ROOT: &str = "Root";
 pub(crate) const POSITION: &str = "position";
 pub(crate) const ROTATION: &str = "rotation";
+pub(crate) const MADE_BODY: &str = "made around the bones";
 pub(crate) const BODY_PARTS: &str = "Body parts";
 pub(crate) const BODY_PARTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
 pub(crate) const UNIT: &str = "Unit";
@@ -910,6 +920,24 @@ pub(crate) const TRY_AGAIN: &str = "Try again";
 /// The place of a page.
 pub(crate) fn page_of(number: usize, of: usize) -> String {
     format!("{number} of {of}")
+}
+
+/// A tag that was set by hand, or taken away.
+pub(crate) fn hand_tag(clip: &str, [from, to]: [f64; 2], word: &str, takes_away: bool) -> String {
+    if takes_away {
+        format!("{clip}, {from:.2} to {to:.2} s: no longer {word}")
+    } else {
+        format!("{clip}, {from:.2} to {to:.2} s: {word}")
+    }
+}
+
+/// The button that puts a tag on the chosen stretch, or takes it away from there.
+pub(crate) fn tag_as(word: &str, takes_away: bool) -> String {
+    if takes_away {
+        format!("Not {word}")
+    } else {
+        format!("Tag as {word}")
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::drive::drive_panel_ui;
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
 use super::out::Out;
-use super::state::Layout;
+use super::state::{Layout, UiState};
 use super::text;
 use super::theme::palette_of;
 use super::transport_row::{Playhead, transport_row_ui};
@@ -41,11 +41,18 @@ enum CurveOf {
 const CURVE_POINTS: usize = 900;
 
 /// The whole panel.
-pub(crate) fn timeline_panel_ui(session: &Session, layout: Layout, cache: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn timeline_panel_ui(
+    session: &Session,
+    layout: Layout,
+    cache: &mut CurveCache,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let params = session.params();
     let Some(outcome) = session.main_outcome() else { return };
     if let Some(driven) = &outcome.driven {
-        return drive_panel_ui(session, outcome, driven, layout, out, ui);
+        return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
     let clip = &outcome.motion.clip;
     let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));

@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { Buffer } from "node:buffer";
-import http from "node:http";
 import { onBackend, onBothBackends } from "./harness.mjs";
+import { elsewhere } from "./help.mjs";
 import { decodePng } from "./png.mjs";
 
 /** A small file to bring along: a hip with one bone that turns. */
@@ -203,22 +203,6 @@ onBackend("webgl2", "work survives a reload, and only what is in the library is 
   await page.waitForTimeout(1500);
   assert.match((await stored()).work.query, /blend_window=33/, "a link that was only looked at is not stored, nor is a frame");
 });
-
-/** A server of another origin. Playwright's own answers would come with CORS headers, so this is a real one. */
-async function elsewhere(answers, body) {
-  const server = http.createServer(async (request, response) => {
-    const { status = 200, cors = true, after = 0, type = "application/octet-stream", text = "" } = answers[request.url] ?? { status: 404 };
-    await new Promise((resolve) => setTimeout(resolve, after));
-    response.writeHead(status, { "content-type": type, ...(cors && { "access-control-allow-origin": "*" }) }).end(text);
-  });
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  try {
-    await body(`http://127.0.0.1:${server.address().port}`);
-  } finally {
-    server.closeAllConnections();
-    server.close();
-  }
-}
 
 onBackend("webgl2", "files are fetched in the order of the link, and refusals are explained", async ({ open }) => {
   const answers = {

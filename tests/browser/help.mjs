@@ -1,5 +1,6 @@
 // What several tests need: motion files made on the spot, waiting for a state, and looking at pictures.
 
+import http from "node:http";
 import { setTimeout as pause } from "node:timers/promises";
 
 /** Asks until the answer is true, or `what` has not come to be. Software rendering is slow, so no test counts on a time. */
@@ -94,3 +95,19 @@ export const timelineOf = (height) => Math.min(214, Math.round(0.31 * height));
 
 /** The stage in a window of 960 points or wider, and between the words at its top and the numbers at its bottom. */
 export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - timelineOf(height) - 60];
+
+/** A server of another origin. Playwright's own answers would come with CORS headers, so this is a real one. */
+export async function elsewhere(answers, body) {
+  const server = http.createServer(async (request, response) => {
+    const { status = 200, cors = true, after = 0, type = "application/octet-stream", text = "" } = answers[request.url] ?? { status: 404 };
+    await new Promise((resolve) => setTimeout(resolve, after));
+    response.writeHead(status, { "content-type": type, ...(cors && { "access-control-allow-origin": "*" }) }).end(text);
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  try {
+    await body(`http://127.0.0.1:${server.address().port}`);
+  } finally {
+    server.closeAllConnections();
+    server.close();
+  }
+}

@@ -8,7 +8,6 @@
 //! positions stay what they are. A mesh with a skin comes along with its plain colour; other meshes and images are not looked at.
 
 mod accessor;
-mod bones;
 mod characters;
 mod curve;
 mod document;

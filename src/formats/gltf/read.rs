@@ -4,6 +4,7 @@ use super::document::Document;
 use super::node::Nodes;
 use super::rate::{Rate, rate};
 use super::skin::mesh;
+use super::write::GENERATOR;
 use crate::clip::UpAxis;
 use crate::formats::measure::measure;
 use crate::formats::raw::{RawMotion, Y_UP_FROM_Z_UP};
@@ -179,7 +180,11 @@ impl Context<'_> {
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
-        let mut skin = mesh(self.document, self.nodes, character, tally);
+        let mut skin = if self.is_own() {
+            None
+        } else {
+            mesh(self.document, self.nodes, character, tally)
+        };
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);
         }
@@ -218,6 +223,12 @@ impl Context<'_> {
             );
         }
         Ok(())
+    }
+
+    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.
+    fn is_own(&self) -> bool {
+        let generator = self.document.root.asset.generator.as_deref();
+        generator.is_some_and(|generator| generator.starts_with(GENERATOR))
     }
 
     /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.

@@ -13,6 +13,15 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
+mod skin_tests;
+
+/// A file of ours, with the name of the program that wrote it changed.
+fn by_another_program(mut bytes: Vec<u8>) -> Vec<u8> {
+    let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    bytes[at..at + 5].copy_from_slice(b"Other");
+    bytes
+}
+
 /// A file that is being made.
 struct Made {
     root: Value,
@@ -545,7 +554,7 @@ proptest! {
     #[test]
     fn spoilt_files_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10)) {
         let clip = wander(&fixtures::cmu_bvh(), 4, 9);
-        let mut bytes = write_glb(&clip, &GlbOptions::default()).unwrap();
+        let mut bytes = by_another_program(write_glb(&clip, &GlbOptions::default()).unwrap());
         let json = 20 + bytes[20..].windows(4).position(|w| w == b"BIN\0").unwrap();
         for (at, value, kind) in edits {
             // Mostly in the JSON, and there mostly its digits.
@@ -561,6 +570,9 @@ proptest! {
             for found in &imported.clips {
                 prop_assert!((0..found.clip.frames()).all(|frame| found.clip.rotations(frame).iter().all(|q| q.is_normalized())));
                 prop_assert!(found.clip.root_translations().iter().all(|place| place.is_finite()));
+                if let Some(mesh) = &found.mesh {
+                    skin_tests::check(mesh, found.clip.skeleton().len());
+                }
             }
         }
     }

@@ -1,9 +1,12 @@
-use super::bones::Bones;
 use crate::clip::{Clip, Interpolation, resample};
-use crate::skeleton::{Joint, Skeleton};
+use crate::skeleton::{Joint, Roles, Skeleton};
+use crate::skin::{Build, SkinnedMesh};
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 use std::borrow::Cow;
+
+/// How the name of the program that wrote a file begins, where that was Segue.
+pub(super) const GENERATOR: &str = "Segue ";
 
 /// How to write a `.glb` file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -23,8 +26,8 @@ pub enum GlbError {
     TooManyJoints(usize),
 }
 
-/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body of simple bones, and an
-/// animation with the rotations of all joints and the translations of the root and of joints that move.
+/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with the smooth body that
+/// [`SkinnedMesh::around`] makes, and an animation with the rotations of all joints and the translations of the root and of joints that move.
 ///
 /// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
 /// (metres) and rotations (radians) are the same to 1e-5.
@@ -44,16 +47,14 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     let mut nodes = nodes(skeleton);
     let body = nodes.len();
     nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
-    let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
-    let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();
-    let inverse_bind: Vec<f32> = positions
-        .iter()
-        .flat_map(|&position| Mat4::from_translation(-position).to_cols_array())
+    let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default());
+    let inverse_bind: Vec<f32> = (mesh.bind.iter())
+        .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
         .collect();
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
-    let primitive = primitive(&mut file, &Bones::around(skeleton, &positions), skeleton.len());
+    let primitive = primitive(&mut file, &mesh, skeleton.len());
     let mut root = json!({
-        "asset": { "version": "2.0", "generator": concat!("Segue ", env!("CARGO_PKG_VERSION")) },
+        "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0, body] }],
         "nodes": nodes,
@@ -92,41 +93,61 @@ fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     joints.iter().zip(children).map(node).chain(ends).collect()
 }
 
-fn primitive(file: &mut File, bones: &Bones, joints: usize) -> Value {
+fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize) -> Value {
     let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
-    let low = bones.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
-    let high = bones.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
-    let position = file.floats(&vectors(&bones.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
-    let normal = file.floats(&vectors(&bones.normals), "VEC3", None);
-    // Each vertex follows one joint alone.
-    let is_small = joints <= 1 << 8;
-    let followed = bones.joints.iter().flat_map(|&joint| {
-        let [low, high, ..] = joint.to_le_bytes();
-        if is_small {
-            [low, 0, 0, 0, 0, 0, 0, 0]
-        } else {
-            [low, high, 0, 0, 0, 0, 0, 0]
-        }
-        .into_iter()
-        .take(if is_small { 4 } else { 8 })
+    let low = mesh.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = mesh.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let position = file.floats(&vectors(&mesh.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
+    let normal = file.floats(&vectors(&mesh.normals), "VEC3", None);
+    let count = mesh.positions.len();
+    let weights: Vec<[u8; 4]> = mesh.weights.iter().map(bytes_of).collect();
+    // Joints without weight are joint 0, as the format wants it.
+    let followed = mesh.joints.iter().zip(&weights).flat_map(|(joints, weights)| {
+        let pairs = joints.iter().zip(weights);
+        pairs.map(|(&joint, &weight)| if weight > 0 { joint } else { 0 })
     });
-    let followed: Vec<u8> = followed.collect();
-    let count = bones.joints.len();
-    let component = if is_small { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
+    let (component, followed): (u32, Vec<u8>) = if joints <= 1 << 8 {
+        (UNSIGNED_BYTE, followed.map(|joint| joint as u8).collect())
+    } else {
+        (UNSIGNED_SHORT, followed.flat_map(u16::to_le_bytes).collect())
+    };
     let followed = file.accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
-    let weights = [255, 0, 0, 0].repeat(count);
     let weights = file.accessor(
-        &weights,
+        weights.as_flattened(),
         json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
+    );
+    let corners = mesh.triangles.as_flattened();
+    let (component, indices): (u32, Vec<u8>) = if count <= usize::from(u16::MAX) {
+        (
+            UNSIGNED_SHORT,
+            corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect(),
+        )
+    } else {
+        (UNSIGNED_INT, corners.iter().flat_map(|corner| corner.to_le_bytes()).collect())
+    };
+    let indices = file.accessor(
+        &indices,
+        json!({ "componentType": component, "count": corners.len(), "type": "SCALAR" }),
     );
     for accessor in [position, normal, followed, weights] {
         // ARRAY_BUFFER: vertices.
         file.views[accessor]["target"] = json!(34962);
     }
+    // ELEMENT_ARRAY_BUFFER.
+    file.views[indices]["target"] = json!(34963);
     json!({
         "attributes": { "POSITION": position, "NORMAL": normal, "JOINTS_0": followed, "WEIGHTS_0": weights },
+        "indices": indices,
         "material": 0,
     })
+}
+
+/// Weights as parts of 255, of which there are 255 exactly.
+fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
+    let mut bytes = weights.map(|weight| (weight * 255.0).round() as u8);
+    let [first, rest @ ..] = &mut bytes;
+    *first = rest.iter().fold(255, |left, byte| left.saturating_sub(*byte));
+    bytes
 }
 
 fn animation(file: &mut File, clip: &Clip) -> Value {
@@ -168,6 +189,7 @@ fn unit(q: Quat) -> Quat {
 
 const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
 /// A file that grows: its binary part, and what describes that. Each accessor has a view of its own, of the same index.
@@ -196,7 +218,7 @@ impl File {
         self.accessor(&bytes, accessor)
     }
 
-    /// Adds bytes, a multiple of four of them.
+    /// Adds bytes; what comes next begins at a multiple of four.
     fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         let index = self.accessors.len();
         accessor["bufferView"] = json!(index);
@@ -204,6 +226,7 @@ impl File {
         self.views
             .push(json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }));
         self.binary.extend_from_slice(bytes);
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
         index
     }
 

@@ -57,7 +57,8 @@ fn gpu() -> Option<Gpu> {
 }
 
 fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
-    let instance = wgpu::Instance::default();
+    // `WGPU_BACKEND=gl` draws as WebGL does.
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let options = wgpu::RequestAdapterOptions::default();
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
         eprintln!("no graphics adapter: the picture is not drawn");

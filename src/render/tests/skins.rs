@@ -179,6 +179,9 @@ fn statures() {
     {
         let session = session(&format!("lab=view&a=walk&t=1.2&{stature}"));
         let stage = Director::default().stage(&session, &[(0, viewport)], 1.0, Look::LIGHT, &colors(1), 0.0);
+        // The world about a figure of 60 % is shown smaller by as much: from so much farther off, and with wider cells.
+        let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
+        assert!((stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4 && (stage.grid_metres * height - 1.0).abs() < 1e-6);
         all.panes.push(stage.panes[0].clone());
         (all.look, all.grid_metres) = (stage.look, 1.0);
     }
@@ -238,4 +241,38 @@ fn a_hundred_characters() {
     );
     let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
     gpu.draw("crowd", &stage, size);
+}
+
+#[test]
+fn time_in_software() {
+    let Some(mut gpu) = gpu() else { return };
+    let size = [1440, 900];
+    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
+    for look in ["body", "limbs"] {
+        let mut session = session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
+        let mut director = Director::default();
+        let made = Instant::now();
+        director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+        eprintln!("{look}: made in {:.1} ms", made.elapsed().as_secs_f64() * 1e3);
+        for quality in [Quality::Plain, Quality::Full] {
+            gpu.renderer.set_quality(quality);
+            let mut secs = Vec::new();
+            for round in 0..5 {
+                session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
+                let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+                let start = Instant::now();
+                let mut encoder = gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+                gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 9, &stage, size);
+                let submitted = gpu.queue.submit([encoder.finish()]);
+                let wait = eframe::wgpu::PollType::Wait {
+                    submission_index: Some(submitted),
+                    timeout: None,
+                };
+                gpu.device.poll(wait).unwrap();
+                secs.push(start.elapsed().as_secs_f64());
+            }
+            secs.sort_by(f64::total_cmp);
+            eprintln!("{look}, {quality:?}: {:.0} ms", secs[2] * 1e3);
+        }
+    }
 }

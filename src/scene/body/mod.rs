@@ -45,6 +45,7 @@ impl Body {
     pub fn new(skeleton: &Skeleton, roles: Option<&Roles>) -> Self {
         let rest = skeleton.rest_positions();
         let mut shapes = shapes(skeleton, &rest, roles);
+        shapes.retain(|shape| !shape.soft);
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));

@@ -6,7 +6,7 @@ use crate::matching::{Control, Database, RATE, Recording};
 use crate::metrics::Metric;
 use crate::session::command::CommandError;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{Crowd, Live, MatchSource, Outcome, filter_of, options_of, read_ids, recording_of};
+use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, Outcome, filter_of, options_of, read_ids, read_tags, recording_of};
 use crate::skeleton::Pose;
 use std::sync::Arc;
 
@@ -126,7 +126,8 @@ impl Session {
 
     /// So many ticks with the present input.
     pub(super) fn drive_ticks(&mut self, ticks: usize) {
-        let filter = filter_of(&self.params);
+        // One that cannot be read is told where the database is asked for.
+        let filter = filter_of(&self.params).unwrap_or_default();
         let Driving {
             lives,
             crowd,
@@ -223,15 +224,24 @@ impl Session {
         };
     }
 
+    /// The tags that were set by hand; none where they cannot be read.
+    #[must_use]
+    pub fn hand_tags(&self) -> Vec<HandTag> {
+        read_tags(self.params.text(Key::Tags)).unwrap_or_default()
+    }
+
     /// The database that the parameters ask for; `None` while it is built.
     pub(super) fn match_database(&mut self, params: &Params) -> Result<Option<Arc<Database>>, String> {
         let ids = read_ids(params.text(Key::MatchClips)).ok_or("The list of clips cannot be read: its brackets do not close.")?;
         let mut clips = Vec::new();
-        for id in ids {
-            self.bring(&id);
-            clips.push(self.motion_of(&id)?);
+        for id in &ids {
+            self.bring(id);
+            clips.push(self.motion_of(id)?);
         }
-        self.driver.database(&MatchSource::new(clips, params))
+        let tags = read_tags(params.text(Key::Tags))?;
+        filter_of(params)?;
+        let database = self.driver.database(&MatchSource::new(clips, params))?;
+        Ok(database.map(|database| self.driver.tagged(database, ids, tags)))
     }
 
     /// What recorded input depends on; `None` while that is played.
@@ -242,7 +252,7 @@ impl Session {
         let Some(database) = self.match_database(params)? else {
             return Ok(None);
         };
-        let played = self.driver.replay(database, options_of(params), recording, filter_of(params))?;
+        let played = self.driver.replay(database, options_of(params), recording, filter_of(params)?)?;
         Ok(played.map(Inputs::Match))
     }
 

@@ -1,7 +1,7 @@
 //! The Match lab, by commands.
 
 use super::*;
-use crate::matching::{Control, Controller, Database, DatabaseOptions, RATE, Scenario, drive, made_clips};
+use crate::matching::{Control, Controller, Database, DatabaseOptions, RATE, Scenario, Tag, TagSet, drive, made_clips};
 use crate::session::Driven;
 use glam::DVec2;
 
@@ -167,6 +167,48 @@ fn tags_are_asked_for_and_searches_tell_of_candidates() {
     assert_eq!(search.candidates.len(), 4);
     assert_eq!(search.candidates[0].place, search.winner.unwrap().place);
     assert!(search.candidates.windows(2).all(|pair| pair[0].cost <= pair[1].cost));
+}
+
+#[test]
+fn tags_by_hand_are_asked_for_and_excluded() {
+    let session = open(&format!(
+        "{SMALL}&tags=walk:0-1:proud,walk:0.5-2:-walk,idle:0-10:exclude&ask_tag=proud"
+    ));
+    let database = &driven(&session).database;
+    let own = TagSet::of(&[Tag::Own(0)]);
+    for (motion, name) in [(0, "idle"), (1, "walk")] {
+        assert!(database.motions()[motion].clip().name().to_lowercase().contains(name));
+    }
+    let at = |motion: usize, frame: usize| {
+        let before: usize = database.motions()[..motion].iter().map(|motion| motion.frames()).sum();
+        database.tags(before + frame)
+    };
+    assert!(at(0, 30).has(Tag::Exclude) && !at(1, 30).has(Tag::Exclude));
+    assert!(at(1, 10).meets(own) && at(1, 10).has(Tag::Walk) && !at(1, 45).has(Tag::Walk) && !at(1, 90).meets(own));
+    // A word that no frame has is told, with what to do.
+    let problem = open(&format!("{SMALL}&scenario=straight&forbid_tag=tired")).panes()[0]
+        .problem
+        .clone()
+        .unwrap();
+    assert!(problem.contains("`tired`"), "{problem}");
+    let problem = open(&format!("{SMALL}&scenario=straight&tags=walk:1")).panes()[0]
+        .problem
+        .clone()
+        .unwrap();
+    assert!(problem.contains("`walk:1`"), "{problem}");
+    // Tags change while one drives: the character goes on from where it is.
+    let mut session = open(SMALL);
+    ask(&mut session, 0.0, 1.4);
+    for _ in 0..90 {
+        session.tick(1.0 / 60.0);
+    }
+    let there = driven(&session).moments.last().unwrap().root;
+    session
+        .apply(Command::Set(vec![(Key::Tags, Value::Text("walk_left:0-9:exclude".into()))]))
+        .unwrap();
+    session.tick(1.0 / 60.0);
+    assert!(driven(&session).moments.last().unwrap().root.shift.distance(there.shift) < 0.1);
+    assert!(driven(&session).moments.len() > 60);
 }
 
 #[test]

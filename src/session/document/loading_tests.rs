@@ -204,3 +204,62 @@ fn zip(files: &[(&str, &str)]) -> Vec<u8> {
     out.extend([0, 0]);
     out
 }
+
+/// A person in a file of another program: a mesh with a skin, and `frames` frames of a walk.
+fn person(frames: usize) -> Arc<[u8]> {
+    use crate::formats::gltf::{GlbOptions, write_glb};
+    let walk = crate::synth::synthesize(&crate::synth::Params::new(crate::synth::Action::Walk))
+        .unwrap()
+        .clip;
+    let mut bytes = write_glb(&walk.crop(0..frames).unwrap(), &GlbOptions::default()).unwrap();
+    let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    bytes[at..at + 5].copy_from_slice(b"Other");
+    bytes.into()
+}
+
+#[test]
+fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
+    let mut session = Session::new();
+    assert!(session.character().is_none());
+    let before = session.params().text(Key::A).to_owned();
+    let loaded = session.load("person.glb", person(0)).unwrap();
+    let character = session.character().unwrap();
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert!(character.mesh.positions.len() > 1000);
+    // A character without a motion plays nothing.
+    assert_eq!(session.params().text(Key::A), before);
+    let outcome = Arc::clone(session.main_outcome().unwrap());
+    let drive = crate::skin::Drive::new(&outcome.motion.clip, &outcome.motion.roles, &character).unwrap();
+    let mut transforms = Vec::new();
+    drive.transforms(&outcome.motion.clip.world_pose(10), &character.mesh, &mut transforms);
+    assert_eq!(transforms.len(), character.skeleton.len());
+    assert!(
+        transforms
+            .iter()
+            .all(|transform| transform.translation.is_finite() && transform.rotation.is_normalized())
+    );
+    // It is stored with the library and comes back with it.
+    let saved = session.saved();
+    let mut again = Session::new();
+    let bytes = person(0);
+    again.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
+    assert_eq!(again.character().unwrap().mesh, character.mesh);
+    // And goes again: by the parameter, by undo, and with its clip.
+    session
+        .apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))]))
+        .unwrap();
+    assert!(session.character().is_none());
+    session.apply(Command::Undo).unwrap();
+    assert!(session.character().is_some());
+    session.apply(Command::Remove(loaded.ids[0].clone())).unwrap();
+    assert!(session.character().is_none() && session.params().text(Key::Character).is_empty());
+}
+
+#[test]
+fn a_character_with_a_motion_brings_both() {
+    let mut session = Session::new();
+    let loaded = session.load("walker.glb", person(60)).unwrap();
+    assert_eq!(session.params().text(Key::A), loaded.ids[0]);
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert_eq!(loaded.warnings, [""; 0]);
+}

@@ -102,7 +102,7 @@ impl Session {
 
     /// Takes the text of a lesson, or why it did not come. A text that nobody waits for is kept.
     pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], String>) {
-        let read = text.and_then(|bytes| parse(bytes).map_err(|error| self.say_unread(source, &error)));
+        let read = text.and_then(|bytes| parse(bytes).map_err(|error| unread(source, &error)));
         let text = match read {
             Ok(pages) => Text::Here(Arc::from(pages)),
             Err(problem) => Text::Failed(problem),
@@ -113,12 +113,6 @@ impl Session {
             self.begin_anew();
         }
         self.revision += 1;
-    }
-
-    /// A sentence on a file that is no lesson.
-    fn say_unread(&self, source: &Source, error: &LessonError) -> String {
-        let (Source::BuiltIn(name) | Source::Web(name)) = source;
-        format!("{name} is no lesson: {error}.")
     }
 
     /// From now on, the lessons that come with Segue are those in this language: a folder of theirs, `en` or `zh-Hant`.
@@ -157,7 +151,8 @@ impl Session {
         // What did not come may come now.
         self.shelf.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
         let alone = values.into_iter().all(is_about_the_reader);
-        self.shelf.to_set_up = alone.then(|| self.params.text(Key::Lesson).to_owned());
+        let lesson = self.params.text(Key::Lesson);
+        self.shelf.to_set_up = (alone && !lesson.is_empty()).then(|| lesson.to_owned());
         self.set_up();
     }
 
@@ -237,6 +232,12 @@ impl Session {
         self.look_for_clips();
         self.grapher.stop(false);
     }
+}
+
+/// A sentence on a file that is no lesson.
+fn unread(source: &Source, error: &LessonError) -> String {
+    let (Source::BuiltIn(name) | Source::Web(name)) = source;
+    format!("{name} is no lesson: {error}.")
 }
 
 /// What a link of a lesson sets even where it does not name it: what makes the result.

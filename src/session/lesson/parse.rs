@@ -293,7 +293,7 @@ fn with_units_held(text: &str) -> String {
         held.push_str(piece);
         if let Some(next) = pieces.peek() {
             let unit = next.trim_end_matches(|letter: char| letter.is_ascii_punctuation() && letter != '%');
-            let is_unit = UNITS.iter().any(|known| unit == *known) || next.starts_with('°') || next.starts_with('%');
+            let is_unit = UNITS.contains(&unit) || next.starts_with('°') || next.starts_with('%');
             let after_number = piece.ends_with(|letter: char| letter.is_ascii_digit());
             held.push(if after_number && is_unit { '\u{a0}' } else { ' ' });
         }

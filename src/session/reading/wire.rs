@@ -525,6 +525,7 @@ mod tests {
     use super::*;
     use crate::formats::bvh;
     use crate::session::reading::{ReadSetup, read};
+    use crate::skin::Build;
     use crate::synth::{Action, Params, synthesize};
 
     fn report(secs: f32) -> ReadReport {
@@ -551,11 +552,24 @@ mod tests {
             unpacked: Some((0..=255).collect()),
             ..report(1.0).files.remove(0)
         });
+        let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
+        let mesh = Arc::new(SkinnedMesh {
+            colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
+            ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default())
+        });
+        for file in &mut long.files {
+            let read = file.result.as_mut().unwrap();
+            read.clips.push(read.clips[0].clone());
+            read.clips.iter_mut().for_each(|clip| clip.mesh = Some(Arc::clone(&mesh)));
+        }
         long.notes.push("two".into());
         let mut pieces = 0;
         Parcel::new(long.clone()).unwrap().pieces(|_| pieces += 1);
         assert!(pieces > 1, "{pieces}");
-        assert_eq!(sent(&long), long);
+        let arrived = sent(&long);
+        assert_eq!(arrived, long);
+        let clips = &arrived.files[0].result.as_ref().unwrap().clips;
+        assert!(Arc::ptr_eq(clips[0].mesh.as_ref().unwrap(), clips[1].mesh.as_ref().unwrap()));
         let refused = read("no.bvh", b"HIERARCHY x", &ReadSetup::default(), &mut |_| true).unwrap();
         assert!(refused.files[0].result.is_err());
         assert_eq!(sent(&refused), refused);

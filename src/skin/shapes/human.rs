@@ -101,6 +101,14 @@ impl Human<'_> {
         self.shapes.push(Shape::round(a, radius_a * self.scale, b, radius_b * self.scale));
     }
 
+    /// Likewise, for a surface that flows into its neighbours only.
+    fn add_soft(&mut self, a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) {
+        self.add(a, radius_a, b, radius_b);
+        if let Some(shape) = self.shapes.last_mut() {
+            shape.soft = true;
+        }
+    }
+
     /// The joints from `joint` up to the root.
     fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(joint), |&j| self.skeleton.parent(j))
@@ -172,6 +180,23 @@ impl Human<'_> {
         };
         let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
         self.add(seat_left, 0.083, seat_right, 0.083);
+        for hip in [hip_left, hip_right] {
+            // Half of the seat, and how it goes over into the thigh.
+            let knee = self
+                .skeleton
+                .children(hip)
+                .next()
+                .map_or(-up, |knee| self.skeleton.joints()[knee].offset)
+                .normalize_or(-up);
+            let buttock = self.anchor(
+                hips,
+                self.rest[hip].lerp(hip_middle, 0.30) - up * (0.004 * s) - forward * (0.048 * s),
+            );
+            // In the frame of a leg that may rest upside down.
+            let behind = left.cross(knee).normalize_or(-forward);
+            let fold = self.on(hip, knee * 0.085 + behind * 0.022);
+            self.add_soft(buttock, 0.070, fold, 0.058);
+        }
         let breast = |this: &Self, arm: usize| {
             this.anchor(
                 chest,
@@ -198,6 +223,17 @@ impl Human<'_> {
             );
             let armpit = self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
             self.add(flank, 0.060, armpit, 0.046);
+            // The muscle of the chest, and the broad one of the back that narrows to the waist.
+            let at = |this: &Self, share: f32, down: f32, ahead: f32| {
+                this.anchor(
+                    chest,
+                    this.rest[arm].lerp(shoulder_middle, share) - up * (down * s) + forward * (ahead * s),
+                )
+            };
+            let (breast, inner) = (at(self, 0.30, 0.060, 0.030), at(self, 0.66, 0.094, 0.044));
+            self.add_soft(breast, 0.040, inner, 0.052);
+            let (wing, low) = (at(self, 0.26, 0.085, -0.030), at(self, 0.62, 0.235, -0.012));
+            self.add_soft(wing, 0.044, low, 0.042);
         }
         self.cover(chest);
         Some(())
@@ -235,6 +271,25 @@ impl Human<'_> {
         self.add(cranium, 0.092, chin, 0.056);
         self.flatten_last(left, 0.83);
         self.add(brow, 0.010, tip, 0.0125);
+        // Chin and jaw, the ridge over the eyes, the back of the head, ears.
+        let point = self.on(head, up * (crown - 0.196) + forward * 0.066);
+        for side in [1.0, -1.0] {
+            let jaw = self.on(head, up * (crown - 0.168) + forward * 0.006 + left * (side * 0.044));
+            self.add_soft(point, 0.024, jaw, 0.026);
+            let (temple, between) = (
+                self.on(head, up * (crown - 0.098) + forward * 0.058 + left * (side * 0.040)),
+                self.on(head, up * (crown - 0.096) + forward * 0.078 + left * (side * 0.010)),
+            );
+            self.add_soft(temple, 0.014, between, 0.012);
+            let (ear, lobe) = (
+                self.on(head, up * (crown - 0.108) - forward * 0.008 + left * (side * 0.078)),
+                self.on(head, up * (crown - 0.134) - forward * 0.002 + left * (side * 0.072)),
+            );
+            self.add_soft(ear, 0.019, lobe, 0.012);
+            self.flatten_last(left, 0.45);
+        }
+        let nape = self.on(head, up * (crown - 0.105) - forward * 0.026);
+        self.add_soft(cranium, 0.080, nape, 0.074);
         self.cover(head);
         Some(())
     }
@@ -323,6 +378,14 @@ impl Human<'_> {
         let calf = self.anchor(knee, self.rest[knee].lerp(self.rest[ankle], 0.30) - ahead * (0.014 * s));
         self.add(self.on(knee, ahead * 0.004), 0.054, calf, 0.055);
         self.add(calf, 0.055, zero(ankle), 0.035);
+        // The muscle of the calf, and the knee cap.
+        let on_shin = |this: &Self, share: f32, forwards: f32| {
+            this.anchor(knee, this.rest[knee].lerp(this.rest[ankle], share) + ahead * (forwards * s))
+        };
+        let (upper, lower) = (on_shin(self, 0.14, -0.024), on_shin(self, 0.42, -0.022));
+        self.add_soft(upper, 0.040, lower, 0.036);
+        let (cap, shin) = (on_shin(self, 0.0, 0.020), on_shin(self, 0.16, 0.014));
+        self.add_soft(cap, 0.037, shin, 0.034);
         self.cover(ankle);
 
         let toe = self.joint(Role::toe(side));

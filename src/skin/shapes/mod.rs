@@ -28,6 +28,8 @@ pub(crate) struct Shape {
     pub(crate) flatness: f32,
     /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is the body's.
     pub(crate) shell: usize,
+    /// Whether the shape is only for surfaces that flow into each other: by itself it would be a lump.
+    pub(crate) soft: bool,
 }
 
 impl Shape {
@@ -40,6 +42,7 @@ impl Shape {
             flat: Vec3::ZERO,
             flatness: 1.0,
             shell: 0,
+            soft: false,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Keys, the stick on the screen and a gamepad become what the character is asked for.
 
 use super::{is_open, shown};
-use crate::ui::kit::{self, Button};
+use crate::ui::kit::{self, Button, Chosen};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -37,6 +37,10 @@ pub(crate) struct DriveHand {
     pushed: Vec2,
     /// The candidate that is shown on the stage, by its place in the list.
     pub(super) chosen: Option<usize>,
+    /// The stretch of a clip that is to be tagged.
+    pub(super) stretch: Option<Chosen>,
+    /// The word of one's own that is being typed for it.
+    pub(super) word: String,
     /// The candidate under the pointer.
     pub(super) hovered: Option<usize>,
 }

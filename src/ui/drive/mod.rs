@@ -3,6 +3,7 @@
 mod hand;
 mod rows;
 mod strip;
+mod tags;
 mod why;
 
 pub(crate) use hand::{DriveHand, Pad};

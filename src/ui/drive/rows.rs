@@ -1,6 +1,7 @@
 //! What is set in the Match lab.
 
 use super::note_ui;
+use super::tags::tags_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
@@ -48,21 +49,14 @@ pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut 
     hysteresis_ui(session, out, ui);
     ui.add_space(space::S);
     kit::folded_ui(text::SEARCHING, ui, |ui| {
-        for key in [
-            Key::SearchInterval,
-            Key::SearchBy,
-            Key::AheadNear,
-            Key::AheadMiddle,
-            Key::AheadFar,
-            Key::AskTag,
-            Key::ForbidTag,
-        ] {
+        for key in [Key::SearchInterval, Key::SearchBy, Key::AheadNear, Key::AheadMiddle, Key::AheadFar] {
             if key == Key::SearchBy {
                 label_ui(key, ui);
             }
             row(key, session, out, ui);
         }
     });
+    kit::folded_ui(text::TAGS, ui, |ui| tags_ui(session, state, out, ui));
     kit::folded_ui(text::GOING_OVER, ui, |ui| going_over_ui(session, out, ui));
     kit::folded_ui(text::MATCH_CLIPS, ui, |ui| clips_ui(session, out, ui));
     ui.add_space(space::S);

@@ -3,7 +3,7 @@
 use super::shown;
 use crate::ui::kit::{self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent};
 use crate::ui::out::Out;
-use crate::ui::state::Layout;
+use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
 use crate::ui::theme::{Palette, palette_of, space, theme_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
@@ -19,7 +19,15 @@ const MOST_MARKS: usize = 160;
 const MOST_BARS: usize = 300;
 
 /// The whole panel.
-pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driven, layout: Layout, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn drive_panel_ui(
+    session: &Session,
+    outcome: &Outcome,
+    driven: &Driven,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let now = session.now_secs();
     let frames = if driven.is_live {
         session.recording().ticks()
@@ -46,7 +54,7 @@ pub(crate) fn drive_panel_ui(session: &Session, outcome: &Outcome, driven: &Driv
     // The curves below it need room, too.
     let most = if layout == Layout::Phone { 1.0 } else { 0.4 } * ui.available_height();
     let height = ((rows * 20.0 + 16.0) * scale).min(most);
-    strip_ui(driven, now, height, ui);
+    strip_ui(driven, now, height, state, ui);
     if layout != Layout::Phone {
         ui.add_space(space::XS);
         time_ui(session, outcome, driven, out, ui);
@@ -142,11 +150,11 @@ fn tag_color(tag: Tag, palette: &Palette) -> Option<Color32> {
         Tag::Idle => Some(palette.line_strong),
         Tag::Turn => Some(palette.others[1]),
         Tag::Exclude => Some(palette.bad),
-        Tag::Own(_) => None,
+        Tag::Own(_) => Some(palette.accent),
     }
 }
 
-fn strip_ui(driven: &Driven, now_secs: f64, height: f32, ui: &mut Ui) {
+fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui: &mut Ui) {
     let palette = palette_of(ui);
     let database = &driven.database;
     let mirrored = database.options().mirrored;
@@ -190,14 +198,17 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, ui: &mut Ui) {
         rows: if mirrored { 2 } else { 1 },
         now: moment.and_then(|moment| at(moment.place)),
         jumps: &jumps,
+        chosen: state.drive.stretch.as_ref(),
         marks: &marks,
         legend: &legend,
     };
-    kit::places_ui(&places, height, ui);
+    if let Some(stretch) = kit::places_ui(&places, height, ui) {
+        state.drive.stretch = Some(stretch);
+    }
 }
 
 /// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of a motion is the number of its clip.
-fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
+pub(super) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
     let bar = if database.options().mirrored {
         place.motion / 2

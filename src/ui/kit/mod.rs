@@ -58,7 +58,7 @@ pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{Notice, NoticeEvent, caption_ui, progress_row_ui, toasts_ui};
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
-pub(crate) use places::{PlaceBar, Places, StripPlace, places_ui};
+pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use profile::profile_ui;
 pub(crate) use section::{folded_ui, section_header_ui};
 pub(crate) use segmented::segmented_ui;

@@ -2,7 +2,7 @@
 
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Type, palette_of, theme_of};
-use eframe::egui::{Align2, Color32, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{Align2, Color32, Rangef, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use std::ops::Range;
 
 /// A clip.
@@ -27,6 +27,15 @@ pub(crate) struct StripPlace {
     pub(crate) frame: usize,
 }
 
+/// Frames of one clip in the strip.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Chosen {
+    /// The clip.
+    pub(crate) bar: usize,
+    /// The frames.
+    pub(crate) frames: Range<usize>,
+}
+
 /// All that the strip shows.
 #[derive(Clone, Debug)]
 pub(crate) struct Places<'a> {
@@ -40,18 +49,20 @@ pub(crate) struct Places<'a> {
     pub(crate) now: Option<StripPlace>,
     /// The last jumps, from and to, with how clear they are, 0 to 1.
     pub(crate) jumps: &'a [(StripPlace, StripPlace, f32)],
+    /// What was chosen by hand.
+    pub(crate) chosen: Option<&'a Chosen>,
     /// Frames that could be gone to.
     pub(crate) marks: &'a [StripPlace],
     /// Names of the colours.
     pub(crate) legend: &'a [(&'a str, Color32)],
 }
 
-/// Draws the strip `height` points high; the frame under the pointer.
-pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option<StripPlace> {
+/// Draws the strip `height` points high; the stretch that is just being chosen by dragging along a clip.
+pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option<Chosen> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (_, whole) = ui.allocate_space(vec2(ui.available_width(), height));
-    let response = ui.interact(whole, ui.make_persistent_id(places.label), Sense::hover());
+    let response = ui.interact(whole, ui.make_persistent_id(places.label), Sense::drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, places.label));
     let legend = (16.0 * scale).round();
     let rows = places.rows.max(1);
@@ -88,15 +99,34 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     if let Some(now) = &places.now {
         painter.circle(at(now), 5.5 * scale, palette.handle, Stroke::new(1.5, palette.on_handle));
     }
-    let hovered = response.hover_pos().and_then(|pos| {
-        let bar = starts.partition_point(|start| *start <= pos.x).checked_sub(1)?;
-        let row = (((pos.y - whole.top()) / pitch.max(1.0)) as usize).min(rows - 1);
-        let frame = ((pos.x - starts[bar]) / per_frame.max(1e-6)) as usize;
+    if let Some(chosen) = places.chosen {
+        for row in 0..rows {
+            let span = x_of(chosen.bar, chosen.frames.start)..=x_of(chosen.bar, chosen.frames.end);
+            let rect = Rect::from_x_y_ranges(span, y_of(row).expand(1.5));
+            painter.rect(
+                rect,
+                2,
+                palette.accent.gamma_multiply(0.25),
+                Stroke::new(1.5 * scale, palette.accent),
+                StrokeKind::Middle,
+            );
+        }
+    }
+    let bar_at = |x: f32| starts.partition_point(|start| *start <= x).checked_sub(1);
+    let frame_at = |bar: usize, x: f32| ((x - starts[bar]).max(0.0) / per_frame.max(1e-6)) as usize;
+    let hovered = response.hover_pos().and_then(|pos| bar_at(pos.x));
+    let pulled = ui.input(|input| input.pointer.press_origin()).zip(response.interact_pointer_pos());
+    let dragged = pulled.filter(|_| response.dragged()).and_then(|(from, to)| {
+        let bar = bar_at(from.x)?;
         let frames = places.bars.get(bar)?.frames;
-        (frame < frames).then_some(StripPlace { bar, row, frame })
+        let [a, b] = [from, to].map(|pos| frame_at(bar, pos.x).min(frames));
+        (a != b).then(|| Chosen {
+            bar,
+            frames: a.min(b)..a.max(b),
+        })
     });
     // What is pointed at, or plays, by name; else what the colours mean.
-    let named = hovered.or(places.now).and_then(|place| places.bars.get(place.bar));
+    let named = hovered.or(places.now.map(|now| now.bar)).and_then(|bar| places.bars.get(bar));
     let base = whole.bottom() - 0.5 * legend;
     let mut x = whole.right();
     for (name, color) in places.legend.iter().rev() {
@@ -110,5 +140,5 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
         let galley = line_of(&[Run::new(bar.name, Type::Small, palette.text)], x - whole.left(), ui);
         put(&painter, pos2(whole.left(), base), Align2::LEFT_CENTER, galley);
     }
-    hovered
+    dragged
 }

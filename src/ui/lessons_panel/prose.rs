@@ -95,10 +95,14 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
         _ => step,
     });
     let line_height = (font.size * 1.42).round();
-    let color = match (&span.target, muted) {
-        (Some(_), _) => palette.accent_ink,
-        (None, true) => palette.muted,
-        (None, false) => palette.text,
+    // Letters that Inter does not have come in one weight only: colour says there what is bold.
+    let is_in_one_weight = span.text.chars().any(|letter| letter >= '\u{2e80}');
+    let color = if span.target.is_some() || (span.strong && is_in_one_weight) {
+        palette.accent_ink
+    } else if muted {
+        palette.muted
+    } else {
+        palette.text
     };
     TextFormat {
         italics: span.emphasis,

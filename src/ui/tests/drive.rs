@@ -192,3 +192,20 @@ fn the_lab_has_room_on_every_page() {
         picture(name, &mut harness);
     }
 }
+
+#[test]
+fn a_stretch_is_tagged_by_hand() {
+    let mut harness = harness(DESK, DARK, page(SMALL));
+    play(5, &mut harness);
+    press(text::TAGS, &mut harness);
+    press(text::TAG_WHAT_PLAYS, &mut harness);
+    press(&text::tag_as("exclude", false), &mut harness);
+    let tags = harness.state().session.hand_tags();
+    let [tag] = tags.as_slice() else { panic!("{tags:?}") };
+    assert!(
+        tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away,
+        "{tag:?}"
+    );
+    press(text::TAKE_TAG_AWAY, &mut harness);
+    assert!(harness.state().session.hand_tags().is_empty());
+}

@@ -1,5 +1,6 @@
 //! Builds databases and plays recorded input, slice by slice.
 
+use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
 use crate::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError, Recording,
@@ -100,6 +101,8 @@ struct Playing {
 pub(in crate::session) struct Driver {
     made: Vec<MatchClip>,
     databases: Vec<(Source, Result<Arc<Database>, String>)>,
+    /// With tags by hand: what they were put on, the clips' ids and the tags, and what came of it.
+    tagged: Vec<(Arc<Database>, (Vec<String>, Vec<HandTag>), Arc<Database>)>,
     building: Option<(Source, Box<DatabaseBuilder>)>,
     wanted: Vec<Source>,
     replays: Vec<(Script, Result<Arc<Outcome>, String>)>,
@@ -123,6 +126,27 @@ impl Driver {
         }
         self.wanted.push(source.clone());
         Ok(None)
+    }
+
+    /// A database with tags by hand; `ids` are the clips that it was built from, none for the synthesiser's set.
+    pub(in crate::session) fn tagged(&mut self, database: Arc<Database>, ids: Vec<String>, tags: Vec<HandTag>) -> Arc<Database> {
+        if tags.is_empty() {
+            return database;
+        }
+        let told = (ids, tags);
+        let known = self
+            .tagged
+            .iter()
+            .find(|(base, known, _)| Arc::ptr_eq(base, &database) && *known == told);
+        if let Some((.., tagged)) = known {
+            return Arc::clone(tagged);
+        }
+        let made = Arc::new(tagged(&database, &told.0, &told.1));
+        if self.tagged.len() >= MAX_PANES {
+            drop(self.tagged.remove(0));
+        }
+        self.tagged.push((database, told, Arc::clone(&made)));
+        made
     }
 
     /// What recorded input gives. `None` while it is played.

@@ -1,8 +1,6 @@
 //! From parameters to what the controller is told.
 
-use crate::matching::{
-    ControllerOptions, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Tag, TagFilter, TagSet, Weights,
-};
+use crate::matching::{ControllerOptions, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights};
 use crate::math::Decay;
 use crate::session::params::{Key, Params};
 use crate::transition::Inertialization;
@@ -59,16 +57,6 @@ pub(in crate::session) fn options_of(params: &Params) -> ControllerOptions {
         }),
         planting: usual.planting.filter(|_: &FootPlanting| params.is_on(Key::PlantFeet)),
         candidates: number(Key::ShownCandidates) as usize,
-    }
-}
-
-/// Which frames may be found.
-pub(in crate::session) fn filter_of(params: &Params) -> TagFilter {
-    let tag = |key| Tag::FIXED.into_iter().find(|tag| tag.name() == params.text(key));
-    let set = |key| tag(key).map_or(TagSet::NONE, |tag| TagSet::of(&[tag]));
-    TagFilter {
-        ask: set(Key::AskTag),
-        forbid: set(Key::ForbidTag),
     }
 }
 

@@ -1,0 +1,135 @@
+//! Stretches of clips that are tagged by hand, and which tags are asked for.
+
+use super::strip::strip_place;
+use super::{note_ui, shown};
+use crate::ui::kit::{self, Button, Chosen, Icon, SliderRow};
+use crate::ui::out::Out;
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
+use eframe::egui::{Ui, vec2};
+use segue::matching::{Database, Motion, RATE, Tag};
+use segue::session::{HandTag, Key, Session, Value, own_words, write_tags};
+
+/// What "what plays now" reaches to either side, frames.
+const AROUND: usize = 15;
+
+/// All rows of the section.
+pub(super) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let muted = palette_of(ui).muted;
+    let tags = session.hand_tags();
+    for (key, word) in [(Key::AskTag, "any"), (Key::ForbidTag, "nothing")] {
+        wanted_ui(key, word, &tags, session, out, ui);
+    }
+    note_ui(text::TAGS_HELP, muted, ui);
+    for (index, tag) in tags.iter().enumerate() {
+        ui.horizontal(|ui| {
+            ui.push_id(("tag", index), |ui| {
+                if kit::icon_button_ui(Icon::Close, text::TAKE_TAG_AWAY, ui).clicked() {
+                    let mut rest = tags.clone();
+                    rest.remove(index);
+                    set(&rest, out);
+                }
+            });
+            let name = session
+                .library()
+                .find(&tag.clip)
+                .map_or(tag.clip.as_str(), |entry| entry.name.as_str());
+            note_ui(&text::hand_tag(name, tag.secs, &tag.word, tag.takes_away), palette_of(ui).text, ui);
+        });
+    }
+    let Some((driven, moment)) = shown(session) else { return };
+    if kit::button_ui(Button::new(text::TAG_WHAT_PLAYS), ui).clicked() {
+        state.drive.stretch = strip_place(&driven.database, moment.place).map(|at| Chosen {
+            bar: at.bar,
+            frames: at.frame.saturating_sub(AROUND)..at.frame + AROUND,
+        });
+    }
+    let Some(stretch) = &mut state.drive.stretch else { return };
+    let Some(motion) = motion_of(&driven.database, stretch.bar) else {
+        state.drive.stretch = None;
+        return;
+    };
+    let ids = session.match_clip_ids();
+    let clip = ids.get(motion.source()).map_or(motion.clip().name(), String::as_str);
+    let frames = motion.frames();
+    let secs = |frame: usize| frame as f64 / RATE as f64;
+    for (label, end) in [
+        (text::STRETCH_FROM, &mut stretch.frames.start),
+        (text::STRETCH_TO, &mut stretch.frames.end),
+    ] {
+        let row = SliderRow::new(label, 0.0..=secs(frames).max(0.1), 0.0)
+            .unit("s")
+            .step(1.0 / RATE as f64)
+            .decimals(2);
+        let response = kit::slider_row_ui(secs((*end).min(frames)), &row, ui);
+        if let Some(value) = response.changed {
+            *end = (value * RATE as f64).round() as usize;
+        }
+    }
+    let (from, to) = (
+        stretch.frames.start.min(stretch.frames.end),
+        stretch.frames.end.max(stretch.frames.start).min(frames),
+    );
+    if from >= to {
+        return;
+    }
+    let add = |word: &str, takes_away: bool, out: &mut Out| {
+        let tag = HandTag {
+            clip: clip.to_owned(),
+            secs: [secs(from), secs(to)],
+            word: word.to_owned(),
+            takes_away,
+        };
+        set(&tags.iter().cloned().chain([tag]).collect::<Vec<_>>(), out);
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        let has = |tag: Tag| {
+            let mut ranges = motion.tags().iter();
+            ranges.any(|range| range.tag == tag && range.frames.start < to && from < range.frames.end)
+        };
+        for tag in Tag::FIXED {
+            // What is there is taken away, what is not is put.
+            let takes_away = has(tag);
+            if kit::button_ui(Button::new(&text::tag_as(tag.name(), takes_away)), ui).clicked() {
+                add(tag.name(), takes_away, out);
+            }
+        }
+        for word in own_words(&tags) {
+            if kit::button_ui(Button::new(&text::tag_as(word, false)), ui).clicked() {
+                add(word, false, out);
+            }
+        }
+    });
+    let field = kit::text_field_ui(text::OWN_WORD, text::TYPE_A_WORD, &mut state.drive.word, ui);
+    if field.committed && !state.drive.word.trim().is_empty() {
+        add(std::mem::take(&mut state.drive.word).trim(), false, out);
+    }
+}
+
+fn set(tags: &[HandTag], out: &mut Out) {
+    out.set_once(Key::Tags, Value::Text(write_tags(tags)));
+}
+
+/// The clip of a bar in the strip.
+fn motion_of(database: &Database, bar: usize) -> Option<&Motion> {
+    let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
+    originals.map(|motion| &**motion).nth(bar)
+}
+
+/// Which tag is asked for, or forbidden.
+fn wanted_ui(key: Key, none: &str, tags: &[HandTag], session: &Session, out: &mut Out, ui: &mut Ui) {
+    let searched = Tag::FIXED
+        .into_iter()
+        .filter(|tag| *tag != Tag::Exclude)
+        .map(|tag| -> &str { tag.name() });
+    let words: Vec<&str> = std::iter::once(none).chain(searched).chain(own_words(tags)).collect();
+    let options: Vec<(usize, &str)> = words.iter().copied().enumerate().collect();
+    let asked = session.params().text(key);
+    let chosen = words.iter().position(|word| *word == asked).unwrap_or(usize::MAX);
+    let picked = kit::choice_row_ui(key.param().label, chosen, &options, ui);
+    if let Some(word) = picked.and_then(|index| words.get(index)) {
+        out.set_once(key, Value::Text((*word).to_owned()));
+    }
+}
