@@ -261,7 +261,9 @@ fn time_in_software() {
                 session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
                 let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
                 let start = Instant::now();
-                let mut encoder = gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+                let mut encoder = gpu
+                    .device
+                    .create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
                 gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 9, &stage, size);
                 let submitted = gpu.queue.submit([encoder.finish()]);
                 let wait = eframe::wgpu::PollType::Wait {
