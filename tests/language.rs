@@ -344,7 +344,7 @@ const MADE: [&str; 16] = [
 fn placeholders_agree() {
     let (_, entries) = catalogue();
     for (english, translation) in entries {
-        let count = english.matches("{}").count() + english.matches("{#}").count();
+        let count = ["{}", "{#}", "{=}"].map(|sign| english.matches(sign).count()).iter().sum::<usize>();
         let numbered: Vec<usize> = (0..9).filter(|index| translation.contains(&format!("{{{index}}}"))).collect();
         let in_order = translation.matches("{}").count();
         assert!(

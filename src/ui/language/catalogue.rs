@@ -3,7 +3,8 @@
 //! English stands in the program, where it is written and read; it is the key of its own translation. So the core needs no language at
 //! all, and a sentence that has no translation is still a sentence. What is made of parts is found again by its parts:
 //!
-//! - an entry with placeholders, `{} could not be loaded: {}.`, is a pattern; `{#}` stands for a number alone. What its placeholders
+//! - an entry with placeholders, `{} could not be loaded: {}.`, is a pattern; `{#}` stands for a number alone, `{=}` for what stays
+//!   as it is. What its placeholders
 //!   stood for is translated in turn, and goes into the placeholders of the translation, in order or by number (`{1}`);
 //! - several sentences behind each other, lists, and `title: text` are translated piece by piece;
 //! - a note, `the rest pose was taken`, is found also where it was made a sentence, `The rest pose was taken.`;
@@ -45,6 +46,8 @@ enum Piece {
     Words(String),
     Anything,
     Number,
+    /// What is not translated: keys of the link.
+    Kept,
 }
 
 impl Catalogue {
@@ -105,20 +108,29 @@ impl Catalogue {
         let core = text.trim();
         self.whole(core)
             .or_else(|| self.sentences(core, depth))
+            .or_else(|| self.titled(core))
             .or_else(|| self.pattern(core, depth))
             .or_else(|| self.counted(core, depth))
             .or_else(|| self.bracketed(core, depth))
             .or_else(|| self.joined(core, depth))
-            .or_else(|| self.row(core, depth))
+            .or_else(|| self.row(core))
     }
 
     fn part(&self, text: &str, depth: usize) -> String {
         self.look_up(text, depth + 1).unwrap_or_else(|| text.trim().to_owned())
     }
 
+    /// As it stands, or as the note that it was before it was made a sentence.
     fn whole(&self, text: &str) -> Option<String> {
-        let found = self.exact.get(text).cloned();
-        found.or_else(|| Some(format!("{}。", self.exact.get(&note_of(text)?)?)))
+        let exact = |text: &str| self.exact.get(text).or_else(|| self.exact.get(&small(text)));
+        let sentence = || Some(format!("{}。", exact(text.strip_suffix('.')?)?));
+        self.exact.get(text).cloned().or_else(sentence).or_else(|| exact(text).cloned())
+    }
+
+    /// `title: text`, where both stand in the catalogue as they are.
+    fn titled(&self, text: &str) -> Option<String> {
+        let (title, rest) = text.split_once(": ")?;
+        Some(format!("{}：{}", self.whole(title)?, self.whole(rest)?))
     }
 
     /// `It is so. It is not.`: only where there is a translation of each.
@@ -146,7 +158,15 @@ impl Catalogue {
             let fits = |text: &str| {
                 let mut filled = Vec::new();
                 let fits = fill(&pattern.english, text, &mut filled);
-                let parts = fits.then(|| filled.iter().map(|part| self.part(part, depth)).collect::<Vec<_>>())?;
+                let places = pattern.english.iter().filter(|piece| !matches!(piece, Piece::Words(_)));
+                let part = |(part, piece): (&&str, &Piece)| {
+                    if *piece == Piece::Kept {
+                        (*part).to_owned()
+                    } else {
+                        self.part(part, depth)
+                    }
+                };
+                let parts = fits.then(|| filled.iter().zip(places).map(part).collect::<Vec<_>>())?;
                 // Few words stand in a long text by chance, too: what they stand between must then be known.
                 let known =
                     |(part, english): (&String, &&str)| part != english.trim() || !has_word(english) || !english.trim().contains(' ');
@@ -223,7 +243,7 @@ impl Catalogue {
     }
 
     /// Words and numbers in a row: all of them must have entries, the longest are taken first.
-    fn row(&self, text: &str, depth: usize) -> Option<String> {
+    fn row(&self, text: &str) -> Option<String> {
         let words: Vec<&str> = text.split_whitespace().collect();
         if words.len() > LONGEST_ROW {
             return None;
@@ -233,10 +253,14 @@ impl Catalogue {
         while from < words.len() {
             let (to, found) = (from + 1..=words.len()).rev().find_map(|to| {
                 let words = words[from..to].join(" ");
-                let bare = words.trim_end_matches([',', ';']);
-                let found = self.whole(bare).or_else(|| self.counted(bare, depth));
-                let found = found.or_else(|| (to == from + 1 && !has_word(bare)).then(|| bare.to_owned()))?;
-                let comma = if bare.len() < words.len() { "，" } else { "" };
+                let bare = words.trim_end_matches([',', ';', '.']);
+                let one = || (to == from + 1 && !has_word(bare)).then(|| bare.to_owned());
+                let found = self.whole(bare).or_else(one)?;
+                let comma = match &words[bare.len()..] {
+                    "" => "",
+                    "." => "。",
+                    _ => "，",
+                };
                 Some((to, format!("{found}{comma}")))
             })?;
             whole.push(found);
@@ -248,18 +272,21 @@ impl Catalogue {
 
 /// What a sentence was before it was made one: `no frame time`, of `No frame time.`.
 fn note_of(sentence: &str) -> Option<String> {
-    let mut letters = sentence.strip_suffix('.')?.chars();
-    let first = letters.next()?;
-    let small = letters.as_str().starts_with(|second: char| !second.is_uppercase());
-    let first: String = if small { first.to_lowercase().collect() } else { first.to_string() };
-    Some(first + letters.as_str())
+    sentence.strip_suffix('.').map(small)
+}
+
+/// The same, beginning with a small letter.
+fn small(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_lowercase);
+    first.chain(letters.clone()).collect()
 }
 
 impl Piece {
     fn letters(&self) -> usize {
         match self {
             Self::Words(words) => words.chars().filter(|letter| letter.is_alphabetic()).count(),
-            Self::Anything | Self::Number => 0,
+            Self::Anything | Self::Number | Self::Kept => 0,
         }
     }
 }
@@ -270,7 +297,7 @@ fn pieces(entry: &str) -> Vec<Piece> {
     let mut words = String::new();
     let mut rest = entry.trim();
     while !rest.is_empty() {
-        let placeholder = [("{}", Piece::Anything), ("{#}", Piece::Number)]
+        let placeholder = [("{}", Piece::Anything), ("{#}", Piece::Number), ("{=}", Piece::Kept)]
             .into_iter()
             .find_map(|(sign, piece)| Some((rest.strip_prefix(sign)?, piece)));
         if let Some((after, piece)) = placeholder {
@@ -299,12 +326,16 @@ fn fill<'a>(pieces: &[Piece], text: &'a str, filled: &mut Vec<&'a str>) -> bool 
     if let Piece::Words(words) = first {
         return text.strip_prefix(words.as_str()).is_some_and(|text| fill(rest, text, filled));
     }
-    let fits = |part: &str| *first == Piece::Anything || is_number(part);
+    let fits = |part: &str| match first {
+        Piece::Number => is_number(part),
+        Piece::Kept => !part.contains(": "),
+        _ => true,
+    };
     let known = filled.len();
     let ends: Vec<usize> = match rest.first() {
         None => vec![text.len()],
         // Two placeholders side by side: the first takes all, for they go side by side into the translation, too.
-        Some(Piece::Anything | Piece::Number) => {
+        Some(Piece::Anything | Piece::Number | Piece::Kept) => {
             let next = rest
                 .iter()
                 .find_map(|piece| if let Piece::Words(words) = piece { Some(words) } else { None });
@@ -377,6 +408,7 @@ mod tests {
                     "{}{} ignored": "略過{}{}",
                     "One is enough.": "一個就夠了。",
                     "a window of {} frames": "{} 個影格的視窗",
+                    "{} {#} %": "{} {} %", "{}: found `{=}`, expected {=}": "{}：讀到 `{}`，應為 {}",
                     "{} to {}": "{} → {}", "{} with {}": "{} 加上 {}",
                     "B keeps step with A": "B 與 A 同步"
                 }
@@ -410,8 +442,10 @@ mod tests {
             ("B keeps step with A.", "B 與 A 同步。"),
             ("27 seam °/s best", "27 接縫 °/s 最佳"),
             ("walk, turn left, 3 bones", "走、左轉、3 個骨頭"),
-            ("walk turn left, 3 bones best", "走 左轉， 3 個骨頭 最佳"),
-            ("28 cm", "(28 cm)"),
+            ("28 cm", "28 cm"),
+            ("best: walk to seam", "最佳：走 → 接縫"),
+            ("Too short 34 %", "太短 34 %"),
+            ("key: found `walk`, expected walk, seam", "key：讀到 `walk`，應為 walk, seam"),
             ("walk to seam", "走 → 接縫"),
             ("press to type a value", "(press to type a value)"),
         ] {
@@ -424,7 +458,6 @@ mod tests {
         for english in [
             "",
             "0.5 s",
-            "cm",
             "01_01",
             "Walk on, then left",
             "x could be",

@@ -7,9 +7,9 @@ use std::fs;
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are written so in Chinese, too.
-const AS_IT_IS: [&str; 36] = [
-    "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab",
-    "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ", "ZXY", "YXZ",
+const AS_IT_IS: [&str; 37] = [
+    "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete",
+    "Tab", "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ", "ZXY", "YXZ",
     "English",
 ];
 
