@@ -63,9 +63,9 @@ impl ClipMetrics {
             ),
             Metric::lower(
                 "clip_spin_deg",
-                "Fastest turn",
+                "Fastest turn in 0.2 s",
                 self.spin_deg,
-                "° in 0.2 s",
+                "°",
                 "How far the character turns within 0.2 s at most. More than 30° is a spin, unless it was meant.",
             ),
             Metric::lower(
