@@ -24,8 +24,7 @@ pub(super) struct Contour {
 
 /// Meshes a field. `sizes` holds for each shape how large a cell may be where its surface is, metres, above 0.
 pub(super) fn contour(field: &Field, sizes: &[f32]) -> Contour {
-    let bounds = field.cones.iter().map(super::field::Cone::bounds);
-    let Some([low, high]) = bounds.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]) else {
+    let Some([low, high]) = field.bounds() else {
         return Contour::default();
     };
     let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
@@ -105,8 +104,8 @@ struct Leaf {
     at: IVec3,
     level: u32,
     near: (u32, u32),
-    /// Whether the surface may pass through it.
-    is_near: bool,
+    /// Whether the surface may pass through it: it is looked at, or will be.
+    is_open: bool,
     /// The sum and number of the points where the surface crosses an edge of the cell.
     crossings: Vec3,
     count: f32,
@@ -142,7 +141,7 @@ impl Octree<'_> {
             at,
             level,
             near: (start, self.near.len() as u32),
-            is_near,
+            is_open: is_near,
             crossings: Vec3::ZERO,
             count: 0.0,
             vertex: u32::MAX,
@@ -178,10 +177,10 @@ impl Octree<'_> {
 
     fn faces(mut self) -> Contour {
         let mut rings: Vec<[usize; 4]> = Vec::new();
-        for leaf in 0..self.leaves.len() {
-            if !self.leaves[leaf].is_near {
-                continue;
-            }
+        let mut open: Vec<usize> = (0..self.leaves.len()).filter(|&leaf| self.leaves[leaf].is_open).collect();
+        let mut next = 0;
+        while let Some(&leaf) = open.get(next) {
+            next += 1;
             let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
             let values: [f32; 8] = std::array::from_fn(|c| {
                 let offset = IVec3::new(c as i32 & 1, c as i32 >> 1 & 1, c as i32 >> 2) << level as i32;
@@ -197,9 +196,30 @@ impl Octree<'_> {
                     let (side_u, side_v) = (quadrant & 1, quadrant >> 1);
                     let low = side_u << u | side_v << v;
                     let (from, to) = (values[low], values[low | 1 << axis]);
-                    if (from < 0.0) != (to < 0.0)
-                        && let Some(ring) = self.ring(leaf, axis, [side_u as i32, side_v as i32])
-                    {
+                    if (from < 0.0) == (to < 0.0) {
+                        continue;
+                    }
+                    let side = [side_u as i32, side_v as i32];
+                    let Some(ring) = self.ring(leaf, axis, side, 0) else {
+                        continue;
+                    };
+                    // The surface passes here, whatever the bounds said: all that have the edge are looked at.
+                    for (place, other) in ring.into_iter().enumerate() {
+                        let smaller = if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
+                        let along = smaller.filter_map(|step| self.ring(leaf, axis, side, step).map(|ring| ring[place]));
+                        let all: Vec<usize> = std::iter::once(other).chain(along).collect();
+                        for other in all {
+                            if !std::mem::replace(&mut self.leaves[other].is_open, true) {
+                                open.push(other);
+                            }
+                        }
+                    }
+                    // An edge is taken where it is smallest, and of those that have it so, by the first.
+                    let is_first = ring.iter().all(|&other| {
+                        let (theirs, ours) = (self.leaves[other].level, level);
+                        theirs > ours || (theirs == ours && other >= leaf)
+                    });
+                    if is_first {
                         self.cross(leaf, low, axis, [from, to], &ring);
                         rings.push(if from < 0.0 { ring } else { [ring[3], ring[2], ring[1], ring[0]] });
                     }
@@ -209,23 +229,19 @@ impl Octree<'_> {
         self.finish(&rings)
     }
 
-    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end; `None` unless the edge is smallest here and this leaf is the
-    /// first that has it.
-    fn ring(&self, leaf: usize, axis: usize, side: [i32; 2]) -> Option<[usize; 4]> {
+    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end. Where smaller ones lie along it, those `step` of the
+    /// finest cells from its near end.
+    fn ring(&self, leaf: usize, axis: usize, side: [i32; 2], step: i32) -> Option<[usize; 4]> {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let size = 1 << level;
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut ring = [leaf; 4];
         for (place, (du, dv)) in [(-1, -1), (0, -1), (0, 0), (-1, 0)].into_iter().enumerate() {
             let mut cell = at;
+            cell[axis] += step;
             cell[u] += side[0] * size + du;
             cell[v] += side[1] * size + dv;
-            let other = self.leaf_of(cell)?;
-            let same_size = self.leaves[other].level == level && self.leaves[other].is_near;
-            if self.leaves[other].level < level || (same_size && other < leaf) {
-                return None;
-            }
-            ring[place] = other;
+            ring[place] = self.leaf_of(cell)?;
         }
         Some(ring)
     }

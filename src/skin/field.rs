@@ -83,7 +83,7 @@ impl Cone {
     }
 
     /// The greatest radius.
-    pub(super) fn thickest(&self) -> f32 {
+    fn thickest(&self) -> f32 {
         self.radius_a.max(self.radius_a - self.fall)
     }
 
@@ -94,7 +94,7 @@ impl Cone {
     }
 
     /// A box around it: corners with the least and the greatest coordinates.
-    pub(super) fn bounds(&self) -> [Vec3; 2] {
+    fn bounds(&self) -> [Vec3; 2] {
         let b = self.a + self.along * self.length;
         let [reach_a, reach_b] = [self.radius_a, self.radius_a - self.fall].map(|radius| Vec3::splat(radius * self.flatness.max(1.0)));
         [(self.a - reach_a).min(b - reach_b), (self.a + reach_a).max(b + reach_b)]
@@ -163,6 +163,18 @@ impl Field {
             }
         }
         Self { cones, neighbours }
+    }
+
+    /// A box around the surface: corners with the least and the greatest coordinates; `None` without a shape.
+    pub(super) fn bounds(&self) -> Option<[Vec3; 2]> {
+        let [low, high] = self
+            .cones
+            .iter()
+            .map(Cone::bounds)
+            .reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])?;
+        // A blend may rise over both of its shapes.
+        let blend = Vec3::splat(0.25 * BLEND * self.cones.iter().map(Cone::thickest).fold(0.0, f32::max));
+        Some([low - blend, high + blend])
     }
 
     /// The field, where no shapes but those in `near` matter. `scratch` is room to work in.
