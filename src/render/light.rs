@@ -42,7 +42,7 @@ pub(super) fn key_direction(right: Vec3, yaw: f32) -> Vec3 {
 
 /// The parts of the map for so many panes: equal squares.
 pub(super) fn tile(index: usize, panes: usize) -> Viewport {
-    let columns = (1u32..).find(|columns| (columns * columns) as usize >= panes).unwrap_or(1);
+    let columns = (1..MAP_SIZE).find(|columns| (columns * columns) as usize >= panes).unwrap_or(1);
     let side = MAP_SIZE / columns;
     let index = index as u32;
     Viewport {

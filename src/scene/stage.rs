@@ -216,22 +216,22 @@ impl Pane {
 
     /// Adds a body in a pose, solid, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, false, 1.0);
+        self.add_figure(body, pose, color, None, false, 1.0);
     }
 
     /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
     pub fn add_colored_body(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color) {
-        self.add_figure(body, pose, [1.0; 4], Some(color_of), false, 1.0);
+        self.add_figure(body, pose, [1.0; 4], Some(&color_of), false, 1.0);
     }
 
     /// Adds a translucent body; its shadow is as strong as the colour's alpha.
     pub fn add_ghost(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, color[3]);
+        self.add_figure(body, pose, color, None, true, color[3]);
     }
 
     /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one does.
     pub fn add_glass(&mut self, body: &Body, pose: &WorldPose, color: Color) {
-        self.add_figure(body, pose, color, None::<fn(usize) -> Color>, true, 1.0);
+        self.add_figure(body, pose, color, None, true, 1.0);
     }
 
     fn add_figure(
@@ -239,14 +239,14 @@ impl Pane {
         body: &Body,
         pose: &WorldPose,
         color: Color,
-        color_of: Option<impl Fn(usize) -> Color>,
+        color_of: Option<&dyn Fn(usize) -> Color>,
         ghost: bool,
         shadow: f32,
     ) {
         let mut led = WorldPose::default();
         let pose = body.led_pose(pose, &mut led).unwrap_or(pose);
         let start = self.limbs.len();
-        match (&color_of, body.skin()) {
+        match (color_of, body.skin()) {
             (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),
             _ => body.limbs(pose, color, &mut self.limbs),
         }
@@ -255,7 +255,7 @@ impl Pane {
             self.joints.extend(mesh.world_from_bind(pose));
             let joints = first..self.joints.len();
             self.joint_colors
-                .extend((0..joints.len()).map(|joint| color_of.as_ref().map_or(color, |color_of| color_of(body.color_joint(joint)))));
+                .extend((0..joints.len()).map(|joint| color_of.map_or(color, |color_of| color_of(body.color_joint(joint)))));
             Skin {
                 mesh: Arc::clone(mesh),
                 joints,

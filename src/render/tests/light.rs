@@ -65,7 +65,7 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
         let stage = from_above(&[ball(Vec3::new(0.0, height, 0.0), 0.2)], 1.0);
         let image = gpu.draw(&format!("light-ball-{height}"), &stage, [SIZE, SIZE]);
         let middle = -key * (height / key.y);
-        let away = middle.with_y(0.0).normalize();
+        let away = middle.with_y(0.0).normalize_or_zero();
         along
             .iter()
             .map(|&metres| {

@@ -23,7 +23,7 @@ fn rod() -> SkinnedMesh {
             let (sin, cos) = (std::f32::consts::TAU * side as f32 / SIDES as f32).sin_cos();
             mesh.normals.push(Vec3::new(0.0, cos, sin));
             mesh.positions.push(Vec3::new(along - 0.5, 1.0 + 0.15 * cos, 0.15 * sin));
-            let second = if along > 0.5 { 1 } else { 0 };
+            let second = u16::from(along > 0.5);
             mesh.joints.push([second, 1 - second, 0, 0]);
             mesh.weights.push([along.max(1.0 - along), along.min(1.0 - along), 0.0, 0.0]);
         }
@@ -190,6 +190,7 @@ fn statures() {
 
 #[test]
 fn a_hundred_characters() {
+    const ROUNDS: u32 = 60;
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 900];
     let mut session = session("lab=match&crowd=100&camera_distance=16&camera_pitch=22");
@@ -207,7 +208,6 @@ fn a_hundred_characters() {
     let mut director = Director::default();
     let mut frame = Frame::default();
     let (mut scene, mut build, mut encode) = (0.0, 0.0, 0.0);
-    const ROUNDS: u32 = 60;
     gpu.renderer.set_quality(Quality::Full);
     for round in 0..=ROUNDS {
         let start = Instant::now();

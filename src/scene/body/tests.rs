@@ -1,6 +1,8 @@
 use super::*;
-use crate::scene::rgb;
-use crate::skeleton::{Joint, Pose, world_pose};
+use crate::scene::{Pane, rgb};
+use crate::skeleton::{Joint, Pose, Role, world_pose};
+use crate::skin::RigidTransform;
+use crate::synth::{Action, Params, synthesize};
 use glam::{Quat, Vec3};
 
 fn skeleton(joints: &[(&str, Option<usize>, [f32; 3])]) -> Skeleton {
@@ -224,4 +226,47 @@ fn degenerate_skeletons_have_a_body_too() {
         &mut out,
     );
     assert!(out.len() <= 1);
+}
+
+#[test]
+fn a_character_is_led_by_another_skeleton_and_wears_its_colours() {
+    let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let roles = Roles::detect(walk.skeleton());
+    let skeleton = Arc::new(adult());
+    let character = Character {
+        roles: Roles::detect(&skeleton),
+        mesh: Arc::new(SkinnedMesh {
+            bind: vec![RigidTransform::IDENTITY; skeleton.len()],
+            ..SkinnedMesh::default()
+        }),
+        skeleton,
+    };
+    let drive = Drive::new(&walk, &roles, &character).unwrap();
+    let body = Body::led(&character, drive, &roles);
+    for role in [Role::LeftHand, Role::RightFoot, Role::Head] {
+        let own = character.roles.get(role).unwrap();
+        assert_eq!(Some(body.color_joint(own)), roles.get(role), "{role:?}");
+    }
+    let mut pane = Pane::default();
+    let gray = |joint: usize| [joint as f32, 0.0, 0.0, 1.0];
+    pane.add_colored_body(&body, &walk.world_pose(10), gray);
+    let hand = character.roles.get(Role::LeftHand).unwrap();
+    assert_eq!(pane.joints.len(), character.skeleton.len());
+    assert_eq!(pane.joint_colors[hand], gray(roles.get(Role::LeftHand).unwrap()));
+    // It goes where the clip goes, on its own legs.
+    let hips = character.roles.get(Role::Hips).unwrap();
+    let there = walk.world_pose(10).positions[roles.get(Role::Hips).unwrap()];
+    assert!(pane.joints[hips].translation.distance(there) < 0.3);
+    assert!(pane.figures[0].skin.is_some() && !pane.limbs.is_empty());
+}
+
+#[test]
+fn girth_widens_and_lengthens_nothing() {
+    let skeleton = adult();
+    let roles = Roles::detect(&skeleton);
+    let limbs = |girth: f32| rest_limbs(&skeleton, &Body::new(&skeleton, Some(&roles)).with_girth(girth));
+    for (thin, broad) in limbs(1.0).iter().zip(limbs(1.5)) {
+        assert_eq!((thin.a, thin.b), (broad.a, broad.b));
+        assert!((broad.radius_a - 1.5 * thin.radius_a).abs() < 1e-6);
+    }
 }
