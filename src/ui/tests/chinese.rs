@@ -7,10 +7,10 @@ use std::fs;
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are written so in Chinese, too.
-const AS_IT_IS: [&str; 37] = [
-    "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete",
-    "Tab", "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ", "ZXY", "YXZ",
-    "English",
+const AS_IT_IS: [&str; 38] = [
+    "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc",
+    "Delete", "Tab", "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ",
+    "ZXY", "YXZ", "English",
 ];
 
 fn tongue() -> Tongue {
@@ -33,7 +33,12 @@ fn chinese(size: Vec2, theme: Theme, link: &str, tongue: &Tongue) -> Harness<'st
 
 /// The words of a text that are neither Chinese nor written so everywhere.
 fn english_in(text: &str) -> Vec<&str> {
-    text.split(|letter: char| !letter.is_ascii_alphanumeric())
+    // An example of what stands in a link, `0.3:run,0.2:walk`, is one word.
+    let words = text
+        .split(|letter: char| !letter.is_ascii_graphic())
+        .filter(|word| !word.contains([':', '=']));
+    words
+        .flat_map(|word| word.split(|letter: char| !letter.is_ascii_alphanumeric()))
         .filter(|word| word.bytes().filter(u8::is_ascii_alphabetic).count() > 1 && !AS_IT_IS.contains(word))
         .collect()
 }
