@@ -18,6 +18,7 @@ const LONGEST_STEP_SECS: f64 = 1.0;
 pub(crate) struct Picture {
     director: Director,
     drawn_at_ms: f64,
+    was_drawn: bool,
     /// Where the stage is on the page, points.
     place: Option<Rect>,
 }
@@ -100,6 +101,9 @@ impl Picture {
             .into_iter()
             .map(|(pane, place)| (pane, within(rect, place, size, scale)))
             .collect();
+        // The first picture is there at once, the skin with the second.
+        self.director.hurry(!self.was_drawn);
+        self.was_drawn = true;
         let stage = self.director.stage(session, &shown, scale, look, &colors_of(palette), dt_secs);
         painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
     }

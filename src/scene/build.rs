@@ -36,6 +36,7 @@ pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
     marks_joint: bool,
+    hurries: bool,
     pair: Option<[f64; 2]>,
     marks: PathMarks,
     jump: Option<[Place; 2]>,
@@ -93,7 +94,7 @@ impl Director {
         stage.panes.resize_with(shown.len(), Pane::default);
         let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
-        self.wardrobe.choose(session);
+        self.wardrobe.choose(session, self.hurries);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
@@ -132,6 +133,11 @@ impl Director {
         Arc::clone(&self.stage)
     }
 
+    /// Whether the stage is made in a hurry from now on: without what takes a while to be made, such as a skin.
+    pub fn hurry(&mut self, on: bool) {
+        self.hurries = on;
+    }
+
     /// Whether the chosen joint is marked from now on.
     pub fn mark_joint(&mut self, on: bool) {
         self.marks_joint = on;
@@ -157,10 +163,10 @@ impl Director {
         self.jump = ends;
     }
 
-    /// Whether a camera is still on its way, so that another frame is needed.
+    /// Whether a camera is still on its way, or the stage was made in a hurry, so that another frame is needed.
     #[must_use]
     pub fn is_moving(&self) -> bool {
-        self.rigs.iter().any(|rig| !rig.is_still())
+        self.hurries || self.rigs.iter().any(|rig| !rig.is_still())
     }
 
     /// The camera of a pane, as it was drawn last.

@@ -22,10 +22,11 @@ struct Cut {
 
 impl Wardrobe {
     /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
-    pub(super) fn choose(&mut self, session: &Session) {
+    /// In a hurry that is what is made at once: limbs.
+    pub(super) fn choose(&mut self, session: &Session, hurry: bool) {
         let params = session.params();
         let cut = Cut {
-            skin: params.text(Key::Look) != "limbs",
+            skin: params.text(Key::Look) != "limbs" && !hurry,
             girth: params.number(Key::FigureBuild) as f32,
         };
         let character = session.character().filter(|_| cut.skin);

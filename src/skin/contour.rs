@@ -122,7 +122,9 @@ impl Octree<'_> {
         let center = self.place(at) + Vec3::splat(0.5 * size);
         let reach = 0.5 * size * 3f32.sqrt();
         let mut narrowed = Vec::with_capacity(near.len());
-        let around = self.field.narrowed(center, reach, near, self.sizes, &mut narrowed);
+        let around = self
+            .field
+            .narrowed(center, reach, near, self.sizes, &mut narrowed, &mut self.scratch);
         let is_near = around.least <= 1.1 * reach && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
         // Where no single surface is near there may still be the blend of two.
         let wanted = if around.size.is_finite() { around.size } else { self.coarsest };

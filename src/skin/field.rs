@@ -208,16 +208,25 @@ impl Field {
         best
     }
 
-    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`.
-    pub(super) fn narrowed(&self, center: Vec3, reach: f32, near: &[u16], sizes: &[f32], out: &mut Vec<u16>) -> Around {
+    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`. `scratch` is room to work in.
+    pub(super) fn narrowed(
+        &self,
+        center: Vec3,
+        reach: f32,
+        near: &[u16],
+        sizes: &[f32],
+        out: &mut Vec<u16>,
+        scratch: &mut Vec<(usize, Measured)>,
+    ) -> Around {
         let mut around = Around {
             least: f32::INFINITY,
             size: f32::INFINITY,
         };
         let mut nearest = f32::INFINITY;
-        out.clear();
+        scratch.clear();
         for &index in near {
             let measured = self.cones[usize::from(index)].measure(center);
+            scratch.push((usize::from(index), measured));
             let at_least = measured.at_least.min(measured.distance);
             nearest = nearest.min(measured.distance.max(measured.at_least));
             around.least = around
@@ -227,13 +236,11 @@ impl Field {
                 around.size = around.size.min(sizes[usize::from(index)]);
             }
         }
-        for &index in near {
-            let cone = &self.cones[usize::from(index)];
-            let measured = cone.measure(center);
-            if measured.at_least.min(measured.distance) <= nearest + 2.0 * reach + BLEND * cone.thickest() {
-                out.push(index);
-            }
-        }
+        let matter = near.iter().zip(scratch.iter()).filter(|(_, (index, measured))| {
+            measured.at_least.min(measured.distance) <= nearest + 2.0 * reach + BLEND * self.cones[*index].thickest()
+        });
+        out.clear();
+        out.extend(matter.map(|(&index, _)| index));
         around
     }
 

@@ -106,7 +106,16 @@ pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
 
 /// What is being worked on, and how much of it is done.
 pub(crate) fn under_way(job: &Job) -> String {
-    format!("{} {:.0} %", sentence(&job.name).trim_end_matches('.'), 100.0 * job.progress)
+    let percent = 100.0 * job.progress;
+    match job.name.as_str() {
+        "matching" => format!("Looking for the best match {percent:.0} %"),
+        "registering" => format!("Registering the clips {percent:.0} %"),
+        "graphing" => format!("Building the graph {percent:.0} %"),
+        "holding feet" => format!("Holding the feet {percent:.0} %"),
+        "driving" => format!("Driving {percent:.0} %"),
+        "building the database" => format!("Building the database {percent:.0} %"),
+        file => format!("{file} {percent:.0} %"),
+    }
 }
 pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";
