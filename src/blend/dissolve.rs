@@ -13,7 +13,7 @@ pub enum RootBlend {
     /// Forward speed, sideways speed and yaw rate are blended in the character's own frame and integrated from where A leaves.
     #[default]
     Velocity,
-    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways part, the feet slide.
+    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways part, the speed dents.
     World,
 }
 

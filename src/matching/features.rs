@@ -191,6 +191,9 @@ impl Weights {
 /// Normalised features are rounded to this grid: what is chosen then hardly ever hangs on a last digit in which machines' trigonometry differs.
 const GRID: f32 = 4096.0;
 
+/// No block varies by less: metres, metres per second, or the sine of an angle. A capture trembles by about that much.
+const LEAST_SCALE: f32 = 0.02;
+
 /// Normalised features of frames, row by row, and how they were normalised.
 ///
 /// `(value - mean of its dimension) / scale of its block`; a block's scale is the mean of its dimensions' standard deviations (Clavet,
@@ -237,7 +240,11 @@ impl Features {
             let range = layout.range(block);
             let deviations: f64 = squares[range.clone()].iter().map(|square| (square / number).sqrt()).sum();
             let scale = (deviations / range.len() as f64) as f32;
-            if scale > 1e-6 && scale.is_finite() { scale } else { 1.0 }
+            match scale {
+                still if still <= 1e-6 || !still.is_finite() => 1.0,
+                // Clips that all go straight on: a tremble of the heading is not to be all that counts.
+                scale => scale.max(LEAST_SCALE),
+            }
         });
         let means = sums.into_iter().map(|mean| mean as f32).collect();
         let mut features = Self {

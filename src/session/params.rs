@@ -348,7 +348,7 @@ parameters! {
     EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B.";
     WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
-    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that feet slide less.";
+    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that it comes to B's speed sooner.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
 

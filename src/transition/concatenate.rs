@@ -63,7 +63,7 @@ impl TransitionOptions {
 /// Poses are joined in the character's frame: rotations, heights, and translations of joints. Over the ground, the velocities (forward, sideways, yaw)
 /// are joined and integrated from A's last frame ([`RootBlend::Velocity`]); B then goes on from where that leads, and nothing jumps. With
 /// [`RootBlend::World`] B is laid on A at the seam and the root's remaining offset in the world decays like any other; the root then does not
-/// leave B's own way, but the feet slide on it.
+/// leave B's own way, but its speed over the ground is neither clip's.
 ///
 /// # Errors
 /// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), B has no such frame, a window

@@ -302,9 +302,12 @@ impl Session {
         let lab = self.params.text(Key::Lab);
         let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
         // What is only looked at may be compared in every lab.
-        let uses = |key: Key| match key.param().group.is_of_lab() {
-            true => belongs_to(key, lab),
-            false => !matches!(key.param().kind, Kind::Clip) || is_clip(key),
+        let uses = |key: Key| {
+            if key.param().group.is_of_lab() {
+                belongs_to(key, lab)
+            } else {
+                !matches!(key.param().kind, Kind::Clip) || is_clip(key)
+            }
         };
         let compare = self.compare().filter(|compare| uses(compare.key));
         let variants: Vec<Option<(Key, Value)>> = match &compare {

@@ -143,14 +143,14 @@ fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out,
 }
 
 /// The colour of a tag.
-fn tag_color(tag: Tag, palette: &Palette) -> Option<Color32> {
+fn tag_color(tag: Tag, palette: &Palette) -> Color32 {
     match tag {
-        Tag::Walk => Some(palette.b),
-        Tag::Run => Some(palette.a),
-        Tag::Idle => Some(palette.line_strong),
-        Tag::Turn => Some(palette.others[1]),
-        Tag::Exclude => Some(palette.bad),
-        Tag::Own(_) => Some(palette.accent),
+        Tag::Walk => palette.b,
+        Tag::Run => palette.a,
+        Tag::Idle => palette.line_strong,
+        Tag::Turn => palette.others[1],
+        Tag::Exclude => palette.bad,
+        Tag::Own(_) => palette.accent,
     }
 }
 
@@ -165,7 +165,7 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui
             name: motion.clip().name(),
             frames: motion.frames(),
             stretches: (motion.tags().iter())
-                .filter_map(|range| Some((range.frames.clone(), tag_color(range.tag, palette)?)))
+                .map(|range| (range.frames.clone(), tag_color(range.tag, palette)))
                 .collect(),
         })
         .collect();
@@ -190,7 +190,7 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui
         .unwrap_or_default();
     let legend: Vec<(&str, Color32)> = [Tag::Idle, Tag::Walk, Tag::Run, Tag::Turn]
         .into_iter()
-        .filter_map(|tag| Some((tag.name(), tag_color(tag, palette)?)))
+        .map(|tag| (tag.name(), tag_color(tag, palette)))
         .collect();
     let places = Places {
         label: text::CLIP_STRIP,

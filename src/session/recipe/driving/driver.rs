@@ -96,13 +96,22 @@ struct Playing {
     next: usize,
 }
 
+/// A database with tags by hand.
+#[derive(Debug)]
+struct Tagged {
+    /// What they were put on, and the ids of the clips that it was built from.
+    base: Arc<Database>,
+    ids: Vec<String>,
+    tags: Vec<HandTag>,
+    made: Arc<Database>,
+}
+
 /// Builds databases and plays recordings, and keeps the last ones.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Driver {
     made: Vec<MatchClip>,
     databases: Vec<(Source, Result<Arc<Database>, String>)>,
-    /// With tags by hand: what they were put on, the clips' ids and the tags, and what came of it.
-    tagged: Vec<(Arc<Database>, (Vec<String>, Vec<HandTag>), Arc<Database>)>,
+    tagged: Vec<Tagged>,
     building: Option<(Source, Box<DatabaseBuilder>)>,
     wanted: Vec<Source>,
     replays: Vec<(Script, Result<Arc<Outcome>, String>)>,
@@ -133,19 +142,20 @@ impl Driver {
         if tags.is_empty() {
             return database;
         }
-        let told = (ids, tags);
-        let known = self
-            .tagged
-            .iter()
-            .find(|(base, known, _)| Arc::ptr_eq(base, &database) && *known == told);
-        if let Some((.., tagged)) = known {
-            return Arc::clone(tagged);
+        let is_it = |known: &&Tagged| Arc::ptr_eq(&known.base, &database) && known.ids == ids && known.tags == tags;
+        if let Some(known) = self.tagged.iter().find(is_it) {
+            return Arc::clone(&known.made);
         }
-        let made = Arc::new(tagged(&database, &told.0, &told.1));
+        let made = Arc::new(tagged(&database, &ids, &tags));
         if self.tagged.len() >= MAX_PANES {
             drop(self.tagged.remove(0));
         }
-        self.tagged.push((database, told, Arc::clone(&made)));
+        self.tagged.push(Tagged {
+            base: database,
+            ids,
+            tags,
+            made: Arc::clone(&made),
+        });
         made
     }
 
