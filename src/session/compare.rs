@@ -40,7 +40,6 @@ impl Compare {
             .iter()
             .map(|word| match key.param().parse(word)? {
                 Value::Auto => Err(refuse(format!("a value for each pane, not `{word}`"))),
-                Value::Text(id) if id.is_empty() => Err(refuse("a clip for each pane".into())),
                 value => Ok(value),
             })
             .collect::<Result<Vec<Value>, ValueError>>()?;
@@ -106,7 +105,6 @@ mod tests {
             ("method:cut,leap", "expected inertialize"),
             ("a:walk", "not 1"),
             ("a:walk,blend(a:walk", "brackets close"),
-            ("a:walk,,run", "a clip for each pane"),
             ("blend_window:30", "2 to 4 values, not 1"),
             ("blend_window:1,2,3,4,5", "not 5"),
             ("leave_a:auto,1", "not `auto`"),

@@ -176,7 +176,7 @@ fn tags_by_hand_are_asked_for_and_excluded() {
     ));
     let database = &driven(&session).database;
     let own = TagSet::of(&[Tag::Own(0)]);
-    for (motion, name) in [(0, "idle"), (1, "walk")] {
+    for (motion, name) in [(0, "stand"), (1, "walk")] {
         assert!(database.motions()[motion].clip().name().to_lowercase().contains(name));
     }
     let at = |motion: usize, frame: usize| {
