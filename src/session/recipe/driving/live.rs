@@ -41,7 +41,7 @@ impl Live {
     pub(in crate::session) fn plays(&self, database: &Database) -> bool {
         let mine = self.tracer.controller.database().motions();
         // Tags may differ.
-        mine.len() == database.motions().len() && mine.iter().zip(database.motions()).all(|(a, b)| std::ptr::eq(a.clip(), b.clip()))
+        mine.len() == database.motions().len() && mine.iter().zip(database.motions()).all(|(a, b)| Arc::ptr_eq(a.clip(), b.clip()))
     }
 
     /// Goes on with other options, and in a database of the same clips.
