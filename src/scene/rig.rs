@@ -1,6 +1,7 @@
 use super::Camera;
+use crate::math::spring;
 use glam::Vec3;
-use std::f32::consts::{LN_2, PI};
+use std::f32::consts::PI;
 
 /// A camera that comes smoothly to where it should be.
 ///
@@ -15,14 +16,6 @@ pub struct CameraRig {
     yaw_velocity: f32,
     pitch_velocity: f32,
     zoom_velocity: f32,
-}
-
-/// One step of a critically damped spring that starts `offset` from its goal.
-fn spring(offset: Vec3, velocity: Vec3, half_life_secs: f32, dt_secs: f32) -> (Vec3, Vec3) {
-    let rate = 2.0 * LN_2 / half_life_secs.max(1e-5);
-    let decay = (-rate * dt_secs).exp();
-    let pull = velocity + offset * rate;
-    (decay * (offset + pull * dt_secs), decay * (velocity - pull * rate * dt_secs))
 }
 
 impl CameraRig {
@@ -63,22 +56,22 @@ impl CameraRig {
         (self.yaw_velocity, self.pitch_velocity, self.zoom_velocity) = (0.0, 0.0, 0.0);
     }
 
-    /// Moves on by `dt_secs`; the distance to the goal halves about every `half_life_secs`. A half-life of 0 jumps.
+    /// Moves on by `dt_secs`; half of the distance to the goal is left after 1.2 half-lives. A half-life of 0 jumps.
     pub fn update(&mut self, half_life_secs: f32, dt_secs: f32) {
         if self.is_still() || half_life_secs <= 0.0 || !dt_secs.is_finite() {
             self.jump();
             return;
         }
         let goal = self.goal;
-        let (target, target_velocity) = spring(self.shown.target - goal.target, self.target_velocity, half_life_secs, dt_secs);
+        // What is left of an offset.
+        let left = |offset, velocity| spring::towards_point(offset, velocity, Vec3::ZERO, f64::from(half_life_secs), f64::from(dt_secs));
+        let (target, target_velocity) = left(self.shown.target - goal.target, self.target_velocity);
         let yaw_offset = (self.shown.yaw - goal.yaw + PI).rem_euclid(2.0 * PI) - PI;
         // Zooming is even when the logarithm of the distance is.
         let zoom_offset = (self.shown.distance / goal.distance).ln();
-        let (turn, turn_velocity) = spring(
+        let (turn, turn_velocity) = left(
             Vec3::new(yaw_offset, self.shown.pitch - goal.pitch, zoom_offset),
             Vec3::new(self.yaw_velocity, self.pitch_velocity, self.zoom_velocity),
-            half_life_secs,
-            dt_secs,
         );
         let still = target.length() < 1e-4 && turn.length() < 1e-4 && target_velocity.length() < 1e-3 && turn_velocity.length() < 1e-3;
         if still || !(target.is_finite() && turn.is_finite()) {
