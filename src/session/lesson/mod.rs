@@ -3,8 +3,12 @@
 //! A lesson is a Markdown file; the README says how one is written. What it holds becomes a [`Page`], which knows nothing of a screen. The lessons
 //! that come with Segue are fetched when they are opened, in the language that is set; a teacher's own are fetched from their address.
 
+mod blocks;
+mod html;
+mod inline;
 mod page;
 mod parse;
+mod prose;
 mod shelf;
 
 pub use page::{Block, Page, Span, Target, Try};
@@ -12,5 +16,7 @@ pub use parse::{LessonError, MOST_BYTES, parse};
 pub use shelf::{CONTENTS, LESSONS, Source, file_name, source_of};
 pub(super) use shelf::{Shelf, Text};
 
+#[cfg(test)]
+mod dialect_tests;
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,382 @@
+//! A lesson's lines into headings, paragraphs, items of lists, and code. One pass, whose effort is in proportion to the text.
+//!
+//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as the README says what a lesson may hold.
+
+use super::html::Html;
+
+/// Lists inside of lists are read no further than that; a mark beyond is text.
+const MOST_LEVELS: usize = 16;
+/// What is set in so many columns further than its surroundings is code.
+const CODE_INDENT: usize = 4;
+
+/// A part of a file, its text still with marks in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// How many `#` it has, 1 to 6, and its words.
+    Heading(usize, String),
+    /// A paragraph, or the first of an item of a list. Lines end with `\n`.
+    Text(Option<Marker>, String),
+    /// Lines to be shown as they are.
+    Code(String),
+}
+
+/// The mark of an item.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Marker {
+    /// How many lists it stands inside of, without its own.
+    pub(super) depth: usize,
+    /// Its number, in a list that counts.
+    pub(super) number: Option<u64>,
+}
+
+/// The parts of a text, in their order.
+pub(super) fn parts_of(text: &str) -> Vec<Part> {
+    let mut lines = Lines::default();
+    for line in text.split('\n') {
+        lines.take(line.strip_suffix('\r').unwrap_or(line));
+    }
+    lines.close();
+    lines.parts
+}
+
+/// A list that is open.
+#[derive(Clone, Copy, Debug)]
+struct Level {
+    /// The sign that all its items begin with, or that follows their numbers.
+    sign: char,
+    /// The number of the next item.
+    next: Option<u64>,
+    /// The column from which on a line belongs to the item that is open.
+    content: usize,
+}
+
+/// What the next line may go on with.
+#[derive(Debug, Default)]
+enum Open {
+    #[default]
+    Nothing,
+    Paragraph(String),
+    Fence(Fence, String),
+    Indented(String),
+    Html(Html),
+}
+
+/// The line that code begins with.
+#[derive(Clone, Copy, Debug)]
+struct Fence {
+    sign: char,
+    len: usize,
+    /// So many columns are taken off each line.
+    column: usize,
+}
+
+#[derive(Debug, Default)]
+struct Lines {
+    parts: Vec<Part>,
+    levels: Vec<Level>,
+    /// Of the item whose first paragraph is yet to come.
+    marker: Option<Marker>,
+    open: Open,
+    /// Whether the line before stood in a quotation.
+    quoted: bool,
+}
+
+impl Lines {
+    fn take(&mut self, line: &str) {
+        let start = Start::of(line);
+        if start.rest.is_empty() {
+            return self.take_blank();
+        }
+        let reach = self.levels.iter().take_while(|level| start.column >= level.content).count();
+        let left_item = reach < self.levels.len();
+        if start.quoted != self.quoted {
+            // A paragraph goes on behind a quotation, as in mails whose lines were broken.
+            if start.quoted || !matches!(self.open, Open::Paragraph(_)) {
+                self.close();
+            }
+            self.quoted = start.quoted;
+        }
+        match &mut self.open {
+            Open::Fence(fence, code) if !left_item => {
+                if fence.is_closed_by(start) {
+                    self.close();
+                } else {
+                    code.extend([start.from_column(line, fence.column), "\n"]);
+                }
+            }
+            Open::Html(html) if !left_item => {
+                if html.ends(start.rest) {
+                    self.open = Open::Nothing;
+                }
+            }
+            Open::Indented(code) if !left_item && start.is_code(base_of(&self.levels)) => {
+                let column = base_of(&self.levels).max(start.base) + CODE_INDENT;
+                code.extend([start.from_column(line, column), "\n"]);
+            }
+            Open::Paragraph(_) | Open::Nothing => self.begin(line, start, reach),
+            _ => {
+                self.close();
+                self.begin(line, start, reach);
+            }
+        }
+    }
+
+    fn take_blank(&mut self) {
+        match &mut self.open {
+            Open::Fence(_, code) | Open::Indented(code) => code.push('\n'),
+            Open::Html(html) if !html.ends_when_blank() => {}
+            _ => self.close(),
+        }
+    }
+
+    /// Reads a line that goes on with a paragraph, or begins something. It lies inside of the first `reach` lists.
+    fn begin(&mut self, line: &str, mut start: Start<'_>, mut reach: usize) {
+        loop {
+            let in_paragraph = matches!(self.open, Open::Paragraph(_));
+            let base = base_of(self.levels.get(..reach).unwrap_or_default());
+            if start.is_code(base) {
+                if in_paragraph {
+                    return self.paragraph(start.rest, reach);
+                }
+                self.leave(reach);
+                let column = base.max(start.base) + CODE_INDENT;
+                self.open = Open::Indented(format!("{}\n", start.from_column(line, column)));
+                return;
+            }
+            if is_rule(start.rest) {
+                return self.leave(reach);
+            }
+            if let Some(item) =
+                Item::of(start).filter(|item| reach < MOST_LEVELS && (!in_paragraph || reach < self.levels.len() || item.interrupts()))
+            {
+                self.item(item, reach);
+                start = item.start;
+                reach = self.levels.len();
+                if start.rest.is_empty() {
+                    return;
+                }
+                continue;
+            }
+            if let Some((level, words)) = heading(start.rest) {
+                self.leave(reach);
+                self.parts.push(Part::Heading(level, words.to_owned()));
+                return;
+            }
+            if let Some(fence) = Fence::of(start) {
+                self.leave(reach);
+                self.open = Open::Fence(fence, String::new());
+                return;
+            }
+            if let Some(html) = Html::begins(start.rest).filter(|html| !in_paragraph || html.interrupts) {
+                self.leave(reach);
+                if !html.ends(start.rest) {
+                    self.open = Open::Html(html);
+                }
+                return;
+            }
+            return self.paragraph(start.rest, reach);
+        }
+    }
+
+    /// A line of text: it goes on with a paragraph that is open, however far it is set in.
+    fn paragraph(&mut self, line: &str, reach: usize) {
+        if let Open::Paragraph(text) = &mut self.open {
+            text.extend(["\n", line]);
+        } else {
+            self.leave(reach);
+            self.open = Open::Paragraph(line.to_owned());
+        }
+    }
+
+    fn item(&mut self, item: Item<'_>, reach: usize) {
+        self.close();
+        self.levels.truncate(reach + 1);
+        if self.levels.get(reach).is_none_or(|level| level.sign != item.sign) {
+            self.levels.truncate(reach);
+            self.levels.push(Level {
+                sign: item.sign,
+                next: item.number,
+                content: item.content,
+            });
+        }
+        if let Some(level) = self.levels.last_mut() {
+            level.content = item.content;
+            let number = level.next;
+            level.next = number.map(|number| number.saturating_add(1));
+            self.marker = Some(Marker { depth: reach, number });
+        }
+    }
+
+    /// Ends what is open, and all lists but the first `reach`.
+    fn leave(&mut self, reach: usize) {
+        self.close();
+        if reach < self.levels.len() {
+            self.levels.truncate(reach);
+            self.marker = None;
+        }
+    }
+
+    fn close(&mut self) {
+        match std::mem::take(&mut self.open) {
+            Open::Paragraph(text) => self.parts.push(Part::Text(self.marker.take(), text)),
+            Open::Fence(_, code) | Open::Indented(code) => self.parts.push(Part::Code(code)),
+            Open::Nothing | Open::Html(_) => {}
+        }
+    }
+}
+
+/// Where the text of a line begins.
+#[derive(Clone, Copy, Debug)]
+struct Start<'a> {
+    /// Columns before it; a tab goes on to the next that is a multiple of four.
+    column: usize,
+    /// The text, without spaces before it.
+    rest: &'a str,
+    /// Whether `>` stands before it.
+    quoted: bool,
+    /// The column from which on spaces are counted.
+    base: usize,
+}
+
+impl<'a> Start<'a> {
+    fn of(line: &'a str) -> Self {
+        let mut start = Self {
+            column: 0,
+            rest: line,
+            quoted: false,
+            base: 0,
+        };
+        start.skip_spaces();
+        while let Some(rest) = start.rest.strip_prefix('>') {
+            start.quoted = true;
+            start.column += 1;
+            start.base = start.column + usize::from(rest.starts_with([' ', '\t']));
+            start.rest = rest;
+            start.skip_spaces();
+        }
+        start
+    }
+
+    fn skip_spaces(&mut self) {
+        let rest = self.rest.trim_start_matches([' ', '\t']);
+        let spaces = self.rest.len() - rest.len();
+        for space in self.rest.bytes().take(spaces) {
+            self.column = if space == b'\t' {
+                (self.column / 4 + 1) * 4
+            } else {
+                self.column + 1
+            };
+        }
+        self.rest = rest;
+    }
+
+    fn is_code(self, base: usize) -> bool {
+        self.column >= base.max(self.base) + CODE_INDENT
+    }
+
+    /// The line from a column on, or from where its text begins if that is before.
+    fn from_column(self, line: &'a str, column: usize) -> &'a str {
+        let mut rest = line;
+        let mut at = 0;
+        while at < column && rest.len() > self.rest.len() {
+            let mut letters = rest.chars();
+            at = match letters.next() {
+                Some('\t') => (at / 4 + 1) * 4,
+                _ => at + 1,
+            };
+            rest = letters.as_str();
+        }
+        rest
+    }
+}
+
+/// The beginning of an item of a list.
+#[derive(Clone, Copy, Debug)]
+struct Item<'a> {
+    sign: char,
+    number: Option<u64>,
+    content: usize,
+    start: Start<'a>,
+}
+
+impl<'a> Item<'a> {
+    fn of(start: Start<'a>) -> Option<Self> {
+        let digits = start.rest.bytes().take_while(u8::is_ascii_digit).count();
+        let (number, rest) = start.rest.split_at_checked(digits)?;
+        let signs: &[char] = if digits == 0 { &['-', '*', '+'] } else { &['.', ')'] };
+        let sign = rest.chars().next().filter(|sign| signs.contains(sign))?;
+        let rest = rest.strip_prefix(sign)?;
+        if digits > 9 || !(rest.is_empty() || rest.starts_with([' ', '\t'])) {
+            return None;
+        }
+        let mark_ends = start.column + digits + 1;
+        let mut inner = Start {
+            column: mark_ends,
+            rest,
+            quoted: start.quoted,
+            base: 0,
+        };
+        inner.skip_spaces();
+        let is_far = inner.column > mark_ends + CODE_INDENT;
+        Some(Self {
+            sign,
+            number: number.parse().ok(),
+            content: if is_far || inner.rest.is_empty() {
+                mark_ends + 1
+            } else {
+                inner.column
+            },
+            start: inner,
+        })
+    }
+
+    /// Whether it may stand right under a line of text. A number at the beginning of a line is seldom meant as an item's, unless it is 1.
+    fn interrupts(self) -> bool {
+        !self.start.rest.is_empty() && self.number.is_none_or(|number| number == 1)
+    }
+}
+
+impl Fence {
+    fn of(start: Start<'_>) -> Option<Self> {
+        let sign = start.rest.chars().next().filter(|sign| ['`', '~'].contains(sign))?;
+        let after = start.rest.trim_start_matches(sign);
+        let len = start.rest.len() - after.len();
+        (len >= 3 && !(sign == '`' && after.contains('`'))).then_some(Self {
+            sign,
+            len,
+            column: start.column,
+        })
+    }
+
+    fn is_closed_by(self, start: Start<'_>) -> bool {
+        let line = start.rest.trim_ascii_end();
+        line.len() >= self.len && line.chars().all(|letter| letter == self.sign) && start.column < self.column + CODE_INDENT
+    }
+}
+
+/// The column that lines inside of all these lists begin at.
+fn base_of(levels: &[Level]) -> usize {
+    levels.last().map_or(0, |level| level.content)
+}
+
+/// How many `#` a line begins with, and what follows them.
+fn heading(line: &str) -> Option<(usize, &str)> {
+    let words = line.trim_start_matches('#');
+    let level = line.len() - words.len();
+    if !(1..=6).contains(&level) || !(words.is_empty() || words.starts_with([' ', '\t'])) {
+        return None;
+    }
+    let words = words.trim();
+    // `#` at the end, as in `## Try ##`, are for the looks of the file.
+    let bare = words.trim_end_matches('#');
+    let is_closed = bare.is_empty() || bare.ends_with([' ', '\t']);
+    Some((level, if is_closed { bare.trim_end() } else { words }))
+}
+
+/// Whether a line is a rule between paragraphs, such as `---`.
+fn is_rule(line: &str) -> bool {
+    let Some(sign) = line.chars().next().filter(|sign| ['-', '*', '_'].contains(sign)) else {
+        return false;
+    };
+    line.chars().all(|letter| letter == sign || letter == ' ' || letter == '\t') && line.matches(sign).count() >= 3
+}

@@ -1,0 +1,108 @@
+//! Text becomes spans: lines are joined, and what looks and leads alike is one.
+
+use super::page::{Span, Target};
+use super::shelf::lesson_of_file;
+
+/// A link that is longer looks the same from there on. Each span holds its address, so that a long address with many of them would fill the memory.
+const MOST_SPANS_OF_A_LINK: usize = 64;
+
+/// A block of text that is being put together.
+#[derive(Debug, Default)]
+pub(super) struct Prose {
+    spans: Vec<Span>,
+    /// How many marks of each kind are open.
+    pub(super) strong: usize,
+    pub(super) emphasis: usize,
+    /// The link that is open: where it leads, or the address that is shown in its place.
+    link: Option<Result<Target, String>>,
+    /// How many spans came before it.
+    link_from: usize,
+    /// A line ended: a space, unless it stands between signs that take none.
+    line_ended: bool,
+}
+
+impl Prose {
+    pub(super) fn line_end(&mut self) {
+        self.line_ended = true;
+    }
+
+    pub(super) fn begin_link(&mut self, address: &str) {
+        self.link = Some(target_of(address));
+        self.link_from = self.spans.len();
+    }
+
+    pub(super) fn end_link(&mut self) {
+        if let Some(Err(address)) = self.link.take() {
+            self.text(&format!(" ({address})"), false);
+        }
+    }
+
+    pub(super) fn text(&mut self, text: &str, code: bool) {
+        let mut text: String = text.chars().filter(|&letter| letter == '\n' || !letter.is_control()).collect();
+        if text.is_empty() {
+            return;
+        }
+        if std::mem::take(&mut self.line_ended) {
+            let before = self.spans.last().and_then(|span| span.text.chars().next_back());
+            let around = [before, text.chars().next()];
+            if !around.into_iter().flatten().any(is_unspaced) {
+                text.insert(0, ' ');
+            }
+        }
+        let target = self.link.as_ref().and_then(|link| link.as_ref().ok());
+        let is_long = target.is_some() && self.spans.len() >= self.link_from + MOST_SPANS_OF_A_LINK;
+        let look = (self.strong > 0, self.emphasis > 0, code, target);
+        match self.spans.last_mut() {
+            Some(last) if is_long || (last.strong, last.emphasis, last.code, last.target.as_ref()) == look => last.text.push_str(&text),
+            _ => self.spans.push(Span {
+                text,
+                strong: self.strong > 0,
+                emphasis: self.emphasis > 0,
+                code,
+                target: target.cloned(),
+            }),
+        }
+    }
+
+    pub(super) fn end(mut self) -> Vec<Span> {
+        for span in &mut self.spans {
+            span.text = with_units_held(&span.text);
+        }
+        self.spans
+    }
+}
+
+/// Where an address leads; an address that may not be opened is given back.
+fn target_of(address: &str) -> Result<Target, String> {
+    if let Some(query) = address.strip_prefix('?') {
+        Ok(Target::State(query.to_owned()))
+    } else if let Some(name) = lesson_of_file(address) {
+        Ok(Target::State(format!("lesson={name}")))
+    } else if address.starts_with("https://") || address.starts_with("http://") {
+        Ok(Target::Web(address.to_owned()))
+    } else {
+        Err(address.to_owned())
+    }
+}
+
+/// Whether no space is set about a sign: Chinese and Japanese letters, and full-width punctuation.
+fn is_unspaced(letter: char) -> bool {
+    matches!(letter, '\u{2e80}'..='\u{9fff}' | '\u{f900}'..='\u{faff}' | '\u{ff00}'..='\u{ffef}' | '\u{20000}'..='\u{3ffff}')
+}
+
+/// A text whose numbers are not torn from their units at the end of a line.
+fn with_units_held(text: &str) -> String {
+    const UNITS: [&str; 7] = ["%", "°", "cm", "mm", "m", "s", "ms"];
+    let mut held = String::with_capacity(text.len());
+    let mut pieces = text.split(' ').peekable();
+    while let Some(piece) = pieces.next() {
+        held.push_str(piece);
+        if let Some(next) = pieces.peek() {
+            let unit = next.trim_end_matches(|letter: char| letter.is_ascii_punctuation() && letter != '%');
+            let is_unit = UNITS.contains(&unit) || next.starts_with('°') || next.starts_with('%');
+            let after_number = piece.ends_with(|letter: char| letter.is_ascii_digit());
+            held.push(if after_number && is_unit { '\u{a0}' } else { ' ' });
+        }
+    }
+    held
+}
