@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { Buffer } from "node:buffer";
 import { onBackend, onBothBackends } from "./harness.mjs";
-import { elsewhere, until } from "./help.mjs";
+import { elsewhere } from "./help.mjs";
 import { decodePng } from "./png.mjs";
 
 /** A small file to bring along: a hip with one bone that turns. */
@@ -323,18 +323,4 @@ onBackend("webgl2", "copying puts the link into the clipboard, and says so only 
   await page.keyboard.press("Control+c");
   await page.waitForTimeout(500);
   assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await segue("url"));
-});
-
-// Fails when what is drawn on the canvas is not told to screen readers.
-onBackend("webgl2", "a screen reader hears what has the focus and what was done", async ({ open }) => {
-  const { page } = await open("lab=blend&play=off", { viewport: [960, 640] });
-  const spoken = () => page.evaluate(() => document.getElementById("spoken").textContent);
-  const heard = new Set();
-  for (let press = 0; press < 8; press++) {
-    await page.keyboard.press("Tab");
-    heard.add(await until("something is said", async () => (await spoken()) || false));
-    await new Promise((later) => setTimeout(later, 400));
-    heard.add(await spoken());
-  }
-  assert.ok(heard.size >= 3, [...heard].join(" | "));
 });

@@ -78,12 +78,3 @@ onBackend("webgl2", "a newer build comes whole, with the next reload", async ({ 
   await ready();
   assert.deepEqual((await keptBuilds(page)).map((name) => name.split(" ").pop()), [now.html]);
 });
-
-onBackend("webgl2", "who wants little motion starts it by hand", async ({ open }) => {
-  const { segue } = await open("", { viewport: [640, 480], motion: "reduce" });
-  const before = await segue("time");
-  assert.equal((await segue("params")).play, false);
-  assert.equal(await segue("time"), before);
-  await segue("play");
-  await until("it plays", async () => (await segue("time")) !== before);
-});
