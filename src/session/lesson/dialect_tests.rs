@@ -193,7 +193,7 @@ fn html_is_left_out() {
 
 #[test]
 fn blocks_are_told_apart() {
-    let cases: [(&str, &[&str]); 14] = [
+    let cases: [(&str, &[&str]); 16] = [
         ("a\nb\n\nc", &["a b", "c"]),
         ("## A ##\n### B # C\n#no\n#### D", &["= A", "= B # C", "#no", "= D"]),
         ("a\n---\nb\n* * *\nc", &["a", "b", "c"]),
@@ -208,6 +208,8 @@ fn blocks_are_told_apart() {
         ("    a\n\n      b\nc", &["| a |  |   b", "c"]),
         ("a\n    b", &["a b"]),
         ("> a\n> b\nc\n\n> - d\n>   e", &["a b c", "- d e"]),
+        ("- > a\n  > b\n- c", &["- a b", "- c"]),
+        ("    > a\n\n>     b", &["| > a", "| b"]),
     ];
     for (text, expected) in cases {
         assert_eq!(lines(text), expected, "{text}");
