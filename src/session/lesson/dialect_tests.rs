@@ -219,7 +219,7 @@ fn blocks_are_told_apart() {
     assert_eq!(lines("-\tone\n\n\ttwo\n-\n\n- three"), ["- one", "two", "- three"]);
 }
 
-/// Each would take hours, or all memory, if what one mark costs grew with the text.
+/// If what one mark costs grew with the text, these would take minutes, or all memory.
 #[test]
 fn marks_without_end_are_read_in_one_pass() {
     let times = 200 * 1024;
