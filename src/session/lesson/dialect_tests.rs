@@ -21,12 +21,11 @@ fn line(spans: &[Span]) -> String {
             Some(Target::Web(address)) => look.push_str(address),
             None => {}
         }
-        let text = &span.text;
-        line += &if look.is_empty() {
-            text.clone()
+        if look.is_empty() {
+            line.push_str(&span.text);
         } else {
-            format!("<{look}|{text}>")
-        };
+            line.extend(["<", &look, "|", &span.text, ">"]);
+        }
     }
     line
 }
