@@ -101,7 +101,7 @@ impl Lines {
                 if fence.is_closed_by(start) {
                     self.close();
                 } else {
-                    code.extend([start.from_column(line, fence.column), "\n"]);
+                    code.extend([start.after_column(line, fence.column), "\n"]);
                 }
             }
             Open::Html(html) if !left_item => {
@@ -111,7 +111,7 @@ impl Lines {
             }
             Open::Indented(code) if !left_item && start.is_code(base_of(&self.levels)) => {
                 let column = base_of(&self.levels).max(start.base) + CODE_INDENT;
-                code.extend([start.from_column(line, column), "\n"]);
+                code.extend([start.after_column(line, column), "\n"]);
             }
             Open::Paragraph(_) | Open::Nothing => self.begin(line, start, reach),
             _ => {
@@ -140,7 +140,7 @@ impl Lines {
                 }
                 self.leave(reach);
                 let column = base.max(start.base) + CODE_INDENT;
-                self.open = Open::Indented(format!("{}\n", start.from_column(line, column)));
+                self.open = Open::Indented(format!("{}\n", start.after_column(line, column)));
                 return;
             }
             if is_rule(start.rest) {
@@ -151,6 +151,7 @@ impl Lines {
             {
                 self.item(item, reach);
                 start = item.start;
+                self.quoted = start.quoted;
                 reach = self.levels.len();
                 if start.rest.is_empty() {
                     return;
@@ -247,14 +248,18 @@ impl<'a> Start<'a> {
             base: 0,
         };
         start.skip_spaces();
-        while let Some(rest) = start.rest.strip_prefix('>') {
-            start.quoted = true;
-            start.column += 1;
-            start.base = start.column + usize::from(rest.starts_with([' ', '\t']));
-            start.rest = rest;
-            start.skip_spaces();
-        }
+        start.skip_quotes();
         start
+    }
+
+    fn skip_quotes(&mut self) {
+        while let Some(rest) = self.rest.strip_prefix('>').filter(|_| !self.is_code(0)) {
+            self.quoted = true;
+            self.column += 1;
+            self.base = self.column + usize::from(rest.starts_with([' ', '\t']));
+            self.rest = rest;
+            self.skip_spaces();
+        }
     }
 
     fn skip_spaces(&mut self) {
@@ -275,7 +280,7 @@ impl<'a> Start<'a> {
     }
 
     /// The line from a column on, or from where its text begins if that is before.
-    fn from_column(self, line: &'a str, column: usize) -> &'a str {
+    fn after_column(self, line: &'a str, column: usize) -> &'a str {
         let mut rest = line;
         let mut at = 0;
         while at < column && rest.len() > self.rest.len() {
@@ -318,14 +323,17 @@ impl<'a> Item<'a> {
         };
         inner.skip_spaces();
         let is_far = inner.column > mark_ends + CODE_INDENT;
+        let content = if is_far || inner.rest.is_empty() {
+            mark_ends + 1
+        } else {
+            inner.column
+        };
+        inner.base = content;
+        inner.skip_quotes();
         Some(Self {
             sign,
             number: number.parse().ok(),
-            content: if is_far || inner.rest.is_empty() {
-                mark_ends + 1
-            } else {
-                inner.column
-            },
+            content,
             start: inner,
         })
     }

@@ -3,6 +3,7 @@
 //! A lesson is a Markdown file; the README says how one is written. What it holds becomes a [`Page`], which knows nothing of a screen. The lessons
 //! that come with Segue are fetched when they are opened, in the language that is set; a teacher's own are fetched from their address.
 
+mod address;
 mod blocks;
 mod html;
 mod inline;
