@@ -362,15 +362,15 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         },
         "register" => Words {
             strong: name(Key::A),
-            text: format!(
-                "{} {}",
-                if session.params().text(Key::WarpMode) == "join" {
-                    "→"
-                } else {
-                    "+"
-                },
-                name(Key::B)
-            ),
+            text: if session.params().text(Key::WarpMode) == "join" {
+                format!("→ {}", name(Key::B))
+            } else {
+                let also = session.also_blended();
+                let of = |id: &str| session.library().find(id).map_or_else(|| id.to_owned(), |entry| entry.name.clone());
+                let others = also.iter().map(|(id, _)| of(id));
+                let others: Vec<String> = std::iter::once(name(Key::B)).chain(others).collect();
+                format!("+ {}", others.join(" + "))
+            },
             secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
         },
         "graph" => {
