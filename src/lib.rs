@@ -90,8 +90,9 @@
 //! 11. [`graph`]: motion graphs, and walks through them.
 //! 12. [`path`]: the road is dragged, the character follows.
 //! 13. [`matching`]: a character that is steered.
-//! 14. [`session`]: the document that holds all of it, and its commands.
-//! 15. [`scene`]: what of it is to be seen.
+//! 14. [`skin`]: a smooth body around any skeleton, and two ways in which it follows.
+//! 15. [`session`]: the document that holds all of it, and its commands.
+//! 16. [`scene`]: what of it is to be seen.
 //!
 //! Who may use whom is held by a test (`tests/architecture.rs`), which reads the `use` lines:
 //!

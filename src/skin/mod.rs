@@ -8,6 +8,37 @@
 //!
 //! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known. A mesh that came with a file is a
 //! [`SkinnedMesh`], too.
+//!
+//! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to
+//!
+//! ```text
+//! linear blend       Σ w (R p + t)          half way between two halves of a turn: the axis itself
+//! dual quaternions   (Σ w q) / |Σ w q|      a rigid motion again, so nothing shrinks
+//! ```
+//!
+//! ```
+//! use segue::skeleton::{Roles, WorldPose};
+//! use segue::skin::{Build, SkinnedMesh, dual_quaternion, linear_blend};
+//! use segue::synth::{Action, Params, synthesize};
+//!
+//! let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+//! let mesh = SkinnedMesh::around(clip.skeleton(), &Roles::detect(clip.skeleton()), Build::default());
+//! let mut world = WorldPose::default();
+//! clip.world_pose_into(30, &mut world);
+//! let mut joints = Vec::new();
+//! mesh.joint_transforms(&world, &mut joints);
+//! let [mut linear, mut dual, mut normals] = [Vec::new(), Vec::new(), Vec::new()];
+//! linear_blend(&mesh, &joints, &mut linear, &mut normals);
+//! dual_quaternion(&mesh, &joints, &mut dual, &mut normals);
+//! // A walk twists little: the two differ by less than three centimetres anywhere.
+//! let apart = linear.iter().zip(&dual).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+//! assert!(apart > 0.0 && apart < 0.03, "{apart}");
+//! ```
+//!
+//! A body takes about 0.1 s to be made, and a millisecond to be posed here, in one thread; on the GPU that is free. Hands have no separate fingers where the
+//! skeleton has none, and nothing collides.
+//!
+//! Sources: Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions", 2007; Ju, Losasso, Schaefer, Warren, "Dual Contouring of Hermite Data", 2002.
 
 mod around;
 mod bind;
