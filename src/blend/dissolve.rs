@@ -125,7 +125,7 @@ impl Source {
 /// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of `options.window` overlapped frames.
 ///
 /// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window is all A, its last frame is all B (Kovar,
-/// Gleicher, Pighin 2002, section 4.2). Local rotations slerp by the shorter way, translations and heights lerp. With
+/// Gleicher, Pighin 2002, section 3.3). Local rotations slerp by the shorter way, translations and heights lerp. With
 /// [`RootBlend::Velocity`], poses are blended in the character's frame, and the character's steps (forward, sideways, yaw; each step at the
 /// weight of its middle) are blended and integrated from A's last frame; B then goes on rigidly from where that ends, without a jump. With
 /// [`RootBlend::World`] root positions and orientations are interpolated in the world after B was laid on A.

@@ -1,7 +1,7 @@
 /// How the outgoing clip's weight falls over a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum WeightLaw {
-    /// 2t³ - 3t² + 1: no slope at either end, so that velocities stay continuous (C¹; Kovar, Gleicher, Pighin 2002, section 4.2).
+    /// 2t³ - 3t² + 1: no slope at either end, so that velocities stay continuous (C¹; Kovar, Gleicher, Pighin 2002, section 3.3).
     #[default]
     Smooth,
     /// 1 - t: velocities jump at both ends.
