@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use segue::scene::{Colors, Director, Look, Viewport, rgb};
 use segue::session::{Command, Session};
 use segue::skeleton::Roles;
-use segue::skin::{Build, SkinnedMesh};
+use segue::skin::SkinnedMesh;
 use segue::synth::humanoid;
 use std::hint::black_box;
 
@@ -46,7 +46,7 @@ fn mesh(c: &mut Criterion) {
     let skeleton = humanoid(1.75).expect("a person");
     let roles = Roles::detect(&skeleton);
     c.bench_function("a body about a skeleton", |bench| {
-        bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, Build::default()));
+        bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, 1.0));
     });
 }
 

@@ -3,7 +3,7 @@
 use super::Body;
 use crate::session::{Key, Motion, Session};
 use crate::skeleton::{Roles, Skeleton};
-use crate::skin::{Build, Character, Drive, SkinnedMesh};
+use crate::skin::{Character, Drive, SkinnedMesh};
 use std::sync::{Arc, Weak};
 
 /// What bodies look like for now, and those that were made so.
@@ -70,19 +70,18 @@ impl Wardrobe {
         if !skin {
             return body;
         }
-        let build = Build { girth, ..Build::default() };
-        body.with_skin(self.mesh(skeleton, &motion.roles, build))
+        body.with_skin(self.mesh(skeleton, &motion.roles, girth))
     }
 
     /// A mesh for a skeleton: the same for all skeletons that are equal, so that they are drawn together.
-    fn mesh(&self, skeleton: &Arc<Skeleton>, roles: &Roles, build: Build) -> Arc<SkinnedMesh> {
+    fn mesh(&self, skeleton: &Arc<Skeleton>, roles: &Roles, girth: f32) -> Arc<SkinnedMesh> {
         let alike = self
             .bodies
             .iter()
             .find(|(other, others_roles, _)| others_roles == roles && other.upgrade().is_some_and(|other| *other == **skeleton));
         match alike.and_then(|(.., body)| body.skin()) {
             Some(mesh) => Arc::clone(mesh),
-            None => Arc::new(SkinnedMesh::around(skeleton, roles, build)),
+            None => Arc::new(SkinnedMesh::around(skeleton, roles, girth)),
         }
     }
 }

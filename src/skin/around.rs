@@ -5,7 +5,7 @@ use super::contour::contour;
 use super::field::{Cone, Field};
 use super::shapes::{Placed, Shape, shapes};
 use super::weights::{Neighbours, fair, normals, shared};
-use super::{Build, SkinnedMesh, bind};
+use super::{SkinnedMesh, bind};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use std::collections::BTreeMap;
 
@@ -22,12 +22,12 @@ const MOST_SHAPES: usize = 4000;
 /// A joint and its ancestor this many steps above are near enough in the tree to flow into each other.
 const NEAR_STEPS: usize = 2;
 
-pub(super) fn around(skeleton: &Skeleton, roles: &Roles, build: Build) -> SkinnedMesh {
+pub(super) fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> SkinnedMesh {
     let pose = bind::bind_pose(skeleton, roles);
     let rest = skeleton.rest_positions();
     let mut shapes = shapes(skeleton, &rest, Some(roles));
     shapes.retain(|shape| u16::try_from(shape.a.joint.max(shape.b.joint)).is_ok());
-    let girths = girths(skeleton, roles, build.girth);
+    let girths = girths(skeleton, roles, girth);
     for shape in &mut shapes {
         shape.radius_a *= girths[shape.a.joint];
         shape.radius_b *= girths[shape.b.joint];

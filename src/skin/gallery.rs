@@ -1,6 +1,6 @@
 //! Pictures of bodies, to be looked at: written where `SEGUE_GALLERY` names a folder.
 
-use super::{Build, SkinnedMesh, dual_quaternion, linear_blend};
+use super::{SkinnedMesh, dual_quaternion, linear_blend};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use crate::synth::{Action, Params, synthesize};
 use flate2::write::ZlibEncoder;
@@ -168,7 +168,7 @@ fn the_humanoid_stands_walks_and_runs() {
     }
     let skeleton = skeleton.unwrap();
     let start = std::time::Instant::now();
-    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
     let took = start.elapsed();
     if folder().is_some() {
         eprintln!(
@@ -209,7 +209,7 @@ fn the_takes_of_others_have_bodies_too() {
     for (name, clip) in takes {
         let skeleton = clip.skeleton();
         let start = std::time::Instant::now();
-        let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default());
+        let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
         eprintln!(
             "{name}: {} joints, {} vertices, {:?}",
             skeleton.len(),

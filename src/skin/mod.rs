@@ -18,11 +18,11 @@
 //!
 //! ```
 //! use segue::skeleton::{Roles, WorldPose};
-//! use segue::skin::{Build, SkinnedMesh, dual_quaternion, linear_blend};
+//! use segue::skin::{SkinnedMesh, dual_quaternion, linear_blend};
 //! use segue::synth::{Action, Params, synthesize};
 //!
 //! let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-//! let mesh = SkinnedMesh::around(clip.skeleton(), &Roles::detect(clip.skeleton()), Build::default());
+//! let mesh = SkinnedMesh::around(clip.skeleton(), &Roles::detect(clip.skeleton()), 1.0);
 //! let mut world = WorldPose::default();
 //! clip.world_pose_into(30, &mut world);
 //! let mut joints = Vec::new();
@@ -79,54 +79,14 @@ pub struct SkinnedMesh {
     pub bind: Vec<RigidTransform>,
 }
 
-/// The stature of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Build {
-    /// The whole figure is so many times as high as the skeleton; 1 is as the skeleton. See [`Build::scale`].
-    pub height: f32,
-    /// Girths beside those of an average adult; 1 is average.
-    pub girth: f32,
-}
-
-impl Default for Build {
-    fn default() -> Self {
-        Self { height: 1.0, girth: 1.0 }
-    }
-}
-
-impl Build {
-    /// The same build with numbers that make a body: height within 0.1–10, girth within 0.4–2.5, what is no number 1.
-    #[must_use]
-    pub fn clamped(self) -> Self {
-        let within = |value: f32, low: f32, high: f32| if value.is_nan() { 1.0 } else { value.clamp(low, high) };
-        Self {
-            height: within(self.height, 0.1, 10.0),
-            girth: within(self.girth, 0.4, 2.5),
-        }
-    }
-
-    /// Scales a pose of the skeleton to the figure's height, about the fixed point `ground` (metres).
-    ///
-    /// The mesh of [`SkinnedMesh::around`] is made at the figure's height, so the poses that move it must be scaled as well, and with them all that
-    /// is shown of the motion: paths, contact marks. When `ground` is the same in all frames, what stands still keeps standing still and what
-    /// slides, slides `height` times as far: foot skate is neither made nor hidden.
-    pub fn scale(self, world: &mut WorldPose, ground: Vec3) {
-        let height = self.clamped().height;
-        for position in &mut world.positions {
-            *position = ground + (*position - ground) * height;
-        }
-    }
-}
-
 impl SkinnedMesh {
     /// Makes a body for a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. The joints of
-    /// the mesh are those of the skeleton (at most the first 65,536 of them). The same input gives the same mesh.
+    /// the mesh are those of the skeleton (at most the first 65,536 of them). `girth` is how stout it is beside an average adult, 0.4 to 2.5 (1 is
+    /// average, and taken for what is no number). The same input gives the same mesh.
     #[must_use]
-    pub fn around(skeleton: &Skeleton, roles: &Roles, build: Build) -> Self {
-        let build = build.clamped();
-        let mut mesh = around::around(skeleton, roles, build);
-        mesh.scale(build.height);
-        mesh
+    pub fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> Self {
+        let girth = if girth.is_nan() { 1.0 } else { girth.clamp(0.4, 2.5) };
+        around::around(skeleton, roles, girth)
     }
 
     /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind pose that follows this joint alone. Joints that the

@@ -124,7 +124,7 @@ fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_g
 fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
     let skeleton = humanoid(1.75).unwrap();
     let roles = Roles::detect(&skeleton);
-    let mesh = SkinnedMesh::around(&skeleton, &roles, Build::default());
+    let mesh = SkinnedMesh::around(&skeleton, &roles, 1.0);
     let rest = WorldPose {
         positions: skeleton.rest_positions(),
         rotations: vec![Quat::IDENTITY; skeleton.len()],
@@ -212,7 +212,7 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
 #[test]
 fn rigs_of_all_kinds_have_a_closed_body() {
     for (name, skeleton, _) in fixtures::all() {
-        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check(name, &skeleton, &mesh);
         assert!(
             (4_000..30_000).contains(&mesh.positions.len()),
@@ -222,17 +222,13 @@ fn rigs_of_all_kinds_have_a_closed_body() {
     }
     // Without roles, the same bones have a plainer body.
     let skeleton = fixtures::lafan();
-    check(
-        "no roles",
-        &skeleton,
-        &SkinnedMesh::around(&skeleton, &Roles::default(), Build::default()),
-    );
+    check("no roles", &skeleton, &SkinnedMesh::around(&skeleton, &Roles::default(), 1.0));
 }
 
 #[test]
 fn a_rigid_motion_of_all_joints_moves_the_mesh_rigidly() {
     let skeleton = fixtures::cmu_bvh();
-    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
     let motion = RigidTransform {
         rotation: quat::exp(Vec3::new(0.7, -1.1, 0.4)),
         translation: Vec3::new(3.0, 1.0, -2.0),
@@ -254,38 +250,25 @@ fn a_rigid_motion_of_all_joints_moves_the_mesh_rigidly() {
 }
 
 #[test]
-fn height_scales_everything_about_the_ground_point_and_girth_thickens() {
+fn girth_thickens() {
     let skeleton = humanoid(1.75).unwrap();
     let roles = Roles::detect(&skeleton);
-    let around = |height, girth| SkinnedMesh::around(&skeleton, &roles, Build { height, girth });
-    let (plain, tall, stout) = (around(1.0, 1.0), around(1.2, 1.0), around(1.0, 1.4));
-    let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-    let (mut transforms, mut normals) = (vec![], vec![]);
-    let (mut small, mut large) = (vec![], vec![]);
-    let ground = Vec3::new(0.3, 0.0, -0.2);
-    let mut pose = walk.world_pose(40);
-    plain.joint_transforms(&pose, &mut transforms);
-    linear_blend(&plain, &transforms, &mut small, &mut normals);
-    Build { height: 1.2, girth: 1.0 }.scale(&mut pose, ground);
-    tall.joint_transforms(&pose, &mut transforms);
-    linear_blend(&tall, &transforms, &mut large, &mut normals);
-    assert_eq!(small.len(), large.len());
-    for (small, large) in small.iter().zip(&large) {
-        assert!((ground + (*small - ground) * 1.2).distance(*large) < 2e-5);
-    }
+    let around = |girth| SkinnedMesh::around(&skeleton, &roles, girth);
+    let (plain, stout) = (around(1.0), around(1.4));
     let width = |mesh: &SkinnedMesh| {
         let waist = mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
         waist.map(|p| p.x).fold(0.0, f32::max)
     };
     assert!(width(&stout) > 1.25 * width(&plain), "{} {}", width(&stout), width(&plain));
-    let crazy = around(f32::NAN, f32::INFINITY);
-    check("crazy build", &skeleton, &crazy);
+    for crazy in [f32::NAN, f32::INFINITY, -1.0] {
+        check("crazy girth", &skeleton, &around(crazy));
+    }
 }
 
 #[test]
 fn left_and_right_are_alike() {
     let skeleton = humanoid(1.75).unwrap();
-    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+    let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
     let [left, right] = [1.0, -1.0].map(|sign| {
         let side = mesh.positions.iter().filter(move |p| p.x * sign > 0.0);
         let (low, high) = side.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| {
@@ -320,7 +303,7 @@ fn odd_skeletons_have_a_body_of_bounded_size() {
         ("very short", chain(4, Vec3::new(1e-4, 0.0, 0.0))),
         ("thousands", chain(5000, Vec3::new(0.01, 0.02, 0.0))),
     ] {
-        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check(name, &skeleton, &mesh);
         assert!(mesh.positions.len() < 200_000, "{name}: {} vertices", mesh.positions.len());
     }
@@ -335,7 +318,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
         .filter(|(name, ..)| ["mixamo", "lafan", "smpl"].contains(name))
     {
         let own = Roles::detect(&skeleton);
-        let mesh = Arc::new(SkinnedMesh::around(&skeleton, &own, Build::default()));
+        let mesh = Arc::new(SkinnedMesh::around(&skeleton, &own, 1.0));
         let character = Character {
             skeleton,
             roles: own,
@@ -369,7 +352,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
     }
     // On its own skeleton nothing is changed.
     let skeleton = Arc::clone(walk.skeleton());
-    let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, Build::default()));
+    let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
     let own = Character {
         skeleton,
         roles: roles.clone(),
@@ -380,7 +363,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
     assert_eq!(pose, walk.world_pose(3));
     // Nothing in common: no way.
     let rope = Arc::new(chain(3, Vec3::Y));
-    let mesh = Arc::new(SkinnedMesh::around(&rope, &Roles::default(), Build::default()));
+    let mesh = Arc::new(SkinnedMesh::around(&rope, &Roles::default(), 1.0));
     let rope = Character {
         skeleton: rope,
         roles: Roles::default(),
@@ -402,7 +385,7 @@ proptest! {
             channels: vec![],
         }).collect();
         let skeleton = Skeleton::new(list).unwrap();
-        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default());
+        let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check("random", &skeleton, &mesh);
         prop_assert!(mesh.positions.len() < 60_000, "{}", mesh.positions.len());
         let world = world_pose(&skeleton, &Pose { rotations: vec![quat::exp(Vec3::ONE); joints], ..Pose::default() });

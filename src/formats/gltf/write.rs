@@ -1,7 +1,7 @@
 use super::bones::Bones;
 use crate::clip::{Clip, Interpolation, resample};
 use crate::skeleton::{Joint, Roles, Skeleton};
-use crate::skin::{Build, SkinnedMesh};
+use crate::skin::SkinnedMesh;
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -52,7 +52,7 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     let body = nodes.len();
     nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
     let mesh = if options.smooth {
-        SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default())
+        SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0)
     } else {
         let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
         let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();

@@ -1,6 +1,6 @@
 //! What can be said of a picture to the pixel, and what drawing it takes.
 
-use super::{A, B, actors, gpu, gpu_for, stage};
+use super::{A, B, actors, ball, gpu, gpu_for, stage};
 use crate::render::frame::Frame;
 use crate::render::image::read_texture;
 use crate::render::{Quality, render_to_image};
@@ -110,15 +110,6 @@ fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
 #[test]
 fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
     let Some(mut gpu) = gpu() else { return };
-    let ball = |center: Vec3, radius: f32, color| segue::scene::Limb {
-        a: center,
-        b: center,
-        radius_a: radius,
-        radius_b: radius,
-        flat: Vec3::ZERO,
-        flatness: 1.0,
-        color,
-    };
     let camera = Camera {
         target: Vec3::Y * 2.0,
         yaw: 0.0,

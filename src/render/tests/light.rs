@@ -1,22 +1,10 @@
 //! The main light and its shadow.
 
-use super::{colors, gpu};
+use super::{ball, colors, gpu};
 use crate::render::render_to_image;
 use glam::Vec3;
 use segue::scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
 use segue::session::{Command, Session};
-
-fn ball(center: Vec3, radius: f32) -> Limb {
-    Limb {
-        a: center,
-        b: center,
-        radius_a: radius,
-        radius_b: radius,
-        flat: Vec3::ZERO,
-        flatness: 1.0,
-        color: [1.0; 4],
-    }
-}
 
 /// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in the middle.
 fn from_above(balls: &[Limb], shadow: f32) -> Stage {
@@ -62,7 +50,7 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
     let key = crate::render::light::key_direction(Vec3::X, 0.0);
     // Red at a place on the ground: how much light comes to it.
     let mut light = |height: f32, along: &[f32]| -> Vec<i32> {
-        let stage = from_above(&[ball(Vec3::new(0.0, height, 0.0), 0.2)], 1.0);
+        let stage = from_above(&[ball(Vec3::new(0.0, height, 0.0), 0.2, [1.0; 4])], 1.0);
         let image = gpu.draw(&format!("light-ball-{height}"), &stage, [SIZE, SIZE]);
         let middle = -key * (height / key.y);
         let away = middle.with_y(0.0).normalize_or_zero();
@@ -95,7 +83,7 @@ fn a_body_does_not_shade_what_faces_the_light() {
     let key = crate::render::light::key_direction(Vec3::X, 0.0);
     let (center, radius) = (Vec3::new(0.0, 0.9, 0.0), 0.8);
     let mut draw = |shadow: f32| {
-        let stage = from_above(&[ball(center, radius)], shadow);
+        let stage = from_above(&[ball(center, radius, [1.0; 4])], shadow);
         render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap()
     };
     let (lit, unlit) = (draw(1.0), draw(0.0));

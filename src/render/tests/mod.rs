@@ -12,11 +12,24 @@ use eframe::wgpu;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
-use segue::scene::{Body, Camera, Colors, Layer, Look, Pane, Stage, Viewport, rgb, with_alpha};
+use segue::scene::{Body, Camera, Color, Colors, Layer, Limb, Look, Pane, Stage, Viewport, rgb, with_alpha};
 use segue::skeleton::Roles;
 use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// A ball of a colour.
+fn ball(center: Vec3, radius: f32, color: Color) -> Limb {
+    Limb {
+        a: center,
+        b: center,
+        radius_a: radius,
+        radius_b: radius,
+        flat: Vec3::ZERO,
+        flatness: 1.0,
+        color,
+    }
+}
 
 /// The colours of the dark theme, or of the light one.
 fn colors(theme: usize) -> Colors {

@@ -525,7 +525,6 @@ mod tests {
     use super::*;
     use crate::formats::bvh;
     use crate::session::reading::{ReadSetup, read};
-    use crate::skin::Build;
     use crate::synth::{Action, Params, synthesize};
 
     fn report(secs: f32) -> ReadReport {
@@ -555,7 +554,7 @@ mod tests {
         let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
         let mesh = Arc::new(SkinnedMesh {
             colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
-            ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), Build::default())
+            ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0)
         });
         for file in &mut long.files {
             let read = file.result.as_mut().unwrap();

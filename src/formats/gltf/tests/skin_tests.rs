@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::skeleton::Roles;
-use crate::skin::{Build, SkinnedMesh, linear_blend};
+use crate::skin::{SkinnedMesh, linear_blend};
 
 /// What every mesh that was read must be.
 pub(super) fn check(mesh: &SkinnedMesh, joints: usize) {
@@ -259,7 +259,7 @@ fn our_own_body_comes_back_when_another_program_wrote_it() {
     let imported = read("x.glb", &by_another_program(bytes), &|_| None, &ImportOptions::default()).unwrap();
     let mesh = mesh_of(&imported);
     let skeleton = clip.skeleton();
-    let made = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), Build::default());
+    let made = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
     assert_eq!(
         (mesh.triangles.len(), mesh.positions.len()),
         (made.triangles.len(), made.positions.len())

@@ -1,0 +1,158 @@
+//! What comes in from outside, and what is asked of it: files, takes, answers.
+
+use super::{Event, Segue};
+use crate::platform::{self, Incoming, LargeFile, ReadNews};
+use crate::ui;
+use segue::session::reading::{Content, LARGE_BYTES};
+use segue::session::{Command, Key, Level, Request, Value};
+
+impl Segue {
+    pub(super) fn receive(&mut self, incoming: Incoming) {
+        match incoming {
+            Incoming::File { name, bytes } => self.load(&name, bytes),
+            Incoming::Large { name, file } => {
+                self.begin_reading(&name, file);
+            }
+            Incoming::Reading { task, news } => self.hear_of_reading(task, news),
+            Incoming::Picture(picture) => {
+                self.copied = ui::REPORT_COPIED;
+                if let Some(ctx) = self.inbox.ctx() {
+                    platform::copy_text(self.report(picture.as_deref()), &ctx, &self.inbox);
+                }
+            }
+            Incoming::Copied => self.session.say(Level::Info, self.copied),
+            Incoming::Failed { reason } => self.session.say(Level::Error, reason),
+            Incoming::Sample { sample, result } => {
+                self.samples.retain(|id| *id != sample.id);
+                let loaded = result.and_then(|packed| self.session.load_sample(sample, &packed).map_err(|error| error.to_string()));
+                if let Err(reason) = loaded {
+                    self.session
+                        .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
+                }
+            }
+            Incoming::Lesson { source, result } => {
+                let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
+                self.session.finish_lesson(&source, text);
+            }
+            Incoming::Language(files) => {
+                if let Some(reason) = self.speech.arrived(files) {
+                    self.session.say(Level::Warning, reason);
+                }
+            }
+            Incoming::Progress { address, done, total } => {
+                if let Some((name, progress)) = self.downloads.progressed(&address, done, total) {
+                    self.events.push(Event::Progress { name, progress });
+                }
+            }
+            Incoming::Fetched { address, result } => {
+                self.downloads.finished(&address, result);
+                while let Some(fetched) = self.downloads.next_ready() {
+                    match fetched {
+                        Ok((name, bytes)) => self.load(&name, bytes),
+                        Err(reason) => self.session.say(Level::Error, reason),
+                    }
+                }
+            }
+            Incoming::Stored(stored) => {
+                if self
+                    .keeper
+                    .arrived(&mut self.session, &mut self.vault, stored.map(|stored| *stored))
+                {
+                    self.address.is_right(&self.session);
+                }
+            }
+            Incoming::Navigated(query) => {
+                if self.address.is_news(&query) {
+                    self.obey(Command::OpenLink(query));
+                    self.address.is_right(&self.session);
+                }
+            }
+            Incoming::DeviceLost { generation, reason } => {
+                if generation == self.window.generation {
+                    log::warn!("the graphics device was lost: {reason}");
+                    self.events.push(Event::Lost { message: reason });
+                }
+            }
+        }
+    }
+
+    /// Has a large file read elsewhere. Returns the task's number.
+    pub(crate) fn begin_reading(&mut self, name: &str, file: LargeFile) -> u64 {
+        let size = file.len();
+        let key = self.vault.take(file);
+        self.session.begin_reading(name, Content::Outside(key), size)
+    }
+
+    fn hear_of_reading(&mut self, task: u64, news: ReadNews) {
+        let report = match news {
+            ReadNews::Progress(done) => return self.session.progress_reading(task, done),
+            ReadNews::Done(report) => report,
+        };
+        let key = self.session.reading_key(task).map(str::to_owned);
+        if let (Some(key), Ok(report)) = (&key, &report) {
+            match report.files.as_slice() {
+                [file] if file.result.is_ok() && file.unpacked.is_none() => self.vault.name(key, &file.sha256),
+                _ => self.vault.drop_file(key),
+            }
+        }
+        let Some(result) = self.session.finish_reading(task, report) else {
+            return;
+        };
+        let result = result.map(|loaded| self.loaded_clips(loaded));
+        if let Some(place) = self.read.get_mut(&task) {
+            *place = Some(result);
+        }
+    }
+
+    /// Loads a file. What is wrong with it stands in a notice.
+    fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>) {
+        let size = bytes.len() as u64;
+        if size > LARGE_BYTES {
+            self.session.begin_reading(name, Content::Here(bytes), size);
+            return;
+        }
+        if let Err(error) = self.session.load(name, bytes) {
+            log::info!("{name} was not loaded: {error}");
+        }
+    }
+
+    pub(super) fn send_requests(&mut self) {
+        for request in self.session.take_requests() {
+            match request {
+                Request::Sample(sample) => {
+                    if !self.samples.contains(&sample.id) {
+                        self.samples.push(sample.id);
+                        platform::load_sample(sample, &self.inbox);
+                    }
+                }
+                Request::Lesson(source) => platform::load_lesson(&source, &self.inbox),
+                Request::Fetch(address) => self.downloads.start(address, &self.inbox),
+                Request::Read(task) => {
+                    if let Some(bytes) = self.vault.bytes_of(&task.content) {
+                        self.reader.start(task, bytes);
+                    } else {
+                        let gone = Err("it is not here any more, drop it again".to_owned());
+                        self.session.finish_reading(task.id, gone);
+                    }
+                }
+                Request::StopReading { task, forget } => {
+                    self.reader.stop(task);
+                    if let Some(key) = forget {
+                        self.vault.drop_file(&key);
+                    }
+                }
+            }
+        }
+        let wanted = self.session.params().text(Key::Src);
+        self.downloads
+            .keep_only(|address| wanted.split_whitespace().any(|source| source == address));
+    }
+
+    /// Takes the addresses of a file out of the link: it is not fetched any longer.
+    pub(super) fn stop_fetching(&mut self, name: &str) {
+        let sources = self.session.params().text(Key::Src).split_whitespace();
+        let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
+        let rest = Value::Text(rest.join(" "));
+        self.obey(Command::Set(vec![(Key::Src, rest)]));
+    }
+}

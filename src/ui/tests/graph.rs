@@ -1,0 +1,127 @@
+//! The Graph lab with the pointer.
+
+use super::*;
+
+#[test]
+fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
+    for (name, size, theme, link) in [
+        ("graph-desk-dark", DESK, DARK, "lab=graph&play=off&t=12"),
+        ("graph-desk-light", DESK, LIGHT, "lab=graph&play=off&t=12"),
+        ("graph-compare", DESK, DARK, "lab=graph&play=off&t=12&compare=blend_window:30,15,10"),
+        ("graph-phone-dark", PHONE, DARK, "lab=graph&play=off&t=12"),
+        ("graph-tablet", vec2(900.0, 700.0), LIGHT, "lab=graph&play=off&t=12"),
+        ("graph-projector", vec2(1280.0, 720.0), HALL, "lab=graph&play=off&t=12"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label(text::ALL_DISTANCES);
+        harness.get_by_label(text::GRAPH_STRIP);
+        picture(name, &mut harness);
+        harness.get_by_label("First frame only").scroll_to_me();
+        harness.run();
+        picture(&format!("{name}-down"), &mut harness);
+    }
+}
+
+#[test]
+fn the_graph_lab_does_what_is_pressed() {
+    let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&play=off";
+    let mut harness = harness(DESK, DARK, page(link));
+    let text_of = |harness: &Harness<'_, Page>, key: Key| harness.state().session.params().text(key).to_owned();
+    let done = |harness: &mut Harness<'_, Page>| {
+        harness.run();
+        while harness.state_mut().session.work() {}
+        harness.run();
+    };
+    // An arc and a ring under the pointer show both windows; the bar below sends the walk there.
+    let strip = harness.get_by_label(text::GRAPH_STRIP).rect();
+    let bar = strip.left_bottom() + vec2(0.9 * strip.width(), -20.0);
+    harness.drag_at(bar);
+    harness.drop_at(bar);
+    done(&mut harness);
+    assert_eq!(text_of(&harness, Key::GoTo), "0:2");
+    press(text::FORGET_VISITS, &mut harness);
+    assert_eq!(text_of(&harness, Key::GoTo), "");
+    done(&mut harness);
+    let (mark, field) = {
+        let session = &harness.state().session;
+        let built = session.graph_built().unwrap();
+        let jump = built.graph().jumps()[0];
+        let size = built.cast().set().frames() as f32;
+        let number = |place| built.cast().set().number(place).unwrap() as f32 + 0.5;
+        let field = harness.get_by_label(text::ALL_DISTANCES).rect();
+        (vec2(number(jump.enter), number(jump.leave)) / size, field)
+    };
+    let ring = field.min + mark * field.size();
+    harness.hover_at(ring);
+    harness.run();
+    let ends = harness.state().state.hovered_jump.expect("pointed at");
+    picture("graph-pointed-dark", &mut harness);
+    harness.drag_at(ring);
+    harness.drop_at(ring);
+    done(&mut harness);
+    assert_eq!(text_of(&harness, Key::Jump), segue::session::write_jump(ends[0], ends[1]));
+    assert!(outcome(harness.state()).transition.is_some());
+    picture("graph-transition-dark", &mut harness);
+    press(text::BACK_TO_WALK, &mut harness);
+    done(&mut harness);
+    assert!(harness.state().session.graph_walk().is_some_and(|walk| !walk.is_jump));
+    // Clips come and go.
+    press("Clips of the graph: 3", &mut harness);
+    press("Leave out Walk, turn left", &mut harness);
+    done(&mut harness);
+    assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right");
+    press(text::ADD_CLIP, &mut harness);
+    press("Slow walk", &mut harness);
+    done(&mut harness);
+    assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right,slow_walk");
+    // A line on the ground.
+    press(text::DRAW_PATH, &mut harness);
+    let stage = harness.state().state.stage;
+    harness.drag_at(stage.center());
+    for step in 1..6 {
+        harness.hover_at(stage.center() + vec2(0.0, -12.0 * step as f32));
+        harness.run();
+    }
+    harness.drop_at(stage.center() + vec2(0.0, -60.0));
+    done(&mut harness);
+    assert!(
+        harness.state().session.graph_path().len() > 3,
+        "{}",
+        text_of(&harness, Key::WalkPath)
+    );
+    assert!(harness.state().session.graph_walk().is_some_and(|walk| walk.followed.is_some()));
+    press(text::REMOVE_PATH, &mut harness);
+    done(&mut harness);
+    // Files, and the table.
+    press("JSON", &mut harness);
+    press("DOT", &mut harness);
+    for experiment in text::GRAPH_EXPERIMENTS {
+        press(experiment.name, &mut harness);
+        done(&mut harness);
+        assert!(harness.state().session.panes().len() > 1, "{}", experiment.name);
+        for pane in harness.state().session.panes() {
+            assert_eq!(pane.problem, None, "{}", experiment.name);
+        }
+    }
+    press(text::COPY_MARKDOWN, &mut harness);
+    press(text::COPY_CSV, &mut harness);
+    let actions = &harness.state().out.actions;
+    let [
+        Action::SaveText { name, text, .. },
+        Action::SaveText { text: dot, .. },
+        Action::CopyText(markdown),
+        Action::CopyText(csv),
+    ] = actions.as_slice()
+    else {
+        panic!("{actions:?}")
+    };
+    assert!(*name == "motion graph.json" && text.contains("\"edges\"") && dot.starts_with("digraph"));
+    assert!(
+        markdown.starts_with("| | whole clip | first frame only |") && csv.lines().count() == 10,
+        "{markdown}{csv}"
+    );
+    // The last experiment again: one pane.
+    press("First frame only", &mut harness);
+    done(&mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+}
