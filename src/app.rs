@@ -24,7 +24,7 @@ use keeper::Keeper;
 use picture::Picture;
 use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
 use speech::{Speech, Spoken};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::time::Duration;
@@ -301,17 +301,15 @@ impl Segue {
         }
     }
 
-    /// What happens in every frame, and now and then while the page is hidden. No drawing.
-    fn logic(&mut self, ctx: &egui::Context) {
+    /// What happens in every frame, and now and then while the page is hidden. No drawing. `true` while there is work left over.
+    fn logic(&mut self, ctx: &egui::Context) -> bool {
         self.clock.frame_began = platform::now_ms();
         let more = self.pump();
         let ticked = self.tick();
-        if more {
-            ctx.request_repaint();
-        }
-        if ticked {
+        if more || ticked {
             self.animate(ctx);
         }
+        more && !self.keeper.is_waiting()
     }
 
     /// One frame of the window.
@@ -534,6 +532,8 @@ pub(crate) struct View {
     segue: Shared,
     /// Called with what there is to tell, after every frame.
     tell: Box<dyn Fn(Vec<Event>)>,
+    /// Whether work goes on between frames.
+    works: Rc<Cell<bool>>,
 }
 
 impl View {
@@ -543,7 +543,28 @@ impl View {
         Self {
             segue,
             tell: Box::new(tell),
+            works: Rc::default(),
         }
+    }
+
+    /// Has what a frame left over done before the next one, where the platform can: frames are far apart where pictures are drawn in software,
+    /// and the processor waits for them.
+    fn work_on(&self, ctx: &egui::Context) {
+        if self.works.replace(true) {
+            return;
+        }
+        let (segue, works, ctx) = (Rc::clone(&self.segue), Rc::clone(&self.works), ctx.clone());
+        platform::between_frames(move || {
+            // In use means that it is being worked on.
+            let Ok(mut segue) = segue.try_borrow_mut() else { return true };
+            let before = segue.session.revision();
+            let more = segue.pump();
+            if !more || segue.session.revision() != before {
+                ctx.request_repaint();
+            }
+            works.set(more);
+            more
+        });
     }
 }
 
@@ -554,7 +575,9 @@ impl eframe::App for View {
             ctx.request_repaint();
             return;
         };
-        segue.logic(ctx);
+        if segue.logic(ctx) {
+            self.work_on(ctx);
+        }
         segue.schedule(ctx);
         let events = segue.take_events();
         drop(segue);

@@ -1,7 +1,7 @@
 //! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
 
 use super::folders::watch_folders;
-use super::page::{listen, next_frame, sleep, wanted_backend, watch_hiding};
+use super::page::{listen, next_frame, sleep, turn, wanted_backend, watch_hiding};
 use super::reader::{LargeFile, workers_are_made_by};
 use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
@@ -379,7 +379,7 @@ impl SegueHandle {
                 self.changed();
                 return Ok(());
             }
-            sleep(0).await;
+            turn().await;
         }
     }
 }
