@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
 import { apart, count, isClay, timelineOf, until } from "./help.mjs";
-import { decodePng } from "./png.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
@@ -75,14 +74,9 @@ onBothBackends("play, pause, seek and time", async ({ open }) => {
 
 // Fails when the picture is empty, which a canvas is that is read at the wrong moment.
 onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
-  const { page, segue } = await open("lab=blend&play=off", SMALL);
+  const { segue, snapshot } = await open("lab=blend&play=off", SMALL);
   await segue("set", {});
-  const base64 = await page.evaluate(async () => {
-    const blob = await window.segue.snapshot();
-    if (!(blob instanceof Blob) || blob.type !== "image/png") throw new Error(`no PNG: ${blob.type}`);
-    return btoa(Array.from(new Uint8Array(await blob.arrayBuffer()), (byte) => String.fromCharCode(byte)).join(""));
-  });
-  const picture = decodePng(Buffer.from(base64, "base64"));
+  const picture = await snapshot();
   assert.equal(picture.height, 640 - 48 - timelineOf(640), "between bar and timeline");
   assert.ok(picture.width > 400 && picture.width < 960 - 200 - 288, `${picture.width} points wide: between the panels`);
   assert.ok(count(picture, [0, 40, picture.width, picture.height - 60], isClay) > 2000, "the character is in it");

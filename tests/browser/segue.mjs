@@ -71,6 +71,8 @@ export async function openSegue(backend, query = "", options = {}) {
     screenshot: () => page.screenshot({ type: "png" }),
     /** The same, decoded: `{ width, height, at(x, y), colours(), … }`. */
     pixels: async () => decodePng(await page.screenshot({ type: "png" })),
+    /** The stage alone, decoded, as the app itself reads it back: the browser's own pictures wait for a compositor that a lost device takes along. */
+    snapshot: async () => decodePng(await snapshot(page)),
   };
   if (wait) await withTimeout(opened.ready(), START_TIMEOUT_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
   return opened;
@@ -112,6 +114,15 @@ function load(page, name, bytes) {
     const segue = await window.segueReady;
     return segue.load(name, Uint8Array.from(atob(base64), (char) => char.charCodeAt(0)));
   }, [name, Buffer.from(bytes).toString("base64")]);
+}
+
+async function snapshot(page) {
+  const base64 = await page.evaluate(async () => {
+    const blob = await (await window.segueReady).snapshot();
+    if (!(blob instanceof Blob) || blob.type !== "image/png") throw new Error(`no PNG: ${blob.type}`);
+    return btoa(Array.from(new Uint8Array(await blob.arrayBuffer()), (byte) => String.fromCharCode(byte)).join(""));
+  });
+  return Buffer.from(base64, "base64");
 }
 
 // One browser per backend and test file, started when first asked for.
