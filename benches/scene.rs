@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use segue::scene::{Colors, Director, Look, Viewport, rgb};
 use segue::session::{Command, Session};
 use segue::skeleton::Roles;
-use segue::skin::SkinnedMesh;
+use segue::skin::{Sculptor, SkinnedMesh};
 use segue::synth::humanoid;
 use std::hint::black_box;
 
@@ -36,6 +36,8 @@ fn frame(c: &mut Criterion) {
             session.tick(1.0 / 60.0);
         }
         let mut director = Director::default();
+        director.stage(&session, &shown, 1.0, Look::DARK, &colors, 0.0);
+        while director.work() {}
         c.bench_function(&format!("scene of {count} characters"), |bench| {
             bench.iter(|| director.stage(black_box(&session), &shown, 1.0, Look::DARK, &colors, 1.0 / 60.0));
         });
@@ -47,6 +49,13 @@ fn mesh(c: &mut Criterion) {
     let roles = Roles::detect(&skeleton);
     c.bench_function("a body about a skeleton", |bench| {
         bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, 1.0));
+    });
+    let mut sculptor = Sculptor::new(&skeleton, &roles);
+    let sculpture = std::iter::from_fn(|| Some(sculptor.advance()))
+        .find_map(|done| done)
+        .expect("a body");
+    c.bench_function("another girth of that body", |bench| {
+        bench.iter(|| sculpture.with_girth(black_box(1.3)))
     });
 }
 

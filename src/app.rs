@@ -275,6 +275,7 @@ impl Segue {
             let began_ms = platform::now_ms();
             more = self.session.work();
             self.session.work_took((platform::now_ms() - began_ms) / 1e3);
+            more = more || self.picture.work();
         }
         self.clock.left_work = more.then_some(now_ms);
         // A piece of work may have found out that it needs something.
@@ -285,7 +286,7 @@ impl Segue {
     /// Whether something is under way that soon changes what is shown. A large file that is read elsewhere takes its time.
     pub(crate) fn is_busy(&self) -> bool {
         let soon = self.session.jobs().iter().any(|job| job.task.is_none()) || matches!(self.session.lesson(), Some(Lesson::Waiting));
-        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || soon
+        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || self.picture.is_at_work() || soon
     }
 
     /// Whether what is stored is still waited for.

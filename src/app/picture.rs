@@ -18,7 +18,6 @@ const LONGEST_STEP_SECS: f64 = 1.0;
 pub(crate) struct Picture {
     director: Director,
     drawn_at_ms: f64,
-    was_drawn: bool,
     /// Where the stage is on the page, points.
     place: Option<Rect>,
 }
@@ -101,11 +100,18 @@ impl Picture {
             .into_iter()
             .map(|(pane, place)| (pane, within(rect, place, size, scale)))
             .collect();
-        // The first picture is there at once, the skin with the second.
-        self.director.hurry(!self.was_drawn);
-        self.was_drawn = true;
         let stage = self.director.stage(session, &shown, scale, look, &colors_of(palette), dt_secs);
         painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
+    }
+
+    /// Works on what will be seen, a millisecond or two; `true` while there is more to do.
+    pub(crate) fn work(&mut self) -> bool {
+        self.director.work()
+    }
+
+    /// Whether something is in the making that will be seen.
+    pub(crate) fn is_at_work(&self) -> bool {
+        self.director.is_at_work()
     }
 
     /// Whether a camera is still on its way.

@@ -36,7 +36,6 @@ pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
     marks_joint: bool,
-    hurries: bool,
     pair: Option<[f64; 2]>,
     marks: PathMarks,
     jump: Option<[Place; 2]>,
@@ -94,7 +93,7 @@ impl Director {
         stage.panes.resize_with(shown.len(), Pane::default);
         let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
-        self.wardrobe.choose(session, self.hurries);
+        self.wardrobe.choose(session);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
@@ -133,9 +132,16 @@ impl Director {
         Arc::clone(&self.stage)
     }
 
-    /// Whether the stage is made in a hurry from now on: without what takes a while to be made, such as a skin.
-    pub fn hurry(&mut self, on: bool) {
-        self.hurries = on;
+    /// Works on what takes a while to be made, a millisecond or two: skins of skeletons that were seen. Until they are there bodies are limbs. `true`
+    /// while there is more to do.
+    pub fn work(&mut self) -> bool {
+        self.wardrobe.work()
+    }
+
+    /// Whether something is in the making that will be seen.
+    #[must_use]
+    pub fn is_at_work(&self) -> bool {
+        self.wardrobe.is_at_work()
     }
 
     /// Whether the chosen joint is marked from now on.
@@ -163,10 +169,10 @@ impl Director {
         self.jump = ends;
     }
 
-    /// Whether a camera is still on its way, or the stage was made in a hurry, so that another frame is needed.
+    /// Whether a camera is still on its way, so that another frame is needed.
     #[must_use]
     pub fn is_moving(&self) -> bool {
-        self.hurries || self.rigs.iter().any(|rig| !rig.is_still())
+        self.rigs.iter().any(|rig| !rig.is_still())
     }
 
     /// The camera of a pane, as it was drawn last.

@@ -1,10 +1,13 @@
-//! The bodies of skeletons: made when first seen, kept as long as the skeleton is.
+//! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a while: until it is there, limbs are worn.
 
 use super::Body;
 use crate::session::{Key, Motion, Session};
 use crate::skeleton::{Roles, Skeleton};
-use crate::skin::{Character, Drive, SkinnedMesh};
+use crate::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
 use std::sync::{Arc, Weak};
+
+/// So many skeletons' skins are kept, whether they are worn or not.
+const MOST_KEPT: usize = 16;
 
 /// What bodies look like for now, and those that were made so.
 #[derive(Debug, Default)]
@@ -12,6 +15,24 @@ pub(super) struct Wardrobe {
     cut: Cut,
     character: Option<Character>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
+    /// One for all skeletons that are equal, so that they are drawn together; the oldest first.
+    tailored: Vec<Tailored>,
+}
+
+/// The skin of a skeleton.
+#[derive(Debug)]
+struct Tailored {
+    skeleton: Arc<Skeleton>,
+    roles: Roles,
+    state: State,
+    /// As it is worn for now.
+    mesh: Option<Arc<SkinnedMesh>>,
+}
+
+#[derive(Debug)]
+enum State {
+    Begun(Box<Sculptor>),
+    Done(Sculpture),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,11 +43,10 @@ struct Cut {
 
 impl Wardrobe {
     /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
-    /// In a hurry that is what is made at once: limbs.
-    pub(super) fn choose(&mut self, session: &Session, hurry: bool) {
+    pub(super) fn choose(&mut self, session: &Session) {
         let params = session.params();
         let cut = Cut {
-            skin: params.text(Key::Look) != "limbs" && !hurry,
+            skin: params.text(Key::Look) != "limbs",
             girth: params.number(Key::FigureBuild) as f32,
         };
         let character = session.character().filter(|_| cut.skin);
@@ -36,6 +56,9 @@ impl Wardrobe {
         };
         if cut != self.cut || !same {
             self.bodies.clear();
+            for tailored in &mut self.tailored {
+                tailored.mesh = None;
+            }
         }
         (self.cut, self.character) = (cut, character);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
@@ -63,25 +86,95 @@ impl Wardrobe {
     }
 
     /// A body about the bones.
-    fn made(&self, motion: &Motion) -> Body {
+    fn made(&mut self, motion: &Motion) -> Body {
         let Cut { skin, girth } = self.cut;
         let skeleton = motion.clip.skeleton();
         let body = Body::new(skeleton, Some(&motion.roles)).with_girth(girth);
-        if !skin {
-            return body;
+        match skin.then(|| self.mesh(skeleton, &motion.roles)).flatten() {
+            Some(mesh) => body.with_skin(mesh),
+            None => body,
         }
-        body.with_skin(self.mesh(skeleton, &motion.roles, girth))
     }
 
-    /// A mesh for a skeleton: the same for all skeletons that are equal, so that they are drawn together.
-    fn mesh(&self, skeleton: &Arc<Skeleton>, roles: &Roles, girth: f32) -> Arc<SkinnedMesh> {
-        let alike = self
-            .bodies
-            .iter()
-            .find(|(other, others_roles, _)| others_roles == roles && other.upgrade().is_some_and(|other| *other == **skeleton));
-        match alike.and_then(|(.., body)| body.skin()) {
-            Some(mesh) => Arc::clone(mesh),
-            None => Arc::new(SkinnedMesh::around(skeleton, roles, girth)),
+    /// The skin of a skeleton, where it is there already; else it is begun.
+    fn mesh(&mut self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<Arc<SkinnedMesh>> {
+        let girth = self.cut.girth;
+        let fits = |known: &&mut Tailored| known.roles == *roles && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton);
+        if let Some(known) = self.tailored.iter_mut().find(fits) {
+            let State::Done(sculpture) = &known.state else { return None };
+            let mesh = known.mesh.get_or_insert_with(|| Arc::new(sculpture.with_girth(girth)));
+            return Some(Arc::clone(mesh));
         }
+        if self.tailored.len() >= MOST_KEPT {
+            self.tailored.remove(0);
+        }
+        self.tailored.push(Tailored {
+            skeleton: Arc::clone(skeleton),
+            roles: roles.clone(),
+            state: State::Begun(Box::new(Sculptor::new(skeleton, roles))),
+            mesh: None,
+        });
+        None
+    }
+
+    /// Whether a skin is in the making.
+    pub(super) fn is_at_work(&self) -> bool {
+        self.tailored.iter().any(|tailored| matches!(tailored.state, State::Begun(_)))
+    }
+
+    /// Makes a little more of a skin that is in the making. `true` while one is.
+    pub(super) fn work(&mut self) -> bool {
+        let begun = self.tailored.iter_mut().find_map(|tailored| match &mut tailored.state {
+            State::Begun(sculptor) => Some((sculptor.advance(), &mut tailored.state)),
+            State::Done(_) => None,
+        });
+        let Some((sculpture, state)) = begun else { return false };
+        if let Some(sculpture) = sculpture {
+            *state = State::Done(sculpture);
+            // Whoever wears limbs for the time being is dressed anew.
+            self.bodies.clear();
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Colors, Director, Look, Viewport, rgb};
+    use crate::session::{Command, Key, Session, Value};
+
+    /// Half the width of the waist of the skin that is worn; none where limbs are.
+    fn width(director: &mut Director, session: &Session) -> Option<f32> {
+        let color = rgb(0);
+        let colors = Colors {
+            a: color,
+            b: color,
+            result: color,
+            bad: color,
+            warning: color,
+            others: [color; 4],
+            ghost_alpha: 0.0,
+        };
+        let stage = director.stage(session, &[(0, Viewport::default())], 1.0, Look::DARK, &colors, 0.0);
+        let skin = stage.panes[0].figures.first()?.skin.as_ref()?;
+        let waist = skin.mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
+        Some(waist.map(|p| p.x).fold(0.0, f32::max))
+    }
+
+    #[test]
+    fn limbs_are_worn_until_the_skin_is_made_and_any_girth_at_once() {
+        let mut session = Session::new();
+        while session.work() {}
+        let mut director = Director::default();
+        assert_eq!(width(&mut director, &session), None);
+        assert!(director.is_at_work());
+        let pieces = std::iter::from_fn(|| director.work().then_some(())).count();
+        assert!(pieces > 50, "{pieces} pieces");
+        let average = width(&mut director, &session).expect("a skin");
+        let stout = Command::Set(vec![(Key::FigureBuild, Value::Number(1.5))]);
+        session.apply(stout).expect("a stout one");
+        let stout = width(&mut director, &session).expect("still a skin");
+        assert!(stout > 1.35 * average && stout < 1.6 * average, "{average} to {stout} m");
+        assert!(!director.is_at_work());
     }
 }

@@ -11,9 +11,10 @@ const SIDES: u32 = 8;
 /// Rings of corners over each end, the pole apart.
 const RINGS: u32 = 2;
 
-/// A rounded cone for each shape, in the bind pose; each end follows the joint of its anchor.
-pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> SkinnedMesh {
+/// A rounded cone for each shape, in the bind pose; each end follows the joint of its anchor. With it how far each vertex is from its shape's axis.
+pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<Vec3>) {
     let mut mesh = SkinnedMesh::default();
+    let mut reach = Vec::new();
     for shape in shapes {
         let joints = [shape.a.joint, shape.b.joint].map(u16::try_from);
         let (Ok(joint_a), Ok(joint_b), Some(placed)) = (joints[0], joints[1], shape.placed(bind)) else {
@@ -25,6 +26,7 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> SkinnedMesh {
         let first = mesh.positions.len() as u32;
         let mut corner = |center: Vec3, direction: Vec3, radius: f32, joint: u16| {
             let squash = |v: Vec3, by: f32| v + flat * v.dot(flat) * (by - 1.0);
+            reach.push(squash(direction, placed.flatness) * radius);
             mesh.positions.push(center + squash(direction, placed.flatness) * radius);
             mesh.normals
                 .push(squash(direction, placed.flatness.max(0.05).recip()).normalize_or(direction));
@@ -60,5 +62,5 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> SkinnedMesh {
             mesh.triangles.push([at(2 * RINGS - 1, side), at(2 * RINGS - 1, next), last]);
         }
     }
-    mesh
+    (mesh, reach)
 }

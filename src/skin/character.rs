@@ -30,13 +30,13 @@ pub struct Character {
 ///
 /// ```
 /// use segue::skeleton::{Roles, WorldPose};
-/// use segue::skin::{Build, Character, Drive, SkinnedMesh, linear_blend};
+/// use segue::skin::{Character, Drive, SkinnedMesh, linear_blend};
 /// use segue::synth::{Action, Params, humanoid, synthesize};
 /// use std::sync::Arc;
 ///
 /// let skeleton = humanoid(1.5)?;
 /// let roles = Roles::detect(&skeleton);
-/// let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, Build::default()));
+/// let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
 /// let child = Character { skeleton, roles, mesh };
 ///
 /// let walk = synthesize(&Params::new(Action::Walk))?.clip;

@@ -8,6 +8,7 @@ use super::field::{Field, Measured};
 use glam::{IVec3, Vec3};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
+use std::sync::Arc;
 
 /// Levels of the tree, at most: coordinates in the finest cells fit into 16 bits.
 const MOST_LEVELS: u32 = 12;
@@ -22,38 +23,82 @@ pub(super) struct Contour {
     pub(super) owners: Vec<(usize, f32)>,
 }
 
-/// Meshes a field. `sizes` holds for each shape how large a cell may be where its surface is, metres, above 0.
-pub(super) fn contour(field: &Field, sizes: &[f32]) -> Contour {
-    let Some([low, high]) = field.bounds() else {
-        return Contour::default();
-    };
-    let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
-    let extent = (high - low).max_element() + 4.0 * finest;
-    if !(extent.is_finite() && finest > 0.0) {
-        return Contour::default();
+/// Meshes a field, a few cells at a time.
+#[derive(Clone, Debug)]
+pub(super) struct Contouring {
+    tree: Octree,
+    /// Cells of the tree that are still to be looked at: corner, level, and the shapes that matter to the cell they are in.
+    growing: Vec<(IVec3, u32, Arc<[u16]>)>,
+    /// Leaves that the surface may pass through, and how many of them were looked at; none while the tree grows.
+    open: Option<Vec<usize>>,
+    seen: usize,
+    rings: Vec<[usize; 4]>,
+    /// Leaves that have their vertex, where they have one.
+    placed: usize,
+    contour: Contour,
+}
+
+impl Contouring {
+    /// `sizes` holds for each shape how large a cell may be where its surface is, metres, above 0.
+    pub(super) fn new(field: Field, sizes: Vec<f32>) -> Self {
+        let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
+        let [low, high] = field.bounds().unwrap_or_default();
+        let extent = (high - low).max_element() + 4.0 * finest;
+        let all: Arc<[u16]> = (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
+        let can_be_meshed = !all.is_empty() && extent.is_finite() && finest > 0.0;
+        let levels = (extent / finest).log2().ceil().clamp(1.0, MOST_LEVELS as f32) as u32;
+        let cell = finest.max(extent / (1u32 << levels) as f32);
+        Self {
+            tree: Octree {
+                field,
+                origin: (low + high) * 0.5 - Vec3::splat(0.5 * cell * (1u32 << levels) as f32),
+                cell,
+                coarsest: sizes.iter().copied().fold(0.0, f32::max),
+                sizes,
+                levels,
+                cells: HashMap::default(),
+                leaves: Vec::new(),
+                near: Vec::new(),
+                corners: HashMap::default(),
+                scratch: Vec::new(),
+            },
+            growing: can_be_meshed.then_some((IVec3::ZERO, levels, all)).into_iter().collect(),
+            open: None,
+            seen: 0,
+            rings: Vec::new(),
+            placed: 0,
+            contour: Contour::default(),
+        }
     }
-    let levels = (extent / finest).log2().ceil().clamp(1.0, MOST_LEVELS as f32) as u32;
-    let cell = finest.max(extent / (1u32 << levels) as f32);
-    let mut tree = Octree {
-        field,
-        sizes,
-        origin: (low + high) * 0.5 - Vec3::splat(0.5 * cell * (1u32 << levels) as f32),
-        cell,
-        coarsest: sizes.iter().copied().fold(0.0, f32::max),
-        levels,
-        cells: HashMap::default(),
-        leaves: Vec::new(),
-        near: Vec::new(),
-        corners: HashMap::default(),
-        scratch: Vec::new(),
-    };
-    let all: Vec<u16> = (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
-    tree.grow(IVec3::ZERO, levels, &all);
-    tree.faces()
+
+    /// Looks at so many more cells. The mesh, once all of it is there.
+    pub(super) fn advance(&mut self, cells: usize) -> Option<Contour> {
+        for _ in 0..cells {
+            if let Some((at, level, near)) = self.growing.pop() {
+                self.tree.grow(at, level, &near, &mut self.growing);
+                continue;
+            }
+            let leaves = &self.tree.leaves;
+            let open = self
+                .open
+                .get_or_insert_with(|| (0..leaves.len()).filter(|&leaf| leaves[leaf].is_open).collect());
+            if let Some(&leaf) = open.get(self.seen) {
+                self.seen += 1;
+                self.tree.cross_edges(leaf, open, &mut self.rings);
+            } else if self.placed < self.tree.leaves.len() {
+                self.tree.place_vertex(self.placed, &mut self.contour);
+                self.placed += 1;
+            } else {
+                self.tree.close(&self.rings, &mut self.contour);
+                return Some(std::mem::take(&mut self.contour));
+            }
+        }
+        None
+    }
 }
 
 /// Hashes of small keys: one multiplication (Fibonacci hashing).
-#[derive(Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct KeyHasher(u64);
 
 impl Hasher for KeyHasher {
@@ -81,9 +126,10 @@ fn key(at: IVec3, level: u32) -> u64 {
     x | y << 16 | z << 32 | u64::from(level) << 48
 }
 
-struct Octree<'a> {
-    field: &'a Field,
-    sizes: &'a [f32],
+#[derive(Clone, Debug)]
+struct Octree {
+    field: Field,
+    sizes: Vec<f32>,
     origin: Vec3,
     /// Edge of the finest cells, metres.
     cell: f32,
@@ -100,6 +146,7 @@ struct Octree<'a> {
     scratch: Vec<(usize, Measured)>,
 }
 
+#[derive(Clone, Debug)]
 struct Leaf {
     at: IVec3,
     level: u32,
@@ -112,28 +159,30 @@ struct Leaf {
     vertex: u32,
 }
 
-impl Octree<'_> {
+impl Octree {
     fn place(&self, at: IVec3) -> Vec3 {
         self.origin + at.as_vec3() * self.cell
     }
 
-    fn grow(&mut self, at: IVec3, level: u32, near: &[u16]) {
+    /// Divides a cell, or makes it a leaf. The parts of a divided one are put on `growing`.
+    fn grow(&mut self, at: IVec3, level: u32, near: &[u16], growing: &mut Vec<(IVec3, u32, Arc<[u16]>)>) {
         let size = self.cell * (1u32 << level) as f32;
         let center = self.place(at) + Vec3::splat(0.5 * size);
         let reach = 0.5 * size * 3f32.sqrt();
         let mut narrowed = Vec::with_capacity(near.len());
         let around = self
             .field
-            .narrowed(center, reach, near, self.sizes, &mut narrowed, &mut self.scratch);
+            .narrowed(center, reach, near, &self.sizes, &mut narrowed, &mut self.scratch);
         let is_near = around.least <= 1.1 * reach && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
         // Where no single surface is near there may still be the blend of two.
         let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
         if is_near && level > 0 && size > 1.01 * wanted {
             let half = 1 << (level - 1);
-            for child in 0..8 {
+            let narrowed: Arc<[u16]> = narrowed.into();
+            growing.extend((0..8).map(|child| {
                 let offset = IVec3::new(child & 1, child >> 1 & 1, child >> 2) * half;
-                self.grow(at + offset, level - 1, &narrowed);
-            }
+                (at + offset, level - 1, Arc::clone(&narrowed))
+            }));
             return;
         }
         self.cells.insert(key(at, level), self.leaves.len() as u32);
@@ -177,58 +226,52 @@ impl Octree<'_> {
             .map(|&leaf| leaf as usize)
     }
 
-    fn faces(mut self) -> Contour {
-        let mut rings: Vec<[usize; 4]> = Vec::new();
-        let mut open: Vec<usize> = (0..self.leaves.len()).filter(|&leaf| self.leaves[leaf].is_open).collect();
-        let mut next = 0;
-        while let Some(&leaf) = open.get(next) {
-            next += 1;
-            let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
-            let values: [f32; 8] = std::array::from_fn(|c| {
-                let offset = IVec3::new(c as i32 & 1, c as i32 >> 1 & 1, c as i32 >> 2) << level as i32;
-                self.corner(at + offset, leaf)
-            });
-            if values.iter().all(|v| *v < 0.0) || values.iter().all(|v| *v >= 0.0) {
-                continue;
-            }
-            for axis in 0..3 {
-                for quadrant in 0..4 {
-                    // The edge lies at this side of the cell in each of the other two directions.
-                    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-                    let (side_u, side_v) = (quadrant & 1, quadrant >> 1);
-                    let low = side_u << u | side_v << v;
-                    let (from, to) = (values[low], values[low | 1 << axis]);
-                    if (from < 0.0) == (to < 0.0) {
-                        continue;
-                    }
-                    let side = [side_u as i32, side_v as i32];
-                    let Some(ring) = self.ring(leaf, axis, side, 0) else {
-                        continue;
-                    };
-                    // The surface passes here, whatever the bounds said: all that have the edge are looked at.
-                    for (place, other) in ring.into_iter().enumerate() {
-                        let smaller = if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
-                        let along = smaller.filter_map(|step| self.ring(leaf, axis, side, step).map(|ring| ring[place]));
-                        let all: Vec<usize> = std::iter::once(other).chain(along).collect();
-                        for other in all {
-                            if !std::mem::replace(&mut self.leaves[other].is_open, true) {
-                                open.push(other);
-                            }
+    /// Finds where the surface crosses the edges of a leaf: `rings` are given the leaves around each such edge, `open` all that have a part of it.
+    fn cross_edges(&mut self, leaf: usize, open: &mut Vec<usize>, rings: &mut Vec<[usize; 4]>) {
+        let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
+        let values: [f32; 8] = std::array::from_fn(|c| {
+            let offset = IVec3::new(c as i32 & 1, c as i32 >> 1 & 1, c as i32 >> 2) << level as i32;
+            self.corner(at + offset, leaf)
+        });
+        if values.iter().all(|v| *v < 0.0) || values.iter().all(|v| *v >= 0.0) {
+            return;
+        }
+        for axis in 0..3 {
+            for quadrant in 0..4 {
+                // The edge lies at this side of the cell in each of the other two directions.
+                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                let (side_u, side_v) = (quadrant & 1, quadrant >> 1);
+                let low = side_u << u | side_v << v;
+                let (from, to) = (values[low], values[low | 1 << axis]);
+                if (from < 0.0) == (to < 0.0) {
+                    continue;
+                }
+                let side = [side_u as i32, side_v as i32];
+                let Some(ring) = self.ring(leaf, axis, side, 0) else {
+                    continue;
+                };
+                // The surface passes here, whatever the bounds said: all that have the edge are looked at.
+                for (place, other) in ring.into_iter().enumerate() {
+                    let smaller = if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
+                    let along = smaller.filter_map(|step| self.ring(leaf, axis, side, step).map(|ring| ring[place]));
+                    let all: Vec<usize> = std::iter::once(other).chain(along).collect();
+                    for other in all {
+                        if !std::mem::replace(&mut self.leaves[other].is_open, true) {
+                            open.push(other);
                         }
                     }
-                    // An edge is taken where it is smallest, and of those that have it so, by the first.
-                    let is_first = ring.iter().all(|&other| {
-                        let (theirs, ours) = (self.leaves[other].level, level);
-                        theirs > ours || (theirs == ours && other >= leaf)
-                    });
-                    if is_first {
-                        self.cross(leaf, low, axis, [from, to], &ring);
-                        rings.push(if from < 0.0 { ring } else { [ring[3], ring[2], ring[1], ring[0]] });
-                    }
+                }
+                // An edge is taken where it is smallest, and of those that have it so, by the first.
+                let is_first = ring.iter().all(|&other| {
+                    let (theirs, ours) = (self.leaves[other].level, level);
+                    theirs > ours || (theirs == ours && other >= leaf)
+                });
+                if is_first {
+                    self.cross(leaf, low, axis, [from, to], &ring);
+                    rings.push(if from < 0.0 { ring } else { [ring[3], ring[2], ring[1], ring[0]] });
                 }
             }
         }
-        self.finish(&rings)
     }
 
     /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end. Where smaller ones lie along it, those `step` of the
@@ -263,31 +306,33 @@ impl Octree<'_> {
         }
     }
 
-    fn finish(mut self, rings: &[[usize; 4]]) -> Contour {
-        let mut contour = Contour::default();
-        for leaf in 0..self.leaves.len() {
-            let Leaf {
-                crossings, count, level, ..
-            } = self.leaves[leaf];
-            if count == 0.0 {
-                continue;
-            }
-            let mean = crossings / count;
-            let farthest = 0.5 * self.cell * (1u32 << level) as f32;
-            let mut point = mean;
-            for _ in 0..2 {
-                let sample = self.sample(point, leaf);
-                point -= sample.normal * sample.value.clamp(-farthest, farthest);
-            }
-            if point.distance(mean) > farthest {
-                point = mean;
-            }
-            self.leaves[leaf].vertex = contour.positions.len() as u32;
-            contour.positions.push(point);
-            contour
-                .owners
-                .push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
+    /// Gives a leaf its vertex, where the surface passes through it.
+    fn place_vertex(&mut self, leaf: usize, contour: &mut Contour) {
+        let Leaf {
+            crossings, count, level, ..
+        } = self.leaves[leaf];
+        if count == 0.0 {
+            return;
         }
+        let mean = crossings / count;
+        let farthest = 0.5 * self.cell * (1u32 << level) as f32;
+        let mut point = mean;
+        for _ in 0..2 {
+            let sample = self.sample(point, leaf);
+            point -= sample.normal * sample.value.clamp(-farthest, farthest);
+        }
+        if point.distance(mean) > farthest {
+            point = mean;
+        }
+        self.leaves[leaf].vertex = contour.positions.len() as u32;
+        contour.positions.push(point);
+        contour
+            .owners
+            .push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
+    }
+
+    /// Makes faces of the rings of leaves.
+    fn close(&self, rings: &[[usize; 4]], contour: &mut Contour) {
         for ring in rings {
             let [a, b, c, d] = ring.map(|leaf| self.leaves[leaf].vertex);
             let between = |x: u32, y: u32| contour.positions[x as usize].distance_squared(contour.positions[y as usize]);
@@ -300,6 +345,5 @@ impl Octree<'_> {
             let is_one = |[x, y, z]: &[u32; 3]| x != y && y != z && z != x;
             contour.triangles.extend(pair.into_iter().filter(is_one));
         }
-        contour
     }
 }

@@ -100,6 +100,11 @@ impl Cone {
         [(self.a - reach_a).min(b - reach_b), (self.a + reach_a).max(b + reach_b)]
     }
 
+    /// The point of the axis at a share of its way.
+    pub(super) fn at(&self, share: f32) -> Vec3 {
+        self.a + self.along * (self.length * share)
+    }
+
     pub(super) fn measure(&self, point: Vec3) -> Measured {
         let offset = point - self.a;
         // In a space where the shape is round.

@@ -6,8 +6,8 @@
 //! motions themselves ([`dual_quaternion`]), which keeps it. Both are written here plainly, one vertex after the other; the renderer does the same on
 //! the GPU.
 //!
-//! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known. A mesh that came with a file is a
-//! [`SkinnedMesh`], too.
+//! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known; a [`Sculptor`] makes it piece by piece, and
+//! the [`Sculpture`] that comes of it takes any girth in a moment. A mesh that came with a file is a [`SkinnedMesh`], too.
 //!
 //! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to
 //!
@@ -35,7 +35,7 @@
 //! assert!(apart > 0.0 && apart < 0.03, "{apart}");
 //! ```
 //!
-//! A body takes about 0.1 s to be made, and a millisecond to be posed here, in one thread; on the GPU that is free. Hands have no separate fingers where the
+//! A body takes about 0.1 s to be made, in pieces of a millisecond, and a millisecond to be posed here, in one thread; on the GPU that is free. Hands have no separate fingers where the
 //! skeleton has none, and nothing collides.
 //!
 //! Sources: Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions", 2007; Ju, Losasso, Schaefer, Warren, "Dual Contouring of Hermite Data", 2002.
@@ -52,6 +52,7 @@ mod gallery;
 pub(crate) mod shapes;
 mod weights;
 
+pub use around::{Sculptor, Sculpture};
 pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
 pub(crate) use weights::normals;
@@ -80,13 +81,15 @@ pub struct SkinnedMesh {
 }
 
 impl SkinnedMesh {
-    /// Makes a body for a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. The joints of
-    /// the mesh are those of the skeleton (at most the first 65,536 of them). `girth` is how stout it is beside an average adult, 0.4 to 2.5 (1 is
-    /// average, and taken for what is no number). The same input gives the same mesh.
+    /// Makes a body for a skeleton at once: see [`Sculptor::new`] and, for the girth, [`Sculpture::with_girth`]. The same input gives the same mesh.
     #[must_use]
     pub fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> Self {
-        let girth = if girth.is_nan() { 1.0 } else { girth.clamp(0.4, 2.5) };
-        around::around(skeleton, roles, girth)
+        let mut sculptor = Sculptor::new(skeleton, roles);
+        loop {
+            if let Some(sculpture) = sculptor.advance() {
+                return sculpture.with_girth(girth);
+            }
+        }
     }
 
     /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind pose that follows this joint alone. Joints that the

@@ -8,6 +8,7 @@ const ROUNDS: usize = 10;
 const KEPT: usize = 6;
 
 /// The neighbours of each vertex along the edges of triangles.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
     starts: Vec<u32>,
     neighbours: Vec<u32>,
@@ -44,16 +45,31 @@ impl Neighbours {
 /// Weights of joints, the greatest first; unused places have weight 0.
 type Shares = [(u16, f32); KEPT];
 
-/// The joints and weights of each vertex, from the joint that it begins with.
-pub(super) fn shared(first: &[u16], neighbours: &Neighbours) -> (Vec<[u16; 4]>, Vec<[f32; 4]>) {
-    let mut now: Vec<Shares> = first
-        .iter()
-        .map(|&joint| [(joint, 1.0), (joint, 0.0), (joint, 0.0), (joint, 0.0), (joint, 0.0), (joint, 0.0)])
-        .collect();
-    let mut next = now.clone();
-    let mut sum: Vec<(u16, f32)> = Vec::new();
-    for _ in 0..ROUNDS {
-        for (vertex, out) in next.iter_mut().enumerate() {
+/// The joints and weights of each vertex, from the joint that it begins with; round by round.
+#[derive(Clone, Debug)]
+pub(super) struct Sharing {
+    now: Vec<Shares>,
+    next: Vec<Shares>,
+    rounds: usize,
+}
+
+impl Sharing {
+    pub(super) fn new(first: impl Iterator<Item = u16>) -> Self {
+        let now: Vec<Shares> = first
+            .map(|joint| std::array::from_fn(|i| (joint, f32::from(u8::from(i == 0)))))
+            .collect();
+        Self {
+            next: now.clone(),
+            now,
+            rounds: 0,
+        }
+    }
+
+    /// One more round; `true` when none is left.
+    pub(super) fn advance(&mut self, neighbours: &Neighbours) -> bool {
+        let now = &self.now;
+        let mut sum: Vec<(u16, f32)> = Vec::new();
+        for (vertex, out) in self.next.iter_mut().enumerate() {
             let around = neighbours.of_vertex(vertex);
             let own = now[vertex];
             // Far from every joint there is nothing to share.
@@ -76,15 +92,19 @@ pub(super) fn shared(first: &[u16], neighbours: &Neighbours) -> (Vec<[u16; 4]>, 
             }
             *out = greatest(&mut sum);
         }
-        std::mem::swap(&mut now, &mut next);
+        std::mem::swap(&mut self.now, &mut self.next);
+        self.rounds += 1;
+        self.rounds >= ROUNDS
     }
-    now.iter()
-        .map(|shares| {
+
+    /// The four greatest of each vertex.
+    pub(super) fn shares(&self) -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
+        self.now.iter().map(|shares| {
             let joints = std::array::from_fn(|i| shares[i].0);
             let total: f32 = shares[..4].iter().map(|(_, weight)| weight).sum();
             (joints, std::array::from_fn(|i| shares[i].1 / total))
         })
-        .unzip()
+    }
 }
 
 /// The greatest weights, scaled to the sum 1.
@@ -98,19 +118,23 @@ fn greatest(sum: &mut [(u16, f32)]) -> Shares {
 
 /// Smooths a surface without shrinking it (Taubin, "A Signal Processing Approach to Fair Surface Design", 1995): a step towards the neighbours' mean and
 /// a longer one back.
-pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours, rounds: usize) {
-    let mut next = positions.clone();
-    for _ in 0..rounds {
-        for step in [0.5, -0.53] {
-            for (vertex, out) in next.iter_mut().enumerate() {
-                let around = neighbours.of_vertex(vertex);
-                let own = positions[vertex];
-                let mean = around.iter().map(|&other| positions[other as usize]).sum::<Vec3>() / around.len().max(1) as f32;
-                *out = if around.is_empty() { own } else { own + (mean - own) * step };
-            }
-            std::mem::swap(positions, &mut next);
-        }
+pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours) {
+    for step in [0.5, -0.53] {
+        *positions = drawn_together(positions, neighbours, step);
     }
+}
+
+/// Each value, by this share on the way to the mean of its neighbours'.
+pub(super) fn drawn_together(values: &[Vec3], neighbours: &Neighbours, share: f32) -> Vec<Vec3> {
+    let drawn = values.iter().enumerate().map(|(vertex, &own)| {
+        let around = neighbours.of_vertex(vertex);
+        if around.is_empty() {
+            return own;
+        }
+        let mean = around.iter().map(|&other| values[other as usize]).sum::<Vec3>() / around.len() as f32;
+        own + (mean - own) * share
+    });
+    drawn.collect()
 }
 
 /// Unit normals of vertices: the mean of their triangles', by area.

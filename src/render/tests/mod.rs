@@ -12,10 +12,12 @@ use eframe::wgpu;
 use glam::Vec3;
 use segue::clip::Clip;
 use segue::math::Planar;
-use segue::scene::{Body, Camera, Color, Colors, Layer, Limb, Look, Pane, Stage, Viewport, rgb, with_alpha};
+use segue::scene::{Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb, with_alpha};
+use segue::session::Session;
 use segue::skeleton::Roles;
 use segue::synth::{Action, Params, synthesize};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A ball of a colour.
@@ -29,6 +31,24 @@ fn ball(center: Vec3, radius: f32, color: Color) -> Limb {
         flatness: 1.0,
         color,
     }
+}
+
+/// The stage of a session, with every skin made that is worn on it.
+fn staged(
+    director: &mut Director,
+    session: &Session,
+    shown: &[(usize, Viewport)],
+    pixels_per_point: f32,
+    look: Look,
+    colors: &Colors,
+    dt_secs: f32,
+) -> Arc<Stage> {
+    let stage = director.stage(session, shown, pixels_per_point, look, colors, dt_secs);
+    if !director.is_at_work() {
+        return stage;
+    }
+    while director.work() {}
+    director.stage(session, shown, pixels_per_point, look, colors, 0.0)
 }
 
 /// The colours of the dark theme, or of the light one.

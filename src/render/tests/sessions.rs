@@ -1,6 +1,6 @@
 //! What a session puts on the stage, to be looked at.
 
-use super::{colors, gpu};
+use super::{colors, gpu, staged};
 use segue::path::{PathEdit, Pins};
 use segue::scene::{Colors, Director, Look, PathMarks, Viewport};
 use segue::session::{Command, Key, Session, Value};
@@ -25,7 +25,7 @@ fn the_chosen_joint_is_marked_over_the_body() {
         let mut director = Director::default();
         let mut accent = |marked: bool| {
             director.mark_joint(marked);
-            let stage = director.stage(&session, &shown, 1.0, look, &colors(theme), 0.0);
+            let stage = staged(&mut director, &session, &shown, 1.0, look, &colors(theme), 0.0);
             let image = gpu.draw(&format!("joint-{theme}-{marked}"), &stage, size);
             let green = |p: &&[u8]| i32::from(p[1]) - i32::from(p[0]) > 60;
             image.rgba.chunks_exact(4).filter(green).count()
@@ -63,7 +63,7 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
             while session.work() {}
             let panes = session.panes().len() as u32;
             let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
-            let stage = Director::default().stage(&session, &shown, 1.0, look, &colors, 0.0);
+            let stage = staged(&mut Director::default(), &session, &shown, 1.0, look, &colors, 0.0);
             let image = gpu.draw(&format!("{name}-{theme}"), &stage, size);
             let is_blue = |p: &&[u8]| i32::from(p[2]) - i32::from(p[0]) > 40;
             blue.push(image.rgba.chunks_exact(4).filter(is_blue).count());
@@ -96,7 +96,7 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
         let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
         let mut director = Director::default();
         director.show_pair(pair);
-        let stage = director.stage(&session, &shown, 1.0, look, &colors, 0.0);
+        let stage = staged(&mut director, &session, &shown, 1.0, look, &colors, 0.0);
         let ghosts = stage.panes[0].figures.iter().filter(|figure| figure.ghost).count();
         let bodies = stage.panes[0].figures.len() - ghosts;
         assert_eq!((ghosts, bodies), (2, usize::from(pair.is_none())), "{name}");
@@ -142,7 +142,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                 hovered: Some(2),
                 ..PathMarks::default()
             });
-            let stage = director.stage(&session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            let stage = staged(&mut director, &session, &[(0, viewport)], 1.0, look, &colors, 0.0);
             let bodies = if name == "path-fitted" { 1 } else { 3 };
             assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
             gpu.draw(&format!("{name}-{theme}"), &stage, size);
@@ -177,7 +177,7 @@ fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
                 width: size[0],
                 height: size[1],
             };
-            let stage = director.stage(&session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            let stage = staged(&mut director, &session, &[(0, viewport)], 1.0, look, &colors, 0.0);
             assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
             let ring = stage.panes[0].rings.iter().any(|ring| ring.color[..3] == colors.a[..3]);
             assert!(ring, "the simulation object");

@@ -1,6 +1,6 @@
 //! Bodies in skins.
 
-use super::{colors, gpu};
+use super::{colors, gpu, staged};
 use crate::render::{Quality, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
 use segue::scene::{Camera, Director, Figure, Lens, Look, Pane, Skin, Skinning, Stage, Viewport};
@@ -159,7 +159,7 @@ fn a_twisted_forearm_in_both_ways_of_skinning() {
     let panes = session.panes().len();
     assert_eq!(panes, 2);
     let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
-    let stage = Director::default().stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    let stage = staged(&mut Director::default(), &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
     assert_eq!(
         stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(),
         [Skinning::Dual, Skinning::Linear]
@@ -178,7 +178,15 @@ fn statures() {
         .zip(["figure_height=1", "figure_height=0.6", "figure_build=0.7", "figure_build=1.5"])
     {
         let session = session(&format!("lab=view&a=walk&t=1.2&{stature}"));
-        let stage = Director::default().stage(&session, &[(0, viewport)], 1.0, Look::LIGHT, &colors(1), 0.0);
+        let stage = staged(
+            &mut Director::default(),
+            &session,
+            &[(0, viewport)],
+            1.0,
+            Look::LIGHT,
+            &colors(1),
+            0.0,
+        );
         // The world about a figure of 60 % is shown smaller by as much: from so much farther off, and with wider cells.
         let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
         assert!((stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4 && (stage.grid_metres * height - 1.0).abs() < 1e-6);
@@ -211,7 +219,7 @@ fn a_hundred_characters() {
     gpu.renderer.set_quality(Quality::Full);
     for round in 0..=ROUNDS {
         let start = Instant::now();
-        let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
+        let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
         let made = Instant::now();
         frame.build(&stage, size, size, Quality::Full);
         let built = Instant::now();
@@ -239,7 +247,7 @@ fn a_hundred_characters() {
         each(build),
         each(encode)
     );
-    let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
     gpu.draw("crowd", &stage, size);
 }
 
@@ -252,14 +260,14 @@ fn time_in_software() {
         let mut session = session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
         let mut director = Director::default();
         let made = Instant::now();
-        director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+        staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
         eprintln!("{look}: made in {:.1} ms", made.elapsed().as_secs_f64() * 1e3);
         for quality in [Quality::Plain, Quality::Full] {
             gpu.renderer.set_quality(quality);
             let mut secs = Vec::new();
             for round in 0..5 {
                 session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
-                let stage = director.stage(&session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+                let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
                 let start = Instant::now();
                 let mut encoder = gpu
                     .device
