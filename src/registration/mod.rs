@@ -94,7 +94,7 @@ pub use align::{Alignment, align};
 pub use clouds::PointClouds;
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
-pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, optimal_path, path_in_corridor};
+pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, PathSearch, RegistrationPath, optimal_path, path_in_corridor};
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};

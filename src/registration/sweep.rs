@@ -167,7 +167,9 @@ impl Sums {
         }
     }
 
-    /// Brings the sums to `row` (counted from the first row that is swept).
+    /// Brings the sums to `row` (counted from the first row that is swept). A function of its own: a browser compiles well what is called often, from
+    /// one call to the next.
+    #[inline(never)]
     fn enter_row(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let (first, shift) = (self.rows.start + row, self.rows.len() - 1 - row);
         let columns = self.columns.len();
@@ -222,6 +224,8 @@ impl Sums {
         (self.dot[shift], self.cross[shift], self.height[shift]) = (dot, cross, height);
     }
 
+    /// The distances of `row` from its sums.
+    #[inline(never)]
     fn distances(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let from = first_column(terms, row);
         let n = self.columns.len() - from;

@@ -1,3 +1,4 @@
+use super::search::weigh;
 use super::*;
 use proptest::prelude::*;
 
@@ -241,7 +242,7 @@ fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
             end: PathEnd::Border { slack },
             ..PathOptions::default()
         };
-        let plain = search(&field, &options, |_| 0..280, None).unwrap();
+        let plain = PathSearch::without_lead(&field, &options).unwrap().finish(&field).unwrap();
         let quick = optimal_path(&field, &options).unwrap();
         assert!((plain.mean_m - quick.mean_m).abs() < 1e-9, "{} {}", plain.mean_m, quick.mean_m);
         assert_eq!(plain.cells, quick.cells);

@@ -195,7 +195,7 @@ fn long_clips_are_registered_in_slices() {
     };
     let for_window = slices(&mut session, Key::RegistrationWindow, 9.0);
     let for_path = slices(&mut session, Key::SlopeLimit, 3.0);
-    assert!(for_window > 3 && for_path == 1, "{for_window} {for_path}");
+    assert!(for_path > 3 && for_window > for_path + 3, "{for_window} {for_path}");
     // All at once gives the same.
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}

@@ -1,6 +1,6 @@
 use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
 use crate::registration::{
-    PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
+    PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
 };
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -122,6 +122,7 @@ struct Registrar {
     sweep: Option<PausedSweep>,
     /// The last ones that were asked for, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
+    search: Option<(Wanted, PathSearch)>,
     found: Vec<(Wanted, Result<Arc<Found>, String>)>,
     /// What panes wait for.
     wanted: Vec<Wanted>,
@@ -223,8 +224,20 @@ impl Registrar {
         if let Some(at) = self.maps.iter().position(|map| map.matrix().window() == wanted.window) {
             let map = self.maps.remove(at);
             self.maps.push(Arc::clone(&map));
-            let found = find(terms, &map, wanted).map_err(|error| in_frames(error, map.middle()));
-            self.keep(wanted, found);
+            let search = match self.search.take().filter(|(of, _)| of == wanted) {
+                Some((_, search)) => Ok(search),
+                None => PathSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
+            };
+            let found = search.and_then(|mut search| match search.advance(map.matrix(), rows)? {
+                Some(path) => curves(terms, &map, path, wanted.smoothing).map(Some),
+                None => {
+                    self.search = Some((wanted.clone(), search));
+                    Ok(None)
+                }
+            });
+            if let Some(found) = found.transpose() {
+                self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
+            }
             return;
         }
         let begun = self.sweep.take().filter(|sweep| sweep.window() == wanted.window);
@@ -283,17 +296,19 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
     })
 }
 
-/// Path and curves through the distances; pins are frames.
-fn find(terms: &PairTerms, map: &Arc<DistanceMap>, wanted: &Wanted) -> Result<Found, PathError> {
-    let matrix = map.matrix();
-    let mut options = RegistrationOptions {
-        path: wanted.path.clone(),
-        smoothing: wanted.smoothing,
-    };
-    for pin in &mut options.path.pins {
-        *pin = map.cell_of([pin.0 as f64, pin.1 as f64]).unwrap_or(*pin);
+/// What is asked of a path, with its pins as cells in place of frames.
+fn in_cells(path: &PathOptions, map: &DistanceMap) -> PathOptions {
+    let cell = |pin: &(usize, usize)| map.cell_of([pin.0 as f64, pin.1 as f64]).unwrap_or(*pin);
+    PathOptions {
+        pins: path.pins.iter().map(cell).collect(),
+        ..path.clone()
     }
-    let registration = Registration::new(terms, matrix, &options)?;
+}
+
+/// The curves along a path through the distances.
+fn curves(terms: &PairTerms, map: &Arc<DistanceMap>, path: RegistrationPath, smoothing: usize) -> Result<Found, PathError> {
+    let matrix = map.matrix();
+    let registration = Registration::along(terms, matrix, path, smoothing)?;
     let (row, column) = registration.path().cells.first().copied().unwrap_or_default();
     let steps = (matrix.rows() - row).min(matrix.columns() - column);
     let cells: Vec<(usize, usize)> = (0..steps).map(|k| (row + k, column + k)).collect();
@@ -303,7 +318,7 @@ fn find(terms: &PairTerms, map: &Arc<DistanceMap>, wanted: &Wanted) -> Result<Fo
         mean_m: sum / steps.max(1) as f64,
         cells,
     };
-    let lockstep = Registration::along(terms, matrix, diagonal, wanted.smoothing)?;
+    let lockstep = Registration::along(terms, matrix, diagonal, smoothing)?;
     Ok(Found {
         map: Arc::clone(map),
         registration: Arc::new(registration),

@@ -1,0 +1,301 @@
+use super::stretch::{Ground, Stretch};
+use super::{DistanceMatrix, MAX_SLOPE_LIMIT, PathEnd, PathError, PathOptions, RegistrationPath, checked_pins, no_path};
+use std::ops::Range;
+
+/// From so many rows and columns on, a path in a corridor is found before the best one.
+const WORTH_A_CORRIDOR: usize = 256;
+/// Cells to a side that are one in the matrix that the corridor is sought in, and its cells to either side of the path found there.
+const CORRIDOR: (usize, usize) = (8, 12);
+/// Rounds of Dinkelbach's iteration: a handful; the limit is for NaN.
+const MOST_ROUNDS: usize = 32;
+
+/// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call is given the matrix that it was begun with.
+#[derive(Clone, Debug)]
+pub struct PathSearch {
+    options: PathOptions,
+    /// How the corridor is sought: cells that are one, and how wide it is.
+    corridor: (usize, usize),
+    /// A path in the corridor is all that is wanted.
+    is_rough: bool,
+    stage: Stage,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    Pooling,
+    /// In the matrix with fewer cells.
+    Coarse(DistanceMatrix, Rounds),
+    Corridor(Rounds),
+    Whole(Rounds),
+}
+
+impl PathSearch {
+    /// Begins the search.
+    ///
+    /// # Errors
+    /// [`PathError`] says what excludes every path, as far as that can be told from the options.
+    pub fn new(matrix: &DistanceMatrix, options: &PathOptions) -> Result<Self, PathError> {
+        let is_free = options.start != PathEnd::Corner || options.end != PathEnd::Corner;
+        let rounds = Rounds::new(matrix, options, None)?;
+        // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a path that is nearly the best saves most of them.
+        let has_lead = is_free && matrix.rows().min(matrix.columns()) >= WORTH_A_CORRIDOR;
+        Ok(Self {
+            options: options.clone(),
+            corridor: CORRIDOR,
+            is_rough: false,
+            stage: if has_lead { Stage::Pooling } else { Stage::Whole(rounds) },
+        })
+    }
+
+    /// The search without a lead: it takes longer, and finds the same.
+    #[cfg(test)]
+    pub(super) fn without_lead(matrix: &DistanceMatrix, options: &PathOptions) -> Result<Self, PathError> {
+        let search = Self::new(matrix, options)?;
+        let stage = search.whole(matrix, None)?;
+        Ok(Self { stage, ..search })
+    }
+
+    /// Begins the search of [`path_in_corridor`](super::path_in_corridor).
+    pub(super) fn in_corridor(matrix: &DistanceMatrix, options: &PathOptions, factor: usize, radius: usize) -> Result<Self, PathError> {
+        Rounds::new(matrix, options, None)?;
+        Ok(Self {
+            options: options.clone(),
+            corridor: (factor.max(1), radius),
+            is_rough: true,
+            stage: Stage::Pooling,
+        })
+    }
+
+    /// Looks at up to `rows` more rows of the matrix. The path, once it is found.
+    ///
+    /// # Errors
+    /// [`PathError`] says what excludes every path.
+    pub fn advance(&mut self, matrix: &DistanceMatrix, rows: usize) -> Result<Option<RegistrationPath>, PathError> {
+        let next = match &mut self.stage {
+            Stage::Pooling => self.coarse(matrix),
+            Stage::Coarse(coarse, rounds) => match rounds.advance(coarse, rows.saturating_mul(self.corridor.0)) {
+                Ok(None) => return Ok(None),
+                Ok(Some(guide)) => self.beside(matrix, &guide).map(Stage::Corridor),
+                Err(error) => Err(error),
+            },
+            Stage::Corridor(rounds) => match rounds.advance(matrix, rows.saturating_mul(self.corridor.0)) {
+                Ok(None) => return Ok(None),
+                Ok(Some(path)) if self.is_rough => return Ok(Some(path)),
+                Ok(Some(path)) => self.whole(matrix, Some(&path)),
+                Err(error) => Err(error),
+            },
+            Stage::Whole(rounds) => return rounds.advance(matrix, rows),
+        };
+        self.stage = match next {
+            Err(error) if self.is_rough => return Err(error),
+            // Without a lead it only takes longer.
+            Err(_) => self.whole(matrix, None)?,
+            Ok(stage) => stage,
+        };
+        Ok(None)
+    }
+
+    /// Goes on to the end.
+    pub(super) fn finish(mut self, matrix: &DistanceMatrix) -> Result<RegistrationPath, PathError> {
+        loop {
+            if let Some(path) = self.advance(matrix, usize::MAX)? {
+                return Ok(path);
+            }
+        }
+    }
+
+    fn coarse(&self, matrix: &DistanceMatrix) -> Result<Stage, PathError> {
+        let factor = self.corridor.0;
+        let coarse = matrix.pooled(factor);
+        let mut pins: Vec<(usize, usize)> = self.options.pins.iter().map(|pin| (pin.0 / factor, pin.1 / factor)).collect();
+        pins.sort_unstable();
+        // Pins that fall into one row or column of the coarse matrix cannot all be passed there.
+        pins.dedup_by(|next, before| next.0 <= before.0 || next.1 <= before.1);
+        let (last_row, last_column) = (coarse.rows().saturating_sub(1), coarse.columns().saturating_sub(1));
+        let inner = |&(row, column): &(usize, usize)| row > 0 && column > 0 && row < last_row && column < last_column;
+        pins.retain(inner);
+        let options = PathOptions {
+            pins,
+            ..self.options.clone()
+        };
+        let rounds = Rounds::new(&coarse, &options, None)?;
+        Ok(Stage::Coarse(coarse, rounds))
+    }
+
+    /// The corridor beside a path of the coarse matrix.
+    fn beside(&self, matrix: &DistanceMatrix, guide: &RegistrationPath) -> Result<Rounds, PathError> {
+        let (factor, radius) = self.corridor;
+        let columns = matrix.columns();
+        let mut spans: Vec<Range<usize>> = vec![columns..0; matrix.rows()];
+        let mut open = |row: usize, column: usize| {
+            if let Some(span) = spans.get_mut(row) {
+                *span = span.start.min(column)..span.end.max((column + 1).min(columns));
+            }
+        };
+        let fine = guide.cells.iter().map(|&(row, column)| (row * factor, column * factor));
+        for (row, column) in fine.chain(self.options.pins.iter().copied()) {
+            for r in row.saturating_sub(radius)..row + factor + radius {
+                open(r, column.saturating_sub(radius));
+                open(r, column + factor + radius);
+            }
+        }
+        Rounds::new(matrix, &self.options, Some(spans))
+    }
+
+    /// The search through the whole matrix, from the mean of a path that there is.
+    fn whole(&self, matrix: &DistanceMatrix, lead: Option<&RegistrationPath>) -> Result<Stage, PathError> {
+        let mut rounds = Rounds::new(matrix, &self.options, None)?;
+        rounds.mean = lead.map(|path| {
+            let (cost, weight) = weigh(matrix, &path.cells, self.options.side_step_m);
+            cost / weight
+        });
+        Ok(Stage::Whole(rounds))
+    }
+}
+
+/// Dinkelbach's iteration: the best path at the mean of the best path so far, until it is no better.
+#[derive(Clone, Debug)]
+struct Rounds {
+    options: PathOptions,
+    spans: Option<Vec<Range<usize>>>,
+    pins: Vec<(usize, usize)>,
+    /// Where one stretch ends and the next begins: pins, and the last corner where the path ends there.
+    anchors: Vec<(usize, usize)>,
+    mean: Option<f64>,
+    rounds: usize,
+    pass: Pass,
+}
+
+/// One pass of dynamic programming, rectangle by rectangle from anchor to anchor.
+#[derive(Clone, Debug, Default)]
+struct Pass {
+    done: Vec<Stretch>,
+    /// Where the last stretch ended, and its states there.
+    carried: Option<((usize, usize), Vec<f64>)>,
+    /// The stretch under way, and the anchor that it leads to; none for a free end.
+    under_way: Option<(Stretch, Option<(usize, usize)>)>,
+    /// Anchors that were taken up.
+    taken: usize,
+}
+
+impl Rounds {
+    fn new(matrix: &DistanceMatrix, options: &PathOptions, spans: Option<Vec<Range<usize>>>) -> Result<Self, PathError> {
+        let (rows, columns) = (matrix.rows(), matrix.columns());
+        let slope_limit = options.slope_limit;
+        if rows == 0 || columns == 0 {
+            return Err(PathError::TooShort { window: matrix.window() });
+        }
+        if !(1..=MAX_SLOPE_LIMIT).contains(&slope_limit) {
+            return Err(PathError::SlopeLimit { slope_limit });
+        }
+        let pins = checked_pins(matrix, options)?;
+        let last = (options.end == PathEnd::Corner).then_some((rows - 1, columns - 1));
+        let mut anchors: Vec<(usize, usize)> = pins.iter().copied().chain(last).collect();
+        anchors.dedup();
+        Ok(Self {
+            options: options.clone(),
+            spans,
+            pins,
+            anchors,
+            mean: None,
+            rounds: 0,
+            pass: Pass::default(),
+        })
+    }
+
+    fn advance(&mut self, matrix: &DistanceMatrix, rows: usize) -> Result<Option<RegistrationPath>, PathError> {
+        let ground = Ground {
+            matrix,
+            options: &self.options,
+            spans: self.spans.as_deref(),
+            bias: self.mean.unwrap_or(0.0),
+        };
+        let Some(found) = self.pass.advance(&ground, &self.anchors, rows)? else {
+            return Ok(None);
+        };
+        self.pass = Pass::default();
+        self.rounds += 1;
+        let both_given = self.options.start == PathEnd::Corner && self.options.end == PathEnd::Corner;
+        let (cost, weight) = weigh(matrix, &found, self.options.side_step_m);
+        let mean = cost / weight;
+        if both_given || self.mean.is_some_and(|best| mean >= best - 1e-12 * best.abs()) {
+            let (mean_m, weight) = weigh(matrix, &found, 0.0);
+            return Ok(Some(RegistrationPath {
+                cells: found,
+                pins: self.pins.clone(),
+                mean_m: mean_m / weight,
+            }));
+        }
+        self.mean = Some(mean);
+        if self.rounds < MOST_ROUNDS {
+            Ok(None)
+        } else {
+            Err(PathError::NotFinite)
+        }
+    }
+}
+
+impl Pass {
+    /// Goes on by so many rows of one stretch. The cells of the best path, once all of it is there.
+    fn advance(&mut self, ground: &Ground<'_>, anchors: &[(usize, usize)], rows: usize) -> Result<Option<Vec<(usize, usize)>>, PathError> {
+        let (matrix, options) = (ground.matrix, ground.options);
+        let corner = (matrix.rows() - 1, matrix.columns() - 1);
+        let from = self.carried.as_ref().map(|(from, _)| *from);
+        let Some((mut stretch, to)) = self.under_way.take() else {
+            let to = anchors.get(self.taken).copied();
+            self.taken += 1;
+            if to.is_none() && options.end == PathEnd::Corner {
+                return Ok(Some(self.trace(corner, None)));
+            }
+            let stretch = Stretch::new(from.unwrap_or_default(), to.unwrap_or(corner), options.slope_limit);
+            self.under_way = Some((stretch, to));
+            return Ok(None);
+        };
+        let states = self.carried.as_ref().map(|(_, states)| states.as_slice());
+        if !stretch.advance(ground, states, rows) {
+            self.under_way = Some((stretch, to));
+            return Ok(None);
+        }
+        if let Some(anchor) = to {
+            let states = stretch.states();
+            if states.iter().all(|state| !state.is_finite()) {
+                return Err(no_path(matrix, options, from, to));
+            }
+            self.done.push(stretch);
+            self.carried = Some((anchor, states));
+            return Ok(None);
+        }
+        let slack = if let PathEnd::Border { slack } = options.end { slack } else { 0.0 };
+        let end = stretch.best_end(slack, (matrix.rows(), matrix.columns()));
+        let end = end.ok_or_else(|| no_path(matrix, options, from, None))?;
+        Ok(Some(self.trace(end, Some(stretch))))
+    }
+
+    /// Back from the end to the start.
+    fn trace(&mut self, end: (usize, usize), last: Option<Stretch>) -> Vec<(usize, usize)> {
+        self.done.extend(last);
+        let mut cells = Vec::new();
+        let mut cell = end;
+        let mut state = self.done.last().map_or(0, |stretch| stretch.any(end.0, end.1));
+        for (index, stretch) in self.done.iter().enumerate().rev() {
+            // A stretch's first cell is the last of the one before it.
+            (cell, state) = stretch.trace(cell, state, index > 0, &mut cells);
+        }
+        cells.reverse();
+        cells
+    }
+}
+
+/// The cost of a path and what it weighs.
+pub(super) fn weigh(matrix: &DistanceMatrix, cells: &[(usize, usize)], side_step_m: f64) -> (f64, f64) {
+    let (mut cost, mut weight) = (0.0, 0.0);
+    let mut before = None;
+    for &(row, column) in cells {
+        let here = f64::from(matrix.get(row, column).unwrap_or(f32::INFINITY));
+        let diagonal = before.is_none_or(|(r, c)| r != row && c != column);
+        cost += if diagonal { 2.0 * here } else { here + side_step_m };
+        weight += if diagonal { 2.0 } else { 1.0 };
+        before = Some((row, column));
+    }
+    (cost, weight)
+}
