@@ -245,8 +245,9 @@ impl Sums {
             let a = cross[c] - (x * tz[c] - z * tx[c]);
             let b = dot[c] - (x * tx[c] + z * tz[c]);
             let left = spread + ts[c] - 2.0 * ((a * a + b * b).sqrt() + height[c]);
-            // `max` after the division: rounding leaves tiny negative numbers where windows are equal.
-            out[c] = ((left * inverse) as f32).max(0.0).sqrt();
+            // Rounding leaves tiny negative numbers where windows are equal. Not by `max`, which takes pains over what is no number.
+            let mean = (left * inverse) as f32;
+            out[c] = if mean > 0.0 { mean } else { 0.0 }.sqrt();
         }
     }
 }

@@ -5,9 +5,9 @@ use std::ops::Range;
 /// for a step along rows, along columns, and for any.
 type Choice = u16;
 const ALONG_COLUMNS: u16 = 4;
-const BEST_NOT_COLUMNS: u16 = 1 << 8;
-const BEST_NOT_ROWS: u16 = 1 << 9;
-const BEST_IS_COLUMNS: u16 = 1 << 10;
+const BEST_NOT_COLUMNS: u64 = 1 << 8;
+const BEST_NOT_ROWS: u64 = 1 << 9;
+const BEST_IS_COLUMNS: u64 = 1 << 10;
 
 /// The states of one row of cells: how cheaply each is reached by a diagonal step (0), by the k-th step in a row along rows (k = 1…s), or along
 /// columns (s + k). Column c is at c + 1 - first; entry 0 is the border.
@@ -58,9 +58,10 @@ pub(super) struct Stretch {
     filled: usize,
     here: Row,
     before: Row,
-    /// What the cells of a row cost for a step on in both clips, and in one.
-    twice: Vec<f64>,
-    once: Vec<f64>,
+    /// What the cells of a row cost, for a step on in one clip.
+    costs: Vec<f64>,
+    /// The choices of a row while it is filled, as wide as what they depend on: both are then taken two at a time, without a branch.
+    codes: Vec<u64>,
 }
 
 /// What a path is sought in, and how.
@@ -87,8 +88,8 @@ impl Stretch {
             filled: 0,
             here: row(),
             before: row(),
-            twice: Vec::new(),
-            once: Vec::new(),
+            costs: Vec::new(),
+            codes: Vec::new(),
         }
     }
 
@@ -123,25 +124,31 @@ impl Stretch {
         } = *ground;
         let (s, (first_row, first_column), width) = (self.slope_limit, self.first, self.width());
         let Self {
-            before, here, twice, once, ..
+            before,
+            here,
+            costs,
+            codes,
+            ..
         } = self;
         std::mem::swap(before, here);
-        here.clear();
         let span = spans.map_or(0..matrix.columns(), |spans| spans.get(row).cloned().unwrap_or_default());
         let (low, high) = (span.start.max(first_column), span.end.min(self.last.1 + 1));
         let high = high.max(low);
         self.starts.push((low, self.choices.len()));
         // Entries of this row: column c at c + 1 - first_column.
         let (from, to) = (low + 1 - first_column, high + 1 - first_column);
-        here.used = from..to;
+        // What is set in both is overwritten.
+        if here.used != (from..to) {
+            here.clear();
+            here.used = from..to;
+        }
         let distances = matrix.row(row).get(low..high).unwrap_or_default();
-        twice.clear();
-        twice.extend(distances.iter().map(|&d| 2.0 * (f64::from(d) - bias)));
-        once.clear();
-        once.extend(distances.iter().map(|&d| f64::from(d) - bias + options.side_step_m));
+        costs.clear();
+        costs.extend(distances.iter().map(|&d| f64::from(d) - bias));
+        let side_step_m = options.side_step_m;
 
         let diagonal = &mut here.states[0][from..to];
-        add(diagonal, &before.any[from - 1..to - 1], &twice);
+        add(diagonal, &before.any[from - 1..to - 1], costs, |cost| 2.0 * cost);
         if carried.is_none() {
             // Cells on the border have no diagonal before them: there a path begins, or none.
             let begins = |row, column| match options.start {
@@ -152,7 +159,7 @@ impl Stretch {
             };
             let candidates = if row == 0 { low..high } else { low..high.min(1) };
             for column in candidates.filter(|&column| begins(row, column)) {
-                diagonal[column - low] = twice[column - low];
+                diagonal[column - low] = 2.0 * costs[column - low];
             }
         }
         let corner = carried.filter(|_| row == first_row && low == first_column && high > low);
@@ -161,58 +168,31 @@ impl Stretch {
         }
         for k in 1..=s {
             let from_run = if k == 1 { &before.not_rows } else { &before.states[k - 1] };
-            add(&mut here.states[k][from..to], &from_run[from..to], &once);
+            add(&mut here.states[k][from..to], &from_run[from..to], costs, |cost| cost + side_step_m);
             if let Some(states) = corner {
                 here.states[k][1] = states[k];
             }
         }
-        self.choices.resize(self.choices.len() + (high - low), 0);
-        let at = self.choices.len() - (high - low);
-        let choices = &mut self.choices[at..];
-        let best = &mut here.not_columns;
-        best[from..to].copy_from_slice(&here.states[1][from..to]);
-        for k in 2..=s {
-            choose(&mut best[from..to], &here.states[k][from..to], choices, 0xf, k as u16 - 1);
-        }
-        // The diagonal wins a tie.
-        for ((best, &diagonal), choice) in best[from..to].iter_mut().zip(&here.states[0][from..to]).zip(choices.iter_mut()) {
-            let along = *best < diagonal;
-            *best = if along { *best } else { diagonal };
-            *choice |= if along { BEST_NOT_COLUMNS } else { 0 };
-        }
+        codes.clear();
+        codes.resize(high - low, 0);
+        let best = &mut here.not_columns[from..to];
+        cheapest_run(best, &here.states[1..=s], &(from..to), codes, 0);
+        or_diagonal(best, &here.states[0][from..to], codes, BEST_NOT_COLUMNS);
         for k in 1..=s {
             let (shorter, longer) = here.states.split_at_mut(s + k);
             let from_run = if k == 1 { &here.not_columns } else { &shorter[s + k - 1] };
-            add(&mut longer[0][from..to], &from_run[from - 1..to - 1], &once);
+            add(&mut longer[0][from..to], &from_run[from - 1..to - 1], costs, |cost| {
+                cost + side_step_m
+            });
             if let Some(states) = corner {
                 longer[0][1] = states[s + k];
             }
         }
-        let best = &mut here.not_rows;
-        best[from..to].copy_from_slice(&here.states[s + 1][from..to]);
-        for k in 2..=s {
-            let run = &here.states[s + k][from..to];
-            choose(
-                &mut best[from..to],
-                run,
-                choices,
-                0xf << ALONG_COLUMNS,
-                (k as u16 - 1) << ALONG_COLUMNS,
-            );
-        }
-        let any = here.any[from..to].iter_mut().zip(&here.not_columns[from..to]);
-        let states = best[from..to]
-            .iter_mut()
-            .zip(&here.states[0][from..to])
-            .zip(any)
-            .zip(choices.iter_mut());
-        for (((best, &diagonal), (any, &not_columns)), choice) in states {
-            let columns = *best < not_columns;
-            *any = if columns { *best } else { not_columns };
-            let along = *best < diagonal;
-            *best = if along { *best } else { diagonal };
-            *choice |= if columns { BEST_IS_COLUMNS } else { 0 } | if along { BEST_NOT_ROWS } else { 0 };
-        }
+        let best = &mut here.not_rows[from..to];
+        cheapest_run(best, &here.states[s + 1..], &(from..to), codes, ALONG_COLUMNS);
+        cheapest(&mut here.any[from..to], &here.not_columns[from..to], best, codes, BEST_IS_COLUMNS);
+        or_diagonal(best, &here.states[0][from..to], codes, BEST_NOT_ROWS);
+        self.choices.extend(codes.iter().map(|&code| code as Choice));
         self.last_column.push(here.any[width]);
     }
 
@@ -232,9 +212,9 @@ impl Stretch {
     /// The best state of a cell.
     pub(super) fn any(&self, row: usize, column: usize) -> usize {
         let choice = self.choice(row, column);
-        if choice & BEST_IS_COLUMNS != 0 {
+        if u64::from(choice) & BEST_IS_COLUMNS != 0 {
             self.along_columns(choice)
-        } else if choice & BEST_NOT_COLUMNS != 0 {
+        } else if u64::from(choice) & BEST_NOT_COLUMNS != 0 {
             Self::along_rows(choice)
         } else {
             0
@@ -288,7 +268,7 @@ impl Stretch {
                 (before, self.any(before.0, before.1))
             } else if state <= s {
                 let choice = self.choice(row - 1, column);
-                let along = if choice & BEST_NOT_ROWS != 0 {
+                let along = if u64::from(choice) & BEST_NOT_ROWS != 0 {
                     self.along_columns(choice)
                 } else {
                     0
@@ -296,7 +276,7 @@ impl Stretch {
                 ((row - 1, column), if state == 1 { along } else { state - 1 })
             } else {
                 let choice = self.choice(row, column - 1);
-                let along = if choice & BEST_NOT_COLUMNS != 0 {
+                let along = if u64::from(choice) & BEST_NOT_COLUMNS != 0 {
                     Self::along_rows(choice)
                 } else {
                     0
@@ -307,17 +287,54 @@ impl Stretch {
     }
 }
 
-fn add(out: &mut [f64], from: &[f64], cost: &[f64]) {
-    for ((out, from), cost) in out.iter_mut().zip(from).zip(cost) {
-        *out = from + cost;
+// Every loop is a function of its own, over slices that share nothing: then it takes two cells at a time, without a branch.
+
+#[inline(never)]
+fn add(out: &mut [f64], from: &[f64], costs: &[f64], of_step: impl Fn(f64) -> f64) {
+    for ((out, from), &cost) in out.iter_mut().zip(from).zip(costs) {
+        *out = from + of_step(cost);
+    }
+}
+
+/// The cheapest of the runs; which of them it is, is noted in the four bits of the codes from `at` on, which are 0.
+fn cheapest_run(best: &mut [f64], runs: &[Vec<f64>], span: &Range<usize>, codes: &mut [u64], at: u16) {
+    let run = |k: usize| &runs[k][span.clone()];
+    if runs.len() == 1 {
+        best.copy_from_slice(run(0));
+        return;
+    }
+    cheapest(best, run(0), run(1), codes, 1 << at);
+    for k in 2..runs.len() {
+        choose(best, run(k), codes, 0xf << at, (k as u64) << at);
+    }
+}
+
+/// The cheaper of two; where that is the second, `code` is noted.
+#[inline(never)]
+fn cheapest(best: &mut [f64], first: &[f64], second: &[f64], codes: &mut [u64], code: u64) {
+    for (((best, &first), &second), codes) in best.iter_mut().zip(first).zip(second).zip(codes) {
+        let better = second < first;
+        *best = if better { second } else { first };
+        *codes = if better { *codes | code } else { *codes };
     }
 }
 
 /// Where `other` is cheaper it is taken, and `code` noted in the bits of `mask`.
-fn choose(best: &mut [f64], other: &[f64], choices: &mut [Choice], mask: Choice, code: Choice) {
-    for ((best, &other), choice) in best.iter_mut().zip(other).zip(choices) {
+#[inline(never)]
+fn choose(best: &mut [f64], other: &[f64], codes: &mut [u64], mask: u64, code: u64) {
+    for ((best, &other), codes) in best.iter_mut().zip(other).zip(codes) {
         let better = other < *best;
         *best = if better { other } else { *best };
-        *choice = if better { *choice & !mask | code } else { *choice };
+        *codes = if better { *codes & !mask | code } else { *codes };
+    }
+}
+
+/// Where the best run is cheaper than the diagonal, `code` is noted; else the diagonal is taken: it wins a tie.
+#[inline(never)]
+fn or_diagonal(best: &mut [f64], diagonal: &[f64], codes: &mut [u64], code: u64) {
+    for ((best, &diagonal), codes) in best.iter_mut().zip(diagonal).zip(codes) {
+        let along = *best < diagonal;
+        *best = if along { *best } else { diagonal };
+        *codes = if along { *codes | code } else { *codes };
     }
 }
