@@ -201,9 +201,11 @@ fn part_of(ends: &[f64], value: f64) -> usize {
     ends.partition_point(|&end| end <= value).clamp(1, ends.len() - 1) - 1
 }
 
+/// The length between two parameters of one piece.
 fn length_between(spline: &GroundSpline, from: f64, to: f64) -> f64 {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let speed = |node: f64| spline.jet(middle + half * node).first.length();
+    let piece = spline.piece(middle);
+    let speed = |node: f64| piece.first(middle + half * node).length();
     NODES.iter().map(|&(node, weight)| weight * speed(node)).sum::<f64>() * half
 }
 

@@ -27,6 +27,58 @@ pub struct GroundSpline {
     /// All knots: four at 0, the inner ones, four at 1.
     knots: Vec<f64>,
     closed: bool,
+    /// The same curve piece by piece, made of the points and knots.
+    pieces: Vec<Piece>,
+}
+
+/// A polynomial piece of a path: what is asked for many times under a moving hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Piece {
+    /// The parameter at which it begins.
+    start: f64,
+    /// Place, derivatives by the parameter there, each divided by its factorial.
+    powers: [DVec2; 4],
+}
+
+impl Piece {
+    /// The piece from knot `span` on.
+    fn new(points: &[DVec2], knots: &[f64], span: usize) -> Self {
+        let t = &knots[span + 1 - DEGREE..=span + DEGREE];
+        let p = &points[span - DEGREE..=span];
+        // Differences of the control points are the control points of the derivatives, of lower degree.
+        let d = |i: usize| (p[i + 1] - p[i]) * (3.0 / (t[i + 3] - t[i]).max(f64::MIN_POSITIVE));
+        let first = [d(0), d(1), d(2)];
+        let dd = |i: usize| (first[i + 1] - first[i]) * (2.0 / (t[i + 3] - t[i + 1]).max(f64::MIN_POSITIVE));
+        let second = [dd(0), dd(1)];
+        let third = (second[1] - second[0]) / (t[3] - t[2]);
+        let start = t[2];
+        let [a, b, c, e] = basis(t, start);
+        let [q0, q1, q2] = quadratic(t, start);
+        Self {
+            start,
+            powers: [
+                p[0] * a + p[1] * b + p[2] * c + p[3] * e,
+                first[0] * q0 + first[1] * q1 + first[2] * q2,
+                second[0] * 0.5,
+                third / 6.0,
+            ],
+        }
+    }
+
+    /// The first derivative by the parameter.
+    pub(super) fn first(&self, parameter: f64) -> DVec2 {
+        let (s, [_, b, c, d]) = (parameter - self.start, self.powers);
+        b + (c * 2.0 + d * (3.0 * s)) * s
+    }
+
+    fn jet(&self, parameter: f64) -> Jet {
+        let (s, [a, b, c, d]) = (parameter - self.start, self.powers);
+        Jet {
+            position: a + (b + (c + d * s) * s) * s,
+            first: self.first(parameter),
+            second: c * 2.0 + d * (6.0 * s),
+        }
+    }
 }
 
 /// A place on a path, and how the path runs there.
@@ -82,8 +134,17 @@ impl GroundSpline {
         if knots.len() != points.len() + DEGREE + 1 || !apart {
             return Err(PathEditError::Knots);
         }
-        let closed = false;
-        Ok(Self { points, knots, closed })
+        Ok(Self::of(points, knots, false))
+    }
+
+    fn of(points: Vec<DVec2>, knots: Vec<f64>, closed: bool) -> Self {
+        let pieces = (DEGREE..points.len()).map(|span| Piece::new(&points, &knots, span)).collect();
+        Self {
+            points,
+            knots,
+            closed,
+            pieces,
+        }
     }
 
     /// The control points, (x, z) in metres.
@@ -115,8 +176,8 @@ impl GroundSpline {
         let last = self.points.len() - 1;
         let [first_span, last_span] = self.end_spans();
         let end = (self.points[last - 1] * first_span + self.points[1] * last_span) / (first_span + last_span);
-        (self.points[0], self.points[last], self.closed) = (end, end, true);
-        self
+        (self.points[0], self.points[last]) = (end, end);
+        Self::of(self.points, self.knots, true)
     }
 
     /// The parameter that the first and the last piece take.
@@ -141,22 +202,18 @@ impl GroundSpline {
     /// Place and derivatives at `parameter`, which is clamped to the path.
     #[must_use]
     pub fn jet(&self, parameter: f64) -> Jet {
-        let (span, u) = self.span(parameter);
-        let t = &self.knots[span + 1 - DEGREE..=span + DEGREE];
-        let p = &self.points[span - DEGREE..=span];
-        // Differences of the control points are the control points of the derivatives, of lower degree.
-        let d = |i: usize| (p[i + 1] - p[i]) * (3.0 / (t[i + 3] - t[i]).max(f64::MIN_POSITIVE));
-        let first = [d(0), d(1), d(2)];
-        let dd = |i: usize| (first[i + 1] - first[i]) * (2.0 / (t[i + 3] - t[i + 1]).max(f64::MIN_POSITIVE));
-        let second = [dd(0), dd(1)];
-        let [a, b, c, e] = basis(t, u);
-        let linear = (u - t[2]) / (t[3] - t[2]);
-        let [q0, q1, q2] = quadratic(t, u);
-        Jet {
-            position: p[0] * a + p[1] * b + p[2] * c + p[3] * e,
-            first: first[0] * q0 + first[1] * q1 + first[2] * q2,
-            second: second[0].lerp(second[1], linear),
+        let u = unit(parameter);
+        let jet = self.piece(u).jet(u);
+        match self.points.last() {
+            // The path ends in its last point, without a digit lost on the way there.
+            Some(&position) if u == 1.0 => Jet { position, ..jet },
+            _ => jet,
         }
+    }
+
+    /// The piece that holds a parameter from 0 to 1.
+    pub(super) fn piece(&self, parameter: f64) -> &Piece {
+        &self.pieces[self.inner_knots().partition_point(|&knot| knot <= parameter)]
     }
 
     /// The place at `parameter`, (x, z) in metres.
@@ -207,8 +264,7 @@ impl GroundSpline {
         points.extend_from_slice(&self.points[span..]);
         let mut knots = self.knots.clone();
         knots.insert(span + 1, u);
-        let closed = self.closed;
-        Ok(Self { points, knots, closed })
+        Ok(Self::of(points, knots, self.closed))
     }
 
     /// The index of the last knot at or below `parameter`, which is clamped to the path; the last piece at the end.
