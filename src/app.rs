@@ -35,6 +35,8 @@ const WORK_MS: f64 = 5.0;
 const WORK_SHARE: f64 = 0.25;
 /// See [`WORK_SHARE`].
 const MOST_WORK_MS: f64 = 60.0;
+/// How often it is shown how far work has come.
+const SHOW_PROGRESS: Duration = Duration::from_millis(200);
 /// Time that the playhead skips over when a frame took longer than that, seconds: a page that was in the background does not leap on.
 const LONGEST_STEP_SECS: f64 = 0.25;
 
@@ -307,8 +309,16 @@ impl Segue {
         self.clock.frame_began = platform::now_ms();
         let more = self.pump();
         let ticked = self.tick();
-        if more || ticked {
+        if ticked {
             self.animate(ctx);
+        } else if more {
+            // Between frames work goes on without a new picture: all there is to see is how far it is.
+            let soon = if platform::WORKS_BETWEEN_FRAMES {
+                SHOW_PROGRESS
+            } else {
+                Duration::ZERO
+            };
+            ctx.request_repaint_after(soon);
         }
         more && !self.keeper.is_waiting()
     }

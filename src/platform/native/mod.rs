@@ -40,6 +40,9 @@ pub(crate) fn location_query() -> String {
 /// A window's widgets are known to the system's screen reader by themselves.
 pub(crate) fn announce(_words: &str) {}
 
+/// Whether [`between_frames`] does anything.
+pub(crate) const WORKS_BETWEEN_FRAMES: bool = false;
+
 /// A window's frames come at a steady pace: what they leave over waits for the next.
 pub(crate) fn between_frames(_work: impl FnMut() -> bool + 'static) {}
 

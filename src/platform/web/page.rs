@@ -166,6 +166,9 @@ pub(super) async fn turn() {
     .await;
 }
 
+/// Whether [`between_frames`] does anything.
+pub(crate) const WORKS_BETWEEN_FRAMES: bool = true;
+
 /// Calls `work` again and again, between the browser's frames and whether there are any or not, until it says that nothing is left.
 pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     spawn_local(async move {
