@@ -55,7 +55,7 @@ fn mesh(c: &mut Criterion) {
         .find_map(|done| done)
         .expect("a body");
     c.bench_function("another girth of that body", |bench| {
-        bench.iter(|| sculpture.with_girth(black_box(1.3)))
+        bench.iter(|| sculpture.with_girth(black_box(1.3)));
     });
 }
 

@@ -32,7 +32,7 @@ struct Tailored {
 #[derive(Debug)]
 enum State {
     Begun(Box<Sculptor>),
-    Done(Sculpture),
+    Done(Box<Sculpture>),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -130,7 +130,7 @@ impl Wardrobe {
         });
         let Some((sculpture, state)) = begun else { return false };
         if let Some(sculpture) = sculpture {
-            *state = State::Done(sculpture);
+            *state = State::Done(Box::new(sculpture));
             // Whoever wears limbs for the time being is dressed anew.
             self.bodies.clear();
         }

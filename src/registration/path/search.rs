@@ -162,7 +162,7 @@ struct Rounds {
     /// Where one stretch ends and the next begins: pins, and the last corner where the path ends there.
     anchors: Vec<(usize, usize)>,
     mean: Option<f64>,
-    rounds: usize,
+    count: usize,
     pass: Pass,
 }
 
@@ -198,7 +198,7 @@ impl Rounds {
             pins,
             anchors,
             mean: None,
-            rounds: 0,
+            count: 0,
             pass: Pass::default(),
         })
     }
@@ -214,7 +214,7 @@ impl Rounds {
             return Ok(None);
         };
         self.pass = Pass::default();
-        self.rounds += 1;
+        self.count += 1;
         let both_given = self.options.start == PathEnd::Corner && self.options.end == PathEnd::Corner;
         let (cost, weight) = weigh(matrix, &found, self.options.side_step_m);
         let mean = cost / weight;
@@ -227,7 +227,7 @@ impl Rounds {
             }));
         }
         self.mean = Some(mean);
-        if self.rounds < MOST_ROUNDS {
+        if self.count < MOST_ROUNDS {
             Ok(None)
         } else {
             Err(PathError::NotFinite)

@@ -228,12 +228,12 @@ impl Registrar {
                 Some((_, search)) => Ok(search),
                 None => PathSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
             };
-            let found = search.and_then(|mut search| match search.advance(map.matrix(), rows)? {
-                Some(path) => curves(terms, &map, path, wanted.smoothing).map(Some),
-                None => {
+            let found = search.and_then(|mut search| {
+                let path = search.advance(map.matrix(), rows)?;
+                if path.is_none() {
                     self.search = Some((wanted.clone(), search));
-                    Ok(None)
                 }
+                path.map(|path| curves(terms, &map, path, wanted.smoothing)).transpose()
             });
             if let Some(found) = found.transpose() {
                 self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
