@@ -71,17 +71,14 @@ impl Contacts {
             for (side, way) in kind {
                 let own = stats::percentile(&heights(way), GROUND_PERCENTILE).unwrap_or(common);
                 let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };
-                let mut down = false;
-                for (frame, planted) in planted[side.index()].iter_mut().enumerate() {
-                    let height = (way[frame].y - level) / scale;
-                    let speed = speed(way, frame, clip.fps()) / scale / haste[frame];
-                    down = if down {
-                        height <= options.leave_height_m && speed <= options.leave_speed_mps
-                    } else {
-                        height <= options.enter_height_m && speed <= options.enter_speed_mps
-                    };
-                    *planted |= down;
-                }
+                let point = Point {
+                    way,
+                    level,
+                    scale,
+                    haste: &haste,
+                    fps: clip.fps(),
+                };
+                point.plant(options, &mut planted[side.index()]);
             }
         }
         for flags in &mut planted {
@@ -226,6 +223,36 @@ impl Ways {
             (way.length() / secs / scale / STEADY_SPEED_MPS).max(1.0)
         };
         (0..self.body.len()).map(haste).collect()
+    }
+}
+
+/// A point of a foot on its way.
+struct Point<'a> {
+    way: &'a [Vec3],
+    /// The height of the ground under it, metres.
+    level: f32,
+    /// The character's height against that of the options.
+    scale: f32,
+    haste: &'a [f32],
+    fps: f64,
+}
+
+impl Point<'_> {
+    /// Marks the frames in which the point is on the ground.
+    // Not inlined: browsers optimise a function from one call to its next, and a foot has several points.
+    #[inline(never)]
+    fn plant(&self, options: &ContactOptions, planted: &mut [bool]) {
+        let mut down = false;
+        for (frame, planted) in planted.iter_mut().enumerate() {
+            let height = (self.way[frame].y - self.level) / self.scale;
+            let speed = speed(self.way, frame, self.fps) / self.scale / self.haste[frame];
+            down = if down {
+                height <= options.leave_height_m && speed <= options.leave_speed_mps
+            } else {
+                height <= options.enter_height_m && speed <= options.enter_speed_mps
+            };
+            *planted |= down;
+        }
     }
 }
 

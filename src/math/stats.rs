@@ -4,13 +4,13 @@
 /// `NumPy` uses). `None` for no values; NaN sorts last.
 #[must_use]
 pub fn percentile(values: &[f32], p: f32) -> Option<f32> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f32::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
+    let mut values = values.to_vec();
+    let last = values.len().checked_sub(1)?;
     let at = p.clamp(0.0, 1.0) * last as f32;
-    let below = at.floor() as usize;
-    let above = (below + 1).min(last);
-    Some(sorted[below] + (sorted[above] - sorted[below]) * (at - below as f32))
+    // Only these two need their places; all others are behind them or before them.
+    let (_, &mut below, rest) = values.select_nth_unstable_by((at.floor() as usize).min(last), f32::total_cmp);
+    let above = rest.iter().copied().min_by(f32::total_cmp).unwrap_or(below);
+    Some(below + (above - below) * at.fract())
 }
 
 #[cfg(test)]
@@ -23,5 +23,9 @@ mod tests {
         assert_eq!(percentile(&[4.0], 0.99), Some(4.0));
         assert_eq!(percentile(&[3.0, 1.0, 2.0], 0.5), Some(2.0));
         assert_eq!(percentile(&[0.0, 10.0], 0.25), Some(2.5));
+        let values: Vec<f32> = (0..101).map(|i| ((i * 37) % 101) as f32).collect();
+        for p in 0..=100 {
+            assert!((percentile(&values, p as f32 / 100.0).unwrap() - p as f32).abs() < 1e-4);
+        }
     }
 }

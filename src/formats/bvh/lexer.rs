@@ -55,7 +55,7 @@ impl<'a> Lexer<'a> {
 
     pub(super) fn at_comment(&self) -> bool {
         let rest = self.text.get(self.at..).unwrap_or_default();
-        rest.starts_with(b"#") || rest.starts_with(b"//")
+        matches!(rest, [b'#', ..] | [b'/', b'/', ..])
     }
 
     /// The offset of the next line end, or of the end of the file.

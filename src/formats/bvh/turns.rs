@@ -1,6 +1,9 @@
-//! Rotations from turns about axes: those of a whole row at once, so that the compiler makes vectors of them.
+//! Rotations from turns about axes, those of four joints at once.
 
-use glam::Quat;
+use glam::{Mat4, Quat, Vec4};
+
+/// So many joints are turned at once: the lanes of [`Vec4`].
+const LANES: usize = 4;
 
 /// Joints in a row that turn about the same axes.
 #[derive(Debug)]
@@ -14,12 +17,11 @@ struct Run {
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     runs: Vec<Run>,
-    /// The columns of the angles: run by run, and in each the first turns of all joints, then the second ones, and so on.
-    columns: Vec<usize>,
-    /// The angles of the row.
-    degrees: Vec<f64>,
-    half_angles: HalfAngles,
-    product: Product,
+    /// The columns of the angles: run by run, in each four joints at a time, and of these for each turn in order the columns of the four. Where
+    /// there are fewer than four joints, the last one stands for those that are missing.
+    columns: Vec<[usize; LANES]>,
+    /// The angles of the row, as they stand in `columns`.
+    half_angles: Vec<HalfAngles>,
 }
 
 impl Turns {
@@ -29,154 +31,146 @@ impl Turns {
         let mut turns = Self::default();
         for run in joints.chunk_by(alike) {
             let axes: Vec<usize> = run.iter().take(1).flatten().map(|turn| turn.0).collect();
-            for place in 0..axes.len() {
-                turns.columns.extend(run.iter().filter_map(|joint| Some(joint.get(place)?.1)));
+            for four in run.chunks(LANES) {
+                let column = |lane: usize, place: usize| Some(four.get(lane.min(four.len() - 1))?.get(place)?.1);
+                let columns = (0..axes.len()).map(|place| std::array::from_fn(|lane| column(lane, place).unwrap_or_default()));
+                turns.columns.extend(columns);
             }
             turns.runs.push(Run { joints: run.len(), axes });
         }
+        turns.half_angles.resize(turns.columns.len(), HalfAngles::default());
         turns
     }
 
     /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of its turns.
+    // Not inlined, and small: browsers optimise a function from one call to its next, and sooner where there is less of it.
+    #[inline(never)]
     pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) {
-        self.degrees.clear();
-        self.degrees
-            .extend(self.columns.iter().map(|&column| row.get(column).copied().unwrap_or_default()));
-        self.half_angles.set(&mut self.degrees);
-        let (mut sines, mut cosines) = (self.half_angles.sines.as_slice(), self.half_angles.cosines.as_slice());
+        let reduced;
+        let row = if row.iter().all(|angle| angle.abs() < 1e9) {
+            row
+        } else {
+            reduced = without_whole_turns(row);
+            &reduced
+        };
+        // Apart from what is made of them, so that the compiler makes vectors of them.
+        for (half_angles, columns) in self.half_angles.iter_mut().zip(&self.columns) {
+            half_angles.set(columns.map(|column| row.get(column).copied().unwrap_or_default()));
+        }
+        let mut half_angles = self.half_angles.iter();
         for run in &self.runs {
-            self.product.start(run.joints);
-            for (place, &axis) in run.axes.iter().enumerate() {
-                let (Some((s, later_sines)), Some((c, later_cosines))) =
-                    (sines.split_at_checked(run.joints), cosines.split_at_checked(run.joints))
-                else {
-                    break;
-                };
-                if place == 0 {
-                    self.product.set(axis, s, c);
+            let mut left = run.joints;
+            while left > 0 {
+                let turns = run.axes.iter().zip(half_angles.by_ref());
+                let product = turns.fold(Product::IDENTITY, |product, (&axis, angles)| product.turned(axis, angles.sin_cos()));
+                let four = product.rotations();
+                if left >= LANES {
+                    rotations.extend_from_slice(&four);
                 } else {
-                    self.product.turn(axis, s, c);
+                    rotations.extend(four.into_iter().take(left));
                 }
-                (sines, cosines) = (later_sines, later_cosines);
+                left = left.saturating_sub(LANES);
             }
-            self.product.append_to(rotations);
         }
     }
 }
 
-/// Sines and cosines of half of angles.
-#[derive(Debug, Default)]
+/// Far beyond what turns, the whole turns go first, at the cost of a division.
+#[cold]
+fn without_whole_turns(row: &[f64]) -> Vec<f64> {
+    row.iter().map(|degrees| degrees % 720.0).collect()
+}
+
+/// Half of four angles.
+#[derive(Clone, Copy, Debug, Default)]
 struct HalfAngles {
-    /// What is left of the half angles without whole quarter turns, radians.
-    rests: Vec<f32>,
-    /// Those quarter turns; whole turns may be missing.
-    quarters: Vec<u32>,
-    sines: Vec<f32>,
-    cosines: Vec<f32>,
+    /// The nearest whole numbers of quarter turns.
+    quarters: [f32; LANES],
+    /// What is left of the half angles without them: at most π/4, radians.
+    rests: [f32; LANES],
 }
 
 impl HalfAngles {
-    /// Takes angles, degrees. Sines and cosines are within 1e-7 of what they should be, which is what `f32` can tell apart.
-    fn set(&mut self, degrees: &mut [f64]) {
-        // Far beyond what turns, the whole turns go first, at the cost of a division.
-        if !degrees.iter().fold(true, |small, angle| small & (angle.abs() < 1e9)) {
-            for angle in degrees.iter_mut() {
-                *angle %= 720.0;
-            }
+    /// Of angles below 1e9, degrees.
+    #[inline]
+    fn set(&mut self, degrees: [f64; LANES]) {
+        // Adding this rounds to a whole number, for magnitudes below 2⁵¹.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
+        let Self { quarters, rests } = self;
+        for ((quarters, rest), degrees) in quarters.iter_mut().zip(rests).zip(degrees) {
+            let turns = degrees * (1.0 / 180.0);
+            let whole = (turns + ROUND) - ROUND;
+            *quarters = whole as f32;
+            *rest = ((turns - whole) * std::f64::consts::FRAC_PI_2) as f32;
         }
-        self.rests.resize(degrees.len(), 0.0);
-        self.quarters.resize(degrees.len(), 0);
-        for ((&degrees, rest), quarter) in degrees.iter().zip(&mut self.rests).zip(&mut self.quarters) {
-            (*rest, *quarter) = reduced(degrees);
-        }
-        self.sines.resize(degrees.len(), 0.0);
-        self.cosines.resize(degrees.len(), 0.0);
-        let reduced = self.rests.iter().zip(&self.quarters);
-        for ((sin, cos), (&rest, &quarter)) in self.sines.iter_mut().zip(&mut self.cosines).zip(reduced) {
-            (*sin, *cos) = sin_cos(rest, quarter);
-        }
+    }
+
+    /// Their sines and cosines, within 1e-7 of what they should be: which is what `f32` can tell apart.
+    #[inline]
+    fn sin_cos(&self) -> (Vec4, Vec4) {
+        // As above, in single precision and for magnitudes below 2²².
+        const ROUND: Vec4 = Vec4::splat(12_582_912.0);
+        let (x, quarters) = (Vec4::from_array(self.rests), Vec4::from_array(self.quarters));
+        let x2 = x * x;
+        // The Taylor series; the first terms left out are below 2e-9 at π/4.
+        let sin = x + x * (x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
+        let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0 + x2 * (-1.0 / 3_628_800.0)))));
+        // From -2 to 2 quarter turns are left, whose sine and cosine are whole numbers: the addition theorem is exact with them.
+        let quarters = quarters - 4.0 * ((quarters * 0.25 + ROUND) - ROUND);
+        let (whole_sin, whole_cos) = (quarters * (2.0 - quarters.abs()), 1.0 - quarters.abs());
+        (sin * whole_cos + cos * whole_sin, cos * whole_cos - sin * whole_sin)
     }
 }
 
-/// Half an angle below 1e9 degrees as the nearest number of quarter turns, and a rest of at most π/4.
-#[inline]
-fn reduced(degrees: f64) -> (f32, u32) {
-    // Adding this rounds to a whole number and leaves it in the lowest bits, for magnitudes below 2⁵¹.
-    const ROUND: f64 = 6_755_399_441_055_744.0;
-    let quarters = degrees * (1.0 / 180.0);
-    let rounded = quarters + ROUND;
-    let rest = (quarters - (rounded - ROUND)) * std::f64::consts::FRAC_PI_2;
-    (rest as f32, rounded.to_bits() as u32)
-}
-
-/// Sine and cosine of a rest and quarter turns.
-#[inline]
-fn sin_cos(x: f32, quarter: u32) -> (f32, f32) {
-    let x2 = x * x;
-    // The Taylor series; the first terms left out are below 2e-9 at π/4.
-    let sin = x + x * (x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
-    let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0 + x2 * (-1.0 / 3_628_800.0)))));
-    // Every quarter turn makes (sin, cos) into (cos, -sin): an odd one swaps them, the signs go by the second bit.
-    let different = (sin.to_bits() ^ cos.to_bits()) & (quarter & 1).wrapping_neg();
-    let minus = |quarter: u32| (quarter & 2) << 30;
-    (
-        f32::from_bits(sin.to_bits() ^ different ^ minus(quarter)),
-        f32::from_bits(cos.to_bits() ^ different ^ minus(quarter.wrapping_add(1))),
-    )
-}
-
-/// Quaternions that grow turn by turn, each coordinate on its own.
-#[derive(Debug, Default)]
+/// Quaternions that grow turn by turn, coordinate by coordinate.
 struct Product {
-    /// The coordinates x, y and z.
-    axes: [Vec<f32>; 3],
-    w: Vec<f32>,
+    x: Vec4,
+    y: Vec4,
+    z: Vec4,
+    w: Vec4,
 }
 
 impl Product {
-    /// So many that do not turn.
-    fn start(&mut self, joints: usize) {
-        for axis in &mut self.axes {
-            axis.clear();
-            axis.resize(joints, 0.0);
-        }
-        self.w.clear();
-        self.w.resize(joints, 1.0);
-    }
+    const IDENTITY: Self = Self {
+        x: Vec4::ZERO,
+        y: Vec4::ZERO,
+        z: Vec4::ZERO,
+        w: Vec4::ONE,
+    };
 
-    /// The first turn. What comes of it has one axis.
-    fn set(&mut self, axis: usize, sines: &[f32], cosines: &[f32]) {
-        if let Some(values) = self.axes.get_mut(axis) {
-            values.copy_from_slice(sines);
-        }
-        self.w.copy_from_slice(cosines);
-    }
-
-    /// One more turn, given sine and cosine of half the angles.
-    fn turn(&mut self, axis: usize, sines: &[f32], cosines: &[f32]) {
-        let [x, y, z] = &mut self.axes;
-        // The next axis and the one after it, in a circle.
-        let (along, next, after) = match axis {
-            0 => (x, y, z),
-            1 => (y, z, x),
-            _ => (z, x, y),
+    /// Times turns about an axis, given sine and cosine of half the angles.
+    #[inline]
+    fn turned(self, axis: usize, (s, c): (Vec4, Vec4)) -> Self {
+        let Self { x, y, z, w } = self;
+        // The axis, the next one and the one after it, in a circle.
+        let turned = |[along, next, after]: [Vec4; 3]| {
+            let turned = [along * c + w * s, next * c + after * s, after * c - next * s];
+            (turned, w * c - along * s)
         };
-        turn_about(along, next, after, &mut self.w, sines, cosines);
+        match axis {
+            0 => {
+                let ([x, y, z], w) = turned([x, y, z]);
+                Self { x, y, z, w }
+            }
+            1 => {
+                let ([y, z, x], w) = turned([y, z, x]);
+                Self { x, y, z, w }
+            }
+            _ => {
+                let ([z, x, y], w) = turned([z, x, y]);
+                Self { x, y, z, w }
+            }
+        }
     }
 
-    fn append_to(&self, rotations: &mut Vec<Quat>) {
-        let [x, y, z] = &self.axes;
-        let coordinates = x.iter().zip(y).zip(z).zip(&self.w);
-        rotations.extend(coordinates.map(|(((&x, &y), &z), &w)| Quat::from_xyzw(x, y, z, w)));
-    }
-}
-
-/// Quaternions times turns about the axis of their coordinate `along`.
-fn turn_about(along: &mut [f32], next: &mut [f32], after: &mut [f32], w: &mut [f32], sines: &[f32], cosines: &[f32]) {
-    let turns = sines.iter().zip(cosines);
-    for ((((along, next), after), w), (s, c)) in along.iter_mut().zip(next).zip(after).zip(w).zip(turns) {
-        (*along, *w) = (*along * c + *w * s, *w * c - *along * s);
-        (*next, *after) = (*next * c + *after * s, *after * c - *next * s);
+    fn rotations(self) -> [Quat; LANES] {
+        let Mat4 {
+            x_axis,
+            y_axis,
+            z_axis,
+            w_axis,
+        } = Mat4::from_cols(self.x, self.y, self.z, self.w).transpose();
+        [x_axis, y_axis, z_axis, w_axis].map(Quat::from_vec4)
     }
 }
 
@@ -188,10 +182,12 @@ mod tests {
 
     #[test]
     fn the_fast_sine_is_the_sine() {
-        let mut half = HalfAngles::default();
-        let degrees: Vec<f64> = (-80_000..80_000).map(|step| f64::from(step) * 0.037_1).collect();
-        half.set(&mut degrees.clone());
-        for (degrees, (&sin, &cos)) in degrees.iter().zip(half.sines.iter().zip(&half.cosines)) {
+        for degrees in (-80_000..80_000).map(|step| f64::from(step) * 0.037_1) {
+            let mut half_angles = HalfAngles::default();
+            half_angles.set([degrees; LANES]);
+            let (sin, cos) = half_angles.sin_cos();
+            assert!(sin == Vec4::splat(sin.x) && cos == Vec4::splat(cos.x));
+            let (sin, cos) = (sin.x, cos.x);
             let (expected_sin, expected_cos) = (0.5 * degrees.to_radians()).sin_cos();
             let error = (f64::from(sin) - expected_sin).abs().max((f64::from(cos) - expected_cos).abs());
             assert!(error < 1e-7, "{degrees}: {error}");

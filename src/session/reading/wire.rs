@@ -144,17 +144,16 @@ impl Parcel {
 
 fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     let clip = &motion.clip;
-    for q in (0..clip.frames()).flat_map(|frame| clip.rotations(frame)) {
-        piece.put(q.to_array().map(f32::to_le_bytes).as_flattened());
+    for frame in 0..clip.frames() {
+        piece.put_each(clip.rotations(frame), |q| q.to_array().map(f32::to_le_bytes));
     }
-    let translations = clip.translations().iter().flat_map(|track| &track.values);
-    for v in clip.root_translations().iter().chain(translations) {
-        piece.put(v.to_array().map(f32::to_le_bytes).as_flattened());
+    piece.put_each(clip.root_translations(), |v| v.to_array().map(f32::to_le_bytes));
+    for track in clip.translations() {
+        piece.put_each(&track.values, |v| v.to_array().map(f32::to_le_bytes));
     }
-    for place in &motion.ground_frames {
-        let numbers = [place.yaw, place.shift.x, place.shift.y];
-        piece.put(numbers.map(f64::to_le_bytes).as_flattened());
-    }
+    piece.put_each(&motion.ground_frames, |place| {
+        [place.yaw, place.shift.x, place.shift.y].map(f64::to_le_bytes)
+    });
     for frame in 0..clip.frames() {
         piece.put(&Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame))));
     }
@@ -202,6 +201,25 @@ impl Piece<'_> {
             self.flush();
         }
         self.bytes.extend_from_slice(value);
+    }
+
+    /// Puts the bytes of one value after the other: `N` numbers of `M` bytes each.
+    // Not inlined: browsers optimise a function from one call to its next.
+    #[inline(never)]
+    fn put_each<T, const N: usize, const M: usize>(&mut self, mut values: &[T], bytes_of: impl Fn(&T) -> [[u8; M]; N]) {
+        while !values.is_empty() {
+            if PIECE_BYTES - self.bytes.len() < N * M {
+                self.flush();
+            }
+            let start = self.bytes.len();
+            let (now, later) = values.split_at(values.len().min((PIECE_BYTES - start) / (N * M)));
+            self.bytes.resize(start + now.len() * N * M, 0);
+            let room = self.bytes.get_mut(start..).unwrap_or_default().as_chunks_mut().0.as_chunks_mut().0;
+            for (room, value) in room.iter_mut().zip(now) {
+                *room = bytes_of(value);
+            }
+            values = later;
+        }
     }
 
     fn flush(&mut self) {
