@@ -145,7 +145,7 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
     );
     // A window that was there before is there at once, but for the walk.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
-    assert_eq!(session.graph_field().unwrap().distances().window(), 30);
+    assert_eq!(session.graph_field().unwrap().window(), 30);
     assert!(session.graph_built().is_some());
     while session.work() {}
 

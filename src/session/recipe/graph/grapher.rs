@@ -2,7 +2,7 @@ use super::cast::Fitted;
 use super::maker::Maker;
 use super::wanted::{GraphKey, Wanted, sentence};
 use super::{Built, Cast, Field, GraphInputs};
-use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, GraphError, PausedAllSweep};
+use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, PausedAllSweep};
 use crate::registration::Progress;
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -31,8 +31,8 @@ pub(in crate::session) struct Grapher {
     cast: Option<Result<Arc<Cast>, String>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
-    /// Distances that are counted, and how many pairs of clips are.
-    counting: Option<(Field, usize)>,
+    /// Distances that are counted, and how far.
+    counting: Option<(Field, CountedTo)>,
     /// One for each window that was asked for last.
     fields: Vec<Arc<Field>>,
     search: Option<(GraphKey, Search)>,
@@ -97,7 +97,7 @@ impl Grapher {
     /// The distances that the first pane asks for; the last ones that there are while it waits.
     pub(in crate::session) fn field(&self) -> Option<&Arc<Field>> {
         let window = self.wanted.first().map(|wanted| wanted.graph.options.blend_window);
-        let asked = self.fields.iter().find(|field| Some(field.distances().window()) == window);
+        let asked = self.fields.iter().find(|field| Some(field.window()) == window);
         asked.or(self.fields.last())
     }
 
@@ -189,7 +189,7 @@ impl Grapher {
         let fitted = self.fitted.len() as f64 / self.clips.len().max(1) as f64;
         let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
         let window = wanted.graph.options.blend_window;
-        let swept = if self.fields.iter().any(|field| field.distances().window() == window) {
+        let swept = if self.fields.iter().any(|field| field.window() == window) {
             1.0
         } else {
             match (&self.sweep, &self.all) {
@@ -297,7 +297,12 @@ impl Grapher {
                 _ => Box::new(CandidateStream::new(cast.set(), &key.options)?),
             };
             if stream.advance(1)?.is_complete() {
-                return stream.finish().map(Some);
+                let (found, overview) = stream.finish()?;
+                // The same for every threshold: what is drawn of it stays.
+                if self.fields.iter().all(|field| field.window() != overview.window()) {
+                    self.keep_field(Arc::new(Field::from_afar(overview)));
+                }
+                return Ok(Some(found));
             }
             self.search = Some((key, Search::Streamed(stream)));
             return Ok(None);
@@ -307,16 +312,21 @@ impl Grapher {
             return Ok(None);
         };
         if !all.progress().is_complete() {
-            all.advance(PAIRS);
+            all.advance(PAIRS)?;
             return Ok(None);
         }
         let window = key.options.blend_window;
-        let Some(field) = self.fields.iter().find(|field| field.distances().window() == window) else {
-            if let Some((mut field, pair)) = self.counting.take().filter(|(field, _)| field.distances().window() == window) {
-                if field.count(pair) {
+        let known = self
+            .fields
+            .iter()
+            .filter(|field| field.window() == window)
+            .find_map(|field| field.all());
+        let Some(distances) = known else {
+            if let Some((mut field, mut at)) = self.counting.take().filter(|(field, _)| field.window() == window) {
+                if field.count(&mut at, CELLS) {
                     self.keep_field(Arc::new(field));
                 } else {
-                    self.counting = Some((field, pair + 1));
+                    self.counting = Some((field, at));
                 }
                 return Ok(None);
             }
@@ -325,7 +335,7 @@ impl Grapher {
                 None => all.sweep(window)?,
             };
             if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
-                self.counting = Some((Field::new(sweep.finish()?), 0));
+                self.counting = Some((Field::held(sweep.finish()?), CountedTo::default()));
             } else {
                 self.sweep = Some(sweep.pause());
             }
@@ -333,9 +343,9 @@ impl Grapher {
         };
         let mut search = match self.search.take() {
             Some((known, Search::Held(search))) if known == key => search,
-            _ => Box::new(CandidateSearch::new(field.distances(), &key.options)?),
+            _ => Box::new(CandidateSearch::new(distances, &key.options)?),
         };
-        if search.advance(all, field.distances(), CELLS)?.is_complete() {
+        if search.advance(all, distances, CELLS)?.is_complete() {
             return Ok(Some(search.finish()));
         }
         self.search = Some((key, Search::Held(search)));
