@@ -108,7 +108,7 @@ pub use follow::{Followed, GroundPath, PathSearch, follow};
 pub use frames::{FrameSet, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};
-pub use stitch::{PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
+pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};
 pub use weights::{Choices, DistanceLaw, RunLength, WeightOptions};

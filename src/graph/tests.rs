@@ -571,6 +571,10 @@ fn pieces_follow_each_other_without_a_jump() {
             }
         }
         let (clip, frames) = assembled(&pieces).unwrap().unwrap();
+        let most = clip.frames() - 7;
+        let mut assembling = Assembling::new(&pieces, most).unwrap();
+        while !assembling.advance(&pieces, 23) {}
+        assert_eq!(assembling.finish().unwrap(), (clip.crop(0..most).unwrap(), frames[..most].to_vec()));
         assert_eq!((clip.frames(), frames.len()), (start, start));
         let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
         assert_eq!(metrics.seams.len(), pieces.len() - 1);
@@ -651,6 +655,21 @@ fn a_path_is_followed() {
         found.looked_at
     );
     assert_eq!(follow(&graph, start, &path, 60_000), found);
+    // In slices the same, with a best so far that comes ever farther.
+    for nodes in [1, 700] {
+        let mut search = PathSearch::new(&graph, start, &path, 60_000);
+        let (mut before, mut slices) = (0.0, 0);
+        while !search.advance(&graph, &path, nodes) {
+            slices += 1;
+            if slices % (2_100 / nodes) == 0 {
+                let (so_far, kept) = (search.so_far(&graph, &path), search.progress(&path));
+                assert!(!so_far.edges.is_empty() && kept >= before && so_far.along_m >= kept * path.length() - 1e-9);
+                before = kept;
+            }
+        }
+        assert!(slices > 10 && before > 0.3, "{slices} {before}");
+        assert_eq!(search.so_far(&graph, &path), found);
+    }
     for pair in found.edges.windows(2) {
         let [before, after] = [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
         assert_eq!(before.1, after.0);

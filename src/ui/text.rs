@@ -718,8 +718,12 @@ pub(crate) fn moved_onto_first(cast: &Cast) -> Option<String> {
 /// How a walk follows its line.
 pub(crate) fn followed(trace: &Trace) -> String {
     format!(
-        "Follows {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
-        trace.along_m, trace.length_m, trace.rms_m, trace.looked_at
+        "{} {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
+        if trace.is_searching { "So far it follows" } else { "Follows" },
+        trace.along_m,
+        trace.length_m,
+        trace.rms_m,
+        trace.looked_at
     )
 }
 

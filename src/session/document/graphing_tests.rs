@@ -234,6 +234,37 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
 }
 
 #[test]
+fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    let mut patient = opened(SMALL);
+    set(&mut patient, Key::WalkPath, Value::Text(write_path(&line)));
+    let mut hasty = opened(SMALL);
+    hasty
+        .apply(Command::Set(vec![(Key::WalkPath, Value::Text(write_path(&line)))]))
+        .unwrap();
+    let (mut shown, mut along) = (0, 0.0);
+    let mut last = Arc::clone(walk(&hasty));
+    while hasty.work() {
+        // A slow machine.
+        hasty.work_took(0.3);
+        if !Arc::ptr_eq(&last, walk(&hasty)) {
+            last = Arc::clone(walk(&hasty));
+            let trace = last.followed.as_ref().unwrap();
+            shown += usize::from(trace.is_searching);
+            assert!(trace.along_m + 2.0 > along && last.motion.clip.frames() >= 20 * 60);
+            along = trace.along_m;
+            assert_eq!(hasty.jobs().is_empty(), !trace.is_searching);
+        }
+    }
+    assert!(shown >= 2, "{shown}");
+    // How long one had to wait changes nothing in the end.
+    let (a, b) = (walk(&patient), walk(&hasty));
+    assert_eq!(a.followed, b.followed);
+    assert!(!a.followed.as_ref().unwrap().is_searching);
+    assert_eq!((&a.passed, &a.motion.clip), (&b.passed, &b.motion.clip));
+}
+
+#[test]
 fn one_transition_plays_alone() {
     let mut session = opened(SMALL);
     let jump = walk(&session).built.whole().jumps()[3];

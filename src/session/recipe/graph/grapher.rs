@@ -49,6 +49,8 @@ pub(in crate::session) struct Grapher {
     /// Seconds of work, by what it was for.
     took: Vec<(GraphKey, f64)>,
     worked_for: Option<GraphKey>,
+    /// The last slice was one of the last maker's.
+    stepped: bool,
 }
 
 /// Where one may go over, on the way.
@@ -118,6 +120,10 @@ impl Grapher {
 
     /// How long the last slice took, seconds.
     pub(in crate::session) fn took(&mut self, secs: f64) {
+        if let (true, Some((_, Ok(maker)))) = (self.stepped, self.makers.last_mut()) {
+            maker.took(secs);
+        }
+        self.stepped = false;
         let Some(key) = self.worked_for.take() else { return };
         match self.took.iter_mut().find(|(known, _)| *known == key) {
             Some((_, sum)) => *sum += secs,
@@ -140,7 +146,7 @@ impl Grapher {
     /// One slice of what panes wait for, and of walks that the playhead comes near the end of. `false` when there was nothing to do.
     pub(in crate::session) fn work(&mut self, now_secs: f64) -> bool {
         self.now_secs = now_secs;
-        self.worked_for = None;
+        (self.worked_for, self.stepped) = (None, false);
         let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
         let Some(wanted) = next else { return false };
         if let Err(problem) = self.step(&wanted) {
@@ -181,7 +187,7 @@ impl Grapher {
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
         match self.makers.iter().find(|(known, _)| known == wanted) {
             // That a walk gets longer is nothing to wait for.
-            Some((_, Ok(maker))) if maker.walk().is_some() => return None,
+            Some((_, Ok(maker))) if maker.walk().is_some() && !maker.is_searching() => return None,
             Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
             _ if self.known(wanted.graph).is_some() => return Some(0.85),
             _ => {}
@@ -233,6 +239,7 @@ impl Grapher {
             let guide = guide.map(|walk| (Arc::clone(&walk.passed), guide_window(wanted)));
             let entry = self.makers.remove(at);
             self.makers.push(entry);
+            self.stepped = true;
             if let Some((_, Ok(maker))) = self.makers.last_mut() {
                 self.is_ready |= maker.step(self.now_secs, guide)?;
             }

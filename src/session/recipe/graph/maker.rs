@@ -3,7 +3,8 @@ use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
 use crate::clip::Contacts;
 use crate::graph::{
-    Choices, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece, Walker, assembled,
+    Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
+    Walker,
 };
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
@@ -18,12 +19,19 @@ const AHEAD_SECS: f64 = 20.0;
 const LONGEST_SECS: f64 = 1_800.0;
 /// Before and behind a single transition so much of both clips plays, seconds.
 const AROUND_JUMP_SECS: f64 = 1.2;
-/// Nodes that a search for a ground path looks at in all.
+/// Nodes that a search for a ground path looks at in all. It bounds what a link shows, on every machine the same.
 const PATH_BUDGET: usize = 60_000;
+/// Nodes in one slice, about two milliseconds.
+const PATH_NODES: usize = 2_000;
+/// How long one waits for a search, seconds of work: then the best so far is walked, while the search goes on to its end, and so again and again. How long that takes
+/// changes nothing of the walk in the end.
+const PATH_WAIT_SECS: f64 = 1.0;
 /// How far from another walk's transition one counts as the same, seconds at each end.
 const GUIDE_SECS: f64 = 0.3;
 /// Stays of that walk among which it is looked for.
 const GUIDE_STAYS: usize = 12;
+/// Frames that one slice puts together to be shown, about three milliseconds.
+const PUBLISHED_FRAMES: usize = 10_000;
 /// Edges that one slice goes over for the expected run.
 const RUN_EDGES: usize = 200_000;
 
@@ -39,6 +47,10 @@ pub(super) struct Maker {
     run: RunLength,
     run_is_known: bool,
     search: Option<(PathSearch, GroundPath)>,
+    /// Seconds of search since the best so far was shown.
+    searched_secs: f64,
+    /// Makes the walk that follows the path as far as it is known.
+    preview: Option<Box<Self>>,
     trace: Option<Trace>,
     walker: Walker,
     stitcher: Stitcher,
@@ -54,6 +66,8 @@ pub(super) struct Maker {
     ends: bool,
     /// How long it is to be next.
     goal: usize,
+    /// The walk to be shown, as far as it is put together.
+    publishing: Option<Assembling>,
     walk: Option<Arc<Walk>>,
 }
 
@@ -73,6 +87,8 @@ impl Maker {
             run_is_known: false,
             walker,
             search,
+            searched_secs: 0.0,
+            preview: None,
             trace: None,
             stitcher: Stitcher::new(Arc::clone(built.cast.set()), &wanted.stitch),
             meter: WalkMeter::new(built.cast.set()),
@@ -84,6 +100,7 @@ impl Maker {
             guided: 0,
             ends: false,
             goal: 0,
+            publishing: None,
             walk: None,
             choices,
             built: Arc::clone(built),
@@ -102,7 +119,9 @@ impl Maker {
 
     /// Whether it should be longer while the playhead is there.
     pub(super) fn is_short(&self, now_secs: f64) -> bool {
-        let Some(walk) = &self.walk else { return true };
+        let Some(walk) = self.walk.as_ref().filter(|_| self.search.is_none()) else {
+            return true;
+        };
         let secs = walk.motion.clip.frames() as f64 / self.fps();
         !walk.ends && !walk.is_jump && secs < (now_secs + AHEAD_SECS).min(LONGEST_SECS)
     }
@@ -125,13 +144,10 @@ impl Maker {
             self.run_is_known = self.run.advance(self.built.graph(), &self.choices, steps);
             return Ok(false);
         }
-        if let Some((search, path)) = &mut self.search {
-            if search.advance(self.built.graph(), path) {
-                self.follow();
-            }
-            return Ok(false);
+        if self.search.is_some() {
+            return self.seek(now_secs);
         }
-        if self.goal <= self.frames || self.goal == 0 {
+        if self.publishing.is_none() && (self.goal <= self.frames || self.goal == 0) {
             self.goal = self.next_goal(now_secs);
         }
         if self.frames < self.goal && !self.ends {
@@ -143,7 +159,14 @@ impl Maker {
         if self.frames < self.goal && !self.ends {
             return Ok(false);
         }
-        self.walk = Some(Arc::new(self.so_far().map_err(told)?));
+        let begun = self.publishing.take();
+        let begun = begun.or_else(|| Assembling::new(&self.pieces, self.goal.min(self.frames)));
+        let mut assembling = begun.ok_or(GraphError::NowhereToGo).map_err(told)?;
+        if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
+            self.publishing = Some(assembling);
+            return Ok(false);
+        }
+        self.walk = Some(Arc::new(self.so_far(assembling).map_err(told)?));
         Ok(true)
     }
 
@@ -162,16 +185,63 @@ impl Maker {
             .mul_add(self.fps(), 0.5) as usize
     }
 
-    /// The line was searched for: the walk takes what was found.
-    fn follow(&mut self) {
-        let Some((search, path)) = self.search.take() else { return };
-        let found = search.finish(&path);
+    /// A slice of the search for a path, or of the walk that shows the best so far.
+    fn seek(&mut self, now_secs: f64) -> Result<bool, String> {
+        if let Some(mut preview) = self.preview.take() {
+            if preview.step(now_secs, None)? {
+                self.walk = preview.walk;
+                return Ok(true);
+            }
+            self.preview = Some(preview);
+            return Ok(false);
+        }
+        let Some((search, path)) = &mut self.search else { return Ok(false) };
+        let is_over = search.advance(self.built.graph(), path, PATH_NODES);
+        if is_over || self.searched_secs >= PATH_WAIT_SECS {
+            let found = search.so_far(self.built.graph(), path);
+            let length = path.length();
+            self.searched_secs = 0.0;
+            if is_over {
+                self.search = None;
+                self.follow(found, length, false);
+                // What was shown meanwhile does not count.
+                self.walk = None;
+            } else {
+                let wanted = Wanted {
+                    path: Vec::new(),
+                    ..self.wanted.clone()
+                };
+                let mut preview = Self::new(&self.built, &wanted)?;
+                (preview.run, preview.run_is_known) = (self.run.clone(), true);
+                preview.wanted.path.clone_from(&self.wanted.path);
+                preview.follow(found, length, true);
+                self.preview = Some(Box::new(preview));
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a path is searched for.
+    pub(super) fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// How long the last slice took, seconds.
+    pub(super) fn took(&mut self, secs: f64) {
+        if self.is_searching() && self.preview.is_none() {
+            self.searched_secs += secs;
+        }
+    }
+
+    /// The walk takes what was found.
+    fn follow(&mut self, found: Followed, length_m: f64, is_searching: bool) {
         self.trace = Some(Trace {
             points: self.wanted.path.clone(),
             rms_m: found.rms_m,
             along_m: found.along_m,
-            length_m: path.length(),
+            length_m,
             looked_at: found.looked_at,
+            is_searching,
         });
         self.walker.take(found.edges);
         self.stitcher.start_at(found.world_from_first);
@@ -298,19 +368,17 @@ impl Maker {
     }
 
     /// The walk as it is now.
-    fn so_far(&mut self) -> Result<Walk, GraphError> {
+    fn so_far(&self, assembling: Assembling) -> Result<Walk, GraphError> {
         let metrics = match &self.metrics {
             Some(metrics) => metrics.clone(),
             None => self.measured(),
         };
-        let frames = self.goal.min(self.frames);
-        let (clip, mut ground_frames) = assembled(&self.pieces)?.ok_or(GraphError::NowhereToGo)?;
-        let clip = if frames < clip.frames() { clip.crop(0..frames)? } else { clip };
-        ground_frames.truncate(clip.frames());
+        let (clip, ground_frames) = assembling.finish()?;
         let planted = self.planted.clone().map(|mut flags| {
             flags.truncate(clip.frames());
             flags
         });
+        let clip_frames = clip.frames();
         let roles = self.built.cast.motions().first().map(|motion| motion.roles.clone());
         let motion = Motion {
             contacts: Contacts::from_flags(planted),
@@ -326,7 +394,7 @@ impl Maker {
             motion: Arc::new(motion),
             passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
             metrics,
-            ends: self.ends && frames == self.frames,
+            ends: self.ends && clip_frames == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),
             is_guided: self.wanted.guide.is_some(),
@@ -365,8 +433,9 @@ impl Maker {
             let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
             self.take(piece);
         }
-        self.goal = self.frames;
-        let mut walk = self.so_far().map_err(|error| sentence(&error))?;
+        let mut assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NowhereToGo))?;
+        assembling.advance(&self.pieces, self.frames);
+        let mut walk = self.so_far(assembling).map_err(|error| sentence(&error))?;
         // Of one transition these say nothing.
         walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
         Ok(walk)
