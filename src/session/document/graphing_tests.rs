@@ -265,6 +265,23 @@ fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
 }
 
 #[test]
+fn held_feet_stay_where_they_are_while_the_walk_grows() {
+    let mut session = opened(&format!("{SMALL}&foot_lock=on"));
+    let before = Arc::clone(walk(&session));
+    let free = opened(SMALL);
+    assert_eq!(way(&before), way(walk(&free)), "the same walk");
+    assert_ne!(before.motion.clip, walk(&free).motion.clip);
+    session.apply(Command::Seek(15.0)).unwrap();
+    while session.work() {}
+    let after = walk(&session);
+    assert!(after.motion.clip.frames() > before.motion.clip.frames());
+    // What is about to play is what was shown before.
+    for frame in 0..18 * 60 {
+        assert_eq!(after.motion.clip.rotations(frame), before.motion.clip.rotations(frame), "{frame}");
+    }
+}
+
+#[test]
 fn one_transition_plays_alone() {
     let mut session = opened(SMALL);
     let jump = walk(&session).built.whole().jumps()[3];

@@ -8,7 +8,9 @@ use crate::graph::{
 };
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
+use crate::session::recipe::feet::{slide, slide_before};
 use crate::skeleton::Side;
+use crate::transition::{FootLockOptions, FootLocking};
 use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 use std::sync::Arc;
@@ -35,8 +37,19 @@ const PUBLISHED_FRAMES: usize = 10_000;
 /// Edges that one slice goes over for the expected run.
 const RUN_EDGES: usize = 200_000;
 
+/// Frames that one slice holds the feet of, about four milliseconds.
+const LOCKED_FRAMES: usize = 2_000;
+
 /// The stays of a walk that another goes like, and its blend window.
 pub(super) type Guide = (Arc<Vec<Passed>>, usize);
+
+/// A walk on its way to be shown. With held feet all of it is locked anew: what has played stays, since a stance, and what it moves around it, is a matter
+/// of a second, and a walk ends far ahead of the playhead.
+#[derive(Debug)]
+enum Publishing {
+    Assembling(Assembling),
+    Locking(Box<FootLocking>, Motion),
+}
 
 /// Makes a walk, stay by stay.
 #[derive(Debug)]
@@ -67,7 +80,9 @@ pub(super) struct Maker {
     /// How long it is to be next.
     goal: usize,
     /// The walk to be shown, as far as it is put together.
-    publishing: Option<Assembling>,
+    publishing: Option<Publishing>,
+    /// How far feet slide where they are held, and how far they would.
+    slides: Option<[Metric; 2]>,
     walk: Option<Arc<Walk>>,
 }
 
@@ -101,6 +116,7 @@ impl Maker {
             ends: false,
             goal: 0,
             publishing: None,
+            slides: None,
             walk: None,
             choices,
             built: Arc::clone(built),
@@ -159,15 +175,56 @@ impl Maker {
         if self.frames < self.goal && !self.ends {
             return Ok(false);
         }
-        let begun = self.publishing.take();
-        let begun = begun.or_else(|| Assembling::new(&self.pieces, self.goal.min(self.frames)));
-        let mut assembling = begun.ok_or(GraphError::NowhereToGo).map_err(told)?;
-        if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
-            self.publishing = Some(assembling);
-            return Ok(false);
+        let found = match self.publishing.take() {
+            Some(publishing) => publishing,
+            None => {
+                let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
+                Publishing::Assembling(assembling.ok_or(GraphError::NowhereToGo).map_err(told)?)
+            }
+        };
+        match self.published(found)? {
+            Ok(motion) => {
+                self.walk = Some(Arc::new(self.walk_of(motion)));
+                Ok(true)
+            }
+            Err(publishing) => {
+                self.publishing = Some(publishing);
+                Ok(false)
+            }
         }
-        self.walk = Some(Arc::new(self.so_far(assembling).map_err(told)?));
-        Ok(true)
+    }
+
+    /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left to do.
+    fn published(&mut self, publishing: Publishing) -> Result<Result<Motion, Publishing>, String> {
+        match publishing {
+            Publishing::Assembling(mut assembling) => {
+                if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
+                    return Ok(Err(Publishing::Assembling(assembling)));
+                }
+                let motion = self.motion(assembling).map_err(|error| sentence(&error))?;
+                if !self.wanted.foot_lock {
+                    return Ok(Ok(motion));
+                }
+                let options = FootLockOptions::default();
+                let locking = FootLocking::new(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, &options);
+                let locking = locking.map_err(|error| error.to_string())?;
+                Ok(Err(Publishing::Locking(Box::new(locking), motion)))
+            }
+            Publishing::Locking(mut locking, motion) => {
+                if locking.advance(LOCKED_FRAMES) {
+                    return Ok(Err(Publishing::Locking(locking, motion)));
+                }
+                let locked = Motion {
+                    clip: Arc::new(locking.finish().map_err(|error| error.to_string())?),
+                    ..motion.clone()
+                };
+                if self.slides.is_none() {
+                    let of = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
+                    self.slides = Some([of(&locked), slide_before(of(&motion).value)]);
+                }
+                Ok(Ok(locked))
+            }
+        }
     }
 
     /// Frames: what is measured at first, then as far as the playhead asks for, and a good part more.
@@ -367,38 +424,46 @@ impl Maker {
         metrics.list().to_vec()
     }
 
-    /// The walk as it is now.
-    fn so_far(&self, assembling: Assembling) -> Result<Walk, GraphError> {
-        let metrics = match &self.metrics {
-            Some(metrics) => metrics.clone(),
-            None => self.measured(),
-        };
+    /// What was assembled, as a motion.
+    fn motion(&self, assembling: Assembling) -> Result<Motion, GraphError> {
         let (clip, ground_frames) = assembling.finish()?;
         let planted = self.planted.clone().map(|mut flags| {
             flags.truncate(clip.frames());
             flags
         });
-        let clip_frames = clip.frames();
         let roles = self.built.cast.motions().first().map(|motion| motion.roles.clone());
-        let motion = Motion {
+        Ok(Motion {
             contacts: Contacts::from_flags(planted),
             roles: roles.unwrap_or_default(),
             ground_frames,
             clip: Arc::new(clip),
+        })
+    }
+
+    /// The walk as it is now.
+    fn walk_of(&self, motion: Motion) -> Walk {
+        let mut metrics = match &self.metrics {
+            Some(metrics) => metrics.clone(),
+            None => self.measured(),
         };
+        if let Some(slides) = &self.slides {
+            // That one is of feet that are not held.
+            metrics.retain(|metric| metric.id != "walk_skate_cm");
+            metrics.extend(slides.iter().cloned());
+        }
         let run_secs = self.run.secs(self.built.graph(), &self.choices);
-        Ok(Walk {
+        Walk {
             built: Arc::clone(&self.built),
             choices: Arc::clone(&self.choices),
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
-            motion: Arc::new(motion),
             passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
             metrics,
-            ends: self.ends && clip_frames == self.frames,
+            ends: self.ends && motion.clip.frames() == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),
             is_guided: self.wanted.guide.is_some(),
-        })
+            motion: Arc::new(motion),
+        }
     }
 
     /// The end of one clip, a transition, and the beginning of another.
@@ -433,9 +498,16 @@ impl Maker {
             let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
             self.take(piece);
         }
-        let mut assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NowhereToGo))?;
-        assembling.advance(&self.pieces, self.frames);
-        let mut walk = self.so_far(assembling).map_err(|error| sentence(&error))?;
+        let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NowhereToGo))?;
+        let mut publishing = Publishing::Assembling(assembling);
+        // A few seconds of motion.
+        let motion = loop {
+            match self.published(publishing)? {
+                Ok(motion) => break motion,
+                Err(rest) => publishing = rest,
+            }
+        };
+        let mut walk = self.walk_of(motion);
         // Of one transition these say nothing.
         walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
         Ok(walk)
