@@ -275,10 +275,13 @@ fn held_feet_stay_where_they_are_while_the_walk_grows() {
     while session.work() {}
     let after = walk(&session);
     assert!(after.motion.clip.frames() > before.motion.clip.frames());
-    // What is about to play is what was shown before.
+    // What is about to play is what was shown before, but for roundings: the plane in which a leg usually bends is that of the whole walk.
+    let mut most = 0.0_f32;
     for frame in 0..18 * 60 {
-        assert_eq!(after.motion.clip.rotations(frame), before.motion.clip.rotations(frame), "{frame}");
+        let pairs = after.motion.clip.rotations(frame).iter().zip(before.motion.clip.rotations(frame));
+        most = pairs.map(|(a, b)| (*a - *b).length()).fold(most, f32::max);
     }
+    assert!(most < 1e-5, "{most}");
 }
 
 #[test]

@@ -43,8 +43,9 @@ const LOCKED_FRAMES: usize = 2_000;
 /// The stays of a walk that another goes like, and its blend window.
 pub(super) type Guide = (Arc<Vec<Passed>>, usize);
 
-/// A walk on its way to be shown. With held feet all of it is locked anew: what has played stays, since a stance, and what it moves around it, is a matter
-/// of a second, and a walk ends far ahead of the playhead.
+/// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it moves around it are a matter of a second, and a walk ends
+/// far ahead of the playhead. What has played stays but for the plane in which a leg usually bends, which is a mean over the whole walk and counts where a leg is
+/// nearly straight.
 #[derive(Debug)]
 enum Publishing {
     Assembling(Assembling),
