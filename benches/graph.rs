@@ -42,7 +42,7 @@ fn graph(c: &mut Criterion) {
     };
     let terms = || {
         let mut all = AllPairs::new(Arc::clone(&set)).expect("few enough");
-        all.finish();
+        all.finish().expect("finite");
         all
     };
     let mut group = c.benchmark_group("graph");

@@ -61,7 +61,7 @@ pub fn clips_of_folder(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<A
 pub fn walk(set: &Arc<FrameSet>, options: &GraphOptions, stitch: &StitchOptions, seed: u64, secs: f64) -> Result<Walked, Box<dyn Error>> {
     let start = Instant::now();
     let mut all = AllPairs::new(Arc::clone(set))?;
-    all.finish();
+    all.finish()?;
     let terms = start.elapsed().as_secs_f64();
     let distances = all.distances(options.blend_window)?;
     let window = start.elapsed().as_secs_f64() - terms;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 /// A clip that is put together from frames of others. A joint that moves against its parent in any of them does so in the result, and rests where
 /// its clip does not move it.
+#[derive(Debug)]
 pub(crate) struct Assembly {
     skeleton: Arc<Skeleton>,
     fps: f64,

@@ -1,9 +1,12 @@
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
-    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds, Progress, RegistrationError, SelfSweep,
-    SelfTerms, Sweep, SymmetricDistances,
+    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds, PointCloudsBegun, Progress,
+    RegistrationError, SelfSweep, SelfTerms, Sweep, SymmetricDistances,
 };
 use std::sync::Arc;
+
+/// To find where the joints of a frame are takes as long as to compare so many pairs.
+pub(super) const PAIRS_PER_FRAME: usize = 250;
 
 /// The terms of all pairs of frames of a set, clip by clip, from which the distances of windows of any length follow
 /// ([`PairTerms`]). Every pair is compared once: the distance of two windows is the same both ways.
@@ -13,8 +16,14 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct AllPairs {
     set: Arc<FrameSet>,
-    /// (a, b) with a ≤ b, row by row.
+    level_m: f64,
+    /// The points of the next clip.
+    begun: Option<PointCloudsBegun>,
+    clouds: Vec<PointClouds>,
+    /// (a, b) with a ≤ b, row by row, as far as they are begun.
     blocks: Vec<Block>,
+    /// Pairs in the blocks before the last.
+    done: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -52,8 +61,7 @@ impl AllPairs {
     /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`GraphError::Registration`] when a position is not finite, or the pairs are more than memory should be taken for (67 million, 12
-    /// bytes each).
+    /// [`GraphError::Registration`] when the pairs are more than memory should be taken for (67 million, 12 bytes each).
     pub fn new(set: Arc<FrameSet>) -> Result<Self, GraphError> {
         let frames = set.frames();
         let pairs = frames.saturating_mul(frames.saturating_add(1)) / 2;
@@ -66,18 +74,14 @@ impl AllPairs {
             }
             .into());
         }
-        let level = level_m(&set)?;
-        let clouds = (set.clips().iter())
-            .map(|source| PointClouds::new(source.clip(), 0..source.clip().frames(), set.weights(), 1, level))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut blocks = Vec::new();
-        for (a, source) in clouds.iter().enumerate() {
-            blocks.push(Block::Itself(SelfTerms::new(source)?, source.samples()));
-            for target in &clouds[a + 1..] {
-                blocks.push(Block::Pair(PairTerms::of_clouds(source, target)?, target.samples()));
-            }
-        }
-        Ok(Self { set, blocks })
+        Ok(Self {
+            level_m: level_m(&set)?,
+            set,
+            begun: None,
+            clouds: Vec::new(),
+            blocks: Vec::new(),
+            done: 0,
+        })
     }
 
     /// The frames that are compared.
@@ -86,34 +90,81 @@ impl AllPairs {
         &self.set
     }
 
-    /// Compares at least `pairs` more pairs of frames, and says how many are done. 100,000 take about a millisecond.
-    pub fn advance(&mut self, pairs: usize) -> Progress {
-        let mut left = pairs;
-        for block in &mut self.blocks {
-            let before = block.pairs();
-            if before.0 < before.1 && left > 0 {
+    /// Compares about `pairs` more pairs of frames, and says how much is done. 100,000 take about a millisecond. Before that the points of the frames are
+    /// found, which counts as 250 pairs a frame.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`] when a position is not finite.
+    pub fn advance(&mut self, pairs: usize) -> Result<Progress, GraphError> {
+        let until = self.progress().done.saturating_add(pairs.max(1));
+        while self.clouds.len() < self.set.clips().len() && self.progress().done < until {
+            self.find_points((until - self.progress().done).div_ceil(PAIRS_PER_FRAME))?;
+        }
+        while self.progress().done < until && self.has_block()? {
+            let left = until - self.progress().done;
+            if let Some(block) = self.blocks.last_mut() {
                 block.advance(left);
-                left = left.saturating_sub(block.pairs().0 - before.0);
             }
         }
-        self.progress()
+        Ok(self.progress())
+    }
+
+    /// The points of at least so many more frames of a clip.
+    fn find_points(&mut self, frames: usize) -> Result<(), GraphError> {
+        let Some(source) = self.set.clip(self.clouds.len()) else {
+            return Ok(());
+        };
+        let clip = source.clip();
+        let mut begun = match self.begun.take() {
+            Some(begun) => begun,
+            None => PointCloudsBegun::new(clip, 0..clip.frames(), self.set.weights(), 1, self.level_m)?,
+        };
+        if begun.advance(clip, frames)?.is_complete() {
+            self.clouds.push(begun.finish(clip)?);
+        } else {
+            self.begun = Some(begun);
+        }
+        Ok(())
+    }
+
+    /// Whether a block is under way, or the next one could be begun.
+    fn has_block(&mut self) -> Result<bool, GraphError> {
+        let last = self.blocks.last().map(Block::pairs);
+        if last.is_some_and(|(done, total)| done < total) {
+            return Ok(true);
+        }
+        let clips = self.clouds.len();
+        let mut next = (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b))).skip(self.blocks.len());
+        let Some((a, b)) = next.next() else { return Ok(false) };
+        let (source, target) = (&self.clouds[a], &self.clouds[b]);
+        self.blocks.push(if a == b {
+            Block::Itself(SelfTerms::new(source)?, source.samples())
+        } else {
+            Block::Pair(PairTerms::of_clouds(source, target)?, target.samples())
+        });
+        self.done += last.map_or(0, |(_, total)| total);
+        Ok(true)
     }
 
     /// All pairs at once.
-    pub fn finish(&mut self) {
-        self.advance(usize::MAX);
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn finish(&mut self) -> Result<(), GraphError> {
+        self.advance(usize::MAX).map(|_| ())
     }
 
-    /// How many pairs of frames are done.
+    /// How much is done, in pairs of frames.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let mut progress = Progress { done: 0, total: 0 };
-        for block in &self.blocks {
-            let (done, total) = block.pairs();
-            progress.done += done;
-            progress.total += total;
+        let frames = self.set.frames();
+        let known: usize = self.clouds.iter().map(PointClouds::samples).sum();
+        let known = known + self.begun.as_ref().map_or(0, PointCloudsBegun::done);
+        let pairs = self.done + self.blocks.last().map_or(0, |block| block.pairs().0);
+        Progress {
+            done: PAIRS_PER_FRAME * known + pairs,
+            total: PAIRS_PER_FRAME * frames + frames * (frames + 1) / 2,
         }
-        progress
     }
 
     /// The distances of all windows of `window` frames (0 counts as 1), in slices.
@@ -337,6 +388,13 @@ impl BlockDistances {
     }
 }
 
+/// How far a histogram is counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CountedTo {
+    block: usize,
+    row: usize,
+}
+
 impl FrameDistances {
     /// The frames that are compared.
     #[must_use]
@@ -403,29 +461,39 @@ impl FrameDistances {
     #[must_use]
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
-        for block in 0..self.blocks.len() {
-            self.count(block, bin_cm, &mut counts);
-        }
+        self.count(&mut CountedTo::default(), usize::MAX, bin_cm, &mut counts);
         counts
     }
 
-    /// How many pairs of clips there are, a clip with itself included.
-    #[must_use]
-    pub fn pairs_of_clips(&self) -> usize {
-        self.blocks.len()
+    /// [`Self::histogram`] of about `cells` more pairs of windows, at least one row, from where `at` says on, added to what is counted already; `true` behind the last.
+    pub fn count(&self, at: &mut CountedTo, cells: usize, bin_cm: f64, counts: &mut [u32]) -> bool {
+        let mut left = cells.max(1);
+        while left > 0 && at.block < self.blocks.len() {
+            let Some(block) = self.blocks.get(at.block) else { break };
+            let (rows, columns) = block.size();
+            let end = (at.row + left.div_ceil(columns.max(1))).min(rows);
+            self.count_rows(block, at.row..end, bin_cm, counts);
+            left = left.saturating_sub((end - at.row) * columns);
+            *at = if end < rows {
+                CountedTo { row: end, ..*at }
+            } else {
+                CountedTo {
+                    block: at.block + 1,
+                    row: 0,
+                }
+            };
+        }
+        at.block >= self.blocks.len()
     }
 
-    /// [`Self::histogram`] of one pair of clips, added to what is counted already.
-    pub fn count(&self, pair: usize, bin_cm: f64, counts: &mut [u32]) {
-        let (Some(block), Some(last)) = (self.blocks.get(pair), counts.len().checked_sub(1)) else {
-            return;
-        };
+    fn count_rows(&self, block: &BlockDistances, rows: std::ops::Range<usize>, bin_cm: f64, counts: &mut [u32]) {
+        let Some(last) = counts.len().checked_sub(1) else { return };
         let scale = if bin_cm > 0.0 {
             (self.set.cm_per_m() / bin_cm) as f32
         } else {
             f32::MAX
         };
-        for row in 0..block.size().0 {
+        for row in rows {
             let (_, distances) = block.row(row);
             let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
             for &distance in distances.get(itself..).unwrap_or_default() {

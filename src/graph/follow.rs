@@ -92,19 +92,22 @@ pub struct Followed {
 /// lies a few seconds ahead, of which the first is kept, and so on.
 ///
 /// The cost is the squared distance, summed over time, of the character from the point of the path that is as far along it as the character has
-/// walked; a little is added per second. `budget` is the number of nodes that are looked at in all: a number, in place of a time, gives the same way on
-/// every machine. When it is used up, the best so far is given. The character starts at node `start`, at the path's first point, and faces along it.
+/// walked; a little is added per second. `budget` is the number of nodes that are looked at in all. When it is used up, the best so far is given. The
+/// character starts at node `start`, at the path's first point, and faces along it.
+///
+/// *Why a number and not a time.* A number gives the same way on every machine, so that a link that holds a path shows everybody the same walk. Time bounds
+/// the waiting alone: whoever cannot wait for the end shows [`PathSearch::so_far`], and goes on.
 ///
 /// Clips are laid on each other as their transitions' alignments say. What the [`Stitcher`](super::Stitcher) makes of it blends velocities and drifts
 /// off that by centimetres per transition.
 #[must_use]
 pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Followed {
     let mut search = PathSearch::new(graph, start, path, budget);
-    while !search.advance(graph, path) {}
-    search.finish(path)
+    while !search.advance(graph, path, usize::MAX) {}
+    search.so_far(graph, path)
 }
 
-/// [`follow`], second by second of the walk.
+/// [`follow`] in slices of a number of nodes. However it is cut, it finds the same.
 #[derive(Clone, Debug)]
 pub struct PathSearch {
     world_from_first: Planar,
@@ -112,6 +115,9 @@ pub struct PathSearch {
     edges: Vec<EdgeIndex>,
     looked_at: usize,
     budget: usize,
+    /// The search of what lies ahead of `here`.
+    ahead: Option<Ahead>,
+    is_over: bool,
 }
 
 impl PathSearch {
@@ -133,39 +139,51 @@ impl PathSearch {
             edges: Vec::new(),
             looked_at: 0,
             budget,
+            ahead: None,
+            is_over: false,
         }
     }
 
-    /// Looks a few seconds ahead and goes on by one; `true` when the path, the ways or the budget are at an end.
-    pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath) -> bool {
-        if self.here.along >= path.length() || self.looked_at >= self.budget {
-            return true;
+    /// Looks at about `nodes` more nodes; `true` when the path, the ways or the budget are at an end. Every call is given the same graph and path.
+    pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath, nodes: usize) -> bool {
+        let ground = Ground { graph, path };
+        let until = self.looked_at.saturating_add(nodes.max(1));
+        while !self.is_over && self.looked_at < until {
+            let ahead = match &mut self.ahead {
+                Some(ahead) => ahead,
+                None if self.here.along >= path.length() || self.looked_at >= self.budget => {
+                    self.is_over = true;
+                    break;
+                }
+                none => {
+                    // Enough for every second of the path at a slow walk.
+                    let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
+                    none.insert(Ahead::new(Limits {
+                        stop_at: (self.looked_at + (self.budget / stages).max(64)).min(self.budget),
+                        until: self.here.frames as f64 + HORIZON_SECS * graph.set().fps(),
+                    }))
+                }
+            };
+            if ahead.advance(&ground, &self.here, &mut self.looked_at, until) {
+                self.go_on(&ground);
+            }
         }
-        // Enough for every second of the path at a slow walk.
-        let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
-        let fps = graph.set().fps();
-        let mut search = Search {
-            graph,
-            path,
-            looked_at: self.looked_at,
-            stop_at: (self.looked_at + (self.budget / stages).max(64)).min(self.budget),
-            until: self.here.frames as f64 + HORIZON_SECS * fps,
-            trail: Vec::new(),
-            best: None,
-        };
-        search.descend(&self.here);
-        self.looked_at = search.looked_at;
-        let Some((_, way)) = search.best.take() else { return true };
-        let kept = self.here.frames as f64 + KEPT_SECS * fps;
+        self.is_over
+    }
+
+    /// Goes the first second of the best way ahead.
+    fn go_on(&mut self, ground: &Ground<'_>) {
+        let best = self.ahead.take().and_then(|ahead| ahead.best);
+        let kept = self.here.frames as f64 + KEPT_SECS * ground.graph.set().fps();
         let before = self.edges.len();
-        for edge in way {
+        for edge in best.map(|(_, way)| way).unwrap_or_default() {
             if self.edges.len() > before && self.here.frames as f64 >= kept {
                 break;
             }
-            self.here = search.behind(&self.here, edge);
+            self.here = ground.behind(&self.here, edge);
             self.edges.push(edge);
         }
-        self.edges.len() == before
+        self.is_over = self.edges.len() == before;
     }
 
     /// How much of the path is walked along, 0 to 1.
@@ -174,12 +192,18 @@ impl PathSearch {
         (self.here.along / path.length()).min(1.0)
     }
 
-    /// The best so far.
+    /// The best so far: what is kept, and the best way ahead.
     #[must_use]
-    pub fn finish(self, path: &GroundPath) -> Followed {
-        let here = self.here;
+    pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> Followed {
+        let ground = Ground { graph, path };
+        let (mut here, mut edges) = (self.here, self.edges.clone());
+        let best = self.ahead.as_ref().and_then(|ahead| ahead.best.as_ref());
+        for &edge in best.map(|(_, way)| way.as_slice()).unwrap_or_default() {
+            here = ground.behind(&here, edge);
+            edges.push(edge);
+        }
         Followed {
-            edges: self.edges,
+            edges,
             world_from_first: self.world_from_first,
             rms_m: (here.square / (here.frames as f64).max(1.0)).sqrt(),
             along_m: here.along.min(path.length()),
@@ -213,58 +237,102 @@ struct State {
     frames: usize,
 }
 
-struct Search<'a> {
-    graph: &'a MotionGraph,
-    path: &'a GroundPath,
-    looked_at: usize,
+/// When a search of what lies ahead ends.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    /// So many nodes are looked at in all.
     stop_at: usize,
     /// The frame up to which is searched.
     until: f64,
+}
+
+/// Branch and bound over the ways of a few seconds, depth first.
+#[derive(Clone, Debug)]
+struct Ahead {
+    limits: Limits,
+    is_begun: bool,
+    /// The edges that lead to the deepest level.
     trail: Vec<EdgeIndex>,
+    /// On each level the ways that were not gone yet.
+    levels: Vec<std::vec::IntoIter<(EdgeIndex, State)>>,
     best: Option<(u64, Vec<EdgeIndex>)>,
 }
 
-impl Search<'_> {
-    /// What is still to be paid at least: the rest of the path on the path itself, at a run.
-    fn to_come(&self, state: &State) -> u64 {
-        let left = (self.path.length() - state.along).max(0.0);
-        (left / 4.0 * PATIENCE * self.graph.set().fps() * 1e6) as u64
+impl Ahead {
+    fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            is_begun: false,
+            trail: Vec::new(),
+            levels: Vec::new(),
+            best: None,
+        }
     }
 
-    fn descend(&mut self, here: &State) {
-        let bound = here.cost.saturating_add(self.to_come(here));
-        if self.best.as_ref().is_some_and(|(best, _)| bound >= *best) {
-            return;
+    /// Goes on until so many nodes are looked at; `true` when all ways are gone, or enough of them.
+    fn advance(&mut self, ground: &Ground<'_>, here: &State, looked_at: &mut usize, until: usize) -> bool {
+        if !std::mem::replace(&mut self.is_begun, true) {
+            self.descend(ground, here, looked_at);
         }
-        let mut ways: Vec<(u64, EdgeIndex, State)> = Vec::new();
-        if here.along < self.path.length() && (here.frames as f64) < self.until {
-            let edges: Vec<EdgeIndex> = self.graph.graph().edges(here.node).map(|edge| edge.id()).collect();
-            for edge in edges {
-                self.looked_at += 1;
-                let next = self.behind(here, edge);
-                ways.push((next.cost.saturating_add(self.to_come(&next)), edge, next));
+        while let Some(level) = self.levels.last_mut() {
+            // The first way down is always gone to its end.
+            if self.best.is_some() && *looked_at >= self.limits.stop_at {
+                return true;
             }
+            if *looked_at >= until {
+                return false;
+            }
+            if let Some((edge, next)) = level.next() {
+                self.trail.push(edge);
+                self.descend(ground, &next, looked_at);
+            } else {
+                self.levels.pop();
+                self.trail.pop();
+            }
+        }
+        true
+    }
+
+    /// Opens the level below a state, or goes back.
+    fn descend(&mut self, ground: &Ground<'_>, here: &State, looked_at: &mut usize) {
+        let bound = here.cost.saturating_add(ground.to_come(here));
+        let goes_on = here.along < ground.path.length() && (here.frames as f64) < self.limits.until;
+        let is_better = |cost: u64| self.best.as_ref().is_none_or(|(best, _)| cost < *best);
+        let mut ways: Vec<(u64, EdgeIndex, State)> = Vec::new();
+        if is_better(bound) && goes_on {
+            ways.extend(ground.graph.graph().edges(here.node).map(|edge| {
+                let next = ground.behind(here, edge.id());
+                (next.cost.saturating_add(ground.to_come(&next)), edge.id(), next)
+            }));
+            *looked_at += ways.len();
         }
         if ways.is_empty() {
             // At the horizon, at the end of the path, or in a dead end: there what lies ahead cannot be walked.
-            let dead_end = here.along < self.path.length() && (here.frames as f64) < self.until;
-            let cost = if dead_end { u64::MAX - 1 } else { bound };
-            if self.best.as_ref().is_none_or(|(best, _)| cost < *best) {
+            let cost = if goes_on { u64::MAX - 1 } else { bound };
+            if is_better(bound) && is_better(cost) {
                 self.best = Some((cost, self.trail.clone()));
             }
+            self.trail.pop();
             return;
         }
         // The most promising first: a good bound early.
         ways.sort_by_key(|(bound, edge, _)| (*bound, *edge));
-        for (_, edge, next) in ways {
-            // The first way down is always gone to its end.
-            if self.best.is_some() && self.looked_at >= self.stop_at {
-                return;
-            }
-            self.trail.push(edge);
-            self.descend(&next);
-            self.trail.pop();
-        }
+        let ways: Vec<_> = ways.into_iter().map(|(_, edge, next)| (edge, next)).collect();
+        self.levels.push(ways.into_iter());
+    }
+}
+
+/// Where one walks.
+struct Ground<'a> {
+    graph: &'a MotionGraph,
+    path: &'a GroundPath,
+}
+
+impl Ground<'_> {
+    /// What is still to be paid at least: the rest of the path on the path itself, at a run.
+    fn to_come(&self, state: &State) -> u64 {
+        let left = (self.path.length() - state.along).max(0.0);
+        (left / 4.0 * PATIENCE * self.graph.set().fps() * 1e6) as u64
     }
 
     /// The state at the other end of an edge.

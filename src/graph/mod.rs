@@ -43,7 +43,7 @@
 //! let set = Arc::new(FrameSet::new(sources.to_vec(), height)?);
 //!
 //! let mut all = AllPairs::new(Arc::clone(&set))?;
-//! while !all.advance(100_000).is_complete() {}
+//! while !all.advance(100_000)?.is_complete() {}
 //! let window = 12;
 //! let options = GraphOptions { blend_window: window, edge_threshold_cm: 20.0, ..Default::default() };
 //! let candidates = Candidates::find(&all, &all.distances(window)?, &options)?;
@@ -67,7 +67,8 @@
 //! # Accuracy and cost
 //!
 //! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
-//! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips.
+//! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and
+//! leaves a picture of their distances from afar.
 //!
 //! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are
 //! the same on every machine; distances are rounded to 0.001 cm, probabilities are whole numbers, and chance is a generator (PCG) of whole
@@ -92,6 +93,8 @@ mod export;
 mod follow;
 mod frames;
 mod measure;
+mod overview;
+mod parts;
 mod stitch;
 mod stream;
 mod walk;
@@ -99,12 +102,13 @@ mod weights;
 
 pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
 pub use candidates::{Candidate, CandidateSearch, Candidates};
-pub use distances::{AllPairs, AllSweep, FrameDistances, PausedAllSweep};
+pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
 pub use follow::{Followed, GroundPath, PathSearch, follow};
 pub use frames::{FrameSet, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
-pub use stitch::{PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
+pub use overview::{DistanceDetail, DistanceOverview};
+pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};
 pub use weights::{Choices, DistanceLaw, RunLength, WeightOptions};

@@ -1,125 +1,139 @@
 use super::candidates::{Picker, is_minimum};
-use super::distances::level_m;
-use super::{Candidates, Construction, FrameSet, GraphError, GraphOptions, Place};
-use crate::registration::{PairTerms, PointClouds, Progress};
-use std::ops::Range;
+use super::parts::Parts;
+use super::{Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place};
+use crate::registration::Progress;
 use std::sync::Arc;
 
-/// Windows of a tile, to a side.
-const TILE: usize = 512;
-
-/// [`Candidates`] of clips that are too long for all pairs to be held: tile after tile is compared, searched, and dropped.
+/// [`Candidates`] of clips that are too long for all pairs to be held: tile after tile of 256 × 256 windows is compared, searched, and dropped. A
+/// [`DistanceOverview`] is left of them.
 ///
-/// 30,000 frames of 31 joints are 1,770 tiles of about 5 ms each, and 5 MB at a time beside the points (12 bytes per joint and frame) and what
-/// is found. A new window or threshold means to begin again.
+/// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each, and 1 MB at a time beside the points (12 bytes per joint and frame), the overview
+/// (8 MB) and what is found. A new window or threshold means to begin again.
 #[derive(Clone, Debug)]
 pub struct CandidateStream {
-    set: Arc<FrameSet>,
     options: GraphOptions,
     picker: Picker,
-    parts: Vec<Part>,
-    /// The next tile: parts a ≤ b.
-    next: (usize, usize),
+    work: Work,
+    /// Parts made and tiles done.
     done: usize,
+    total: usize,
 }
 
-/// A part of a clip: the windows that start in `starts`, and one more to either side, so that a minimum is seen to be one.
+/// First the parts are made, then the tiles of them.
 #[derive(Clone, Debug)]
-struct Part {
-    clip: usize,
-    starts: Range<usize>,
-    /// The first frame of the clouds.
-    from: usize,
-    clouds: PointClouds,
+enum Work {
+    Parts(Arc<Parts>),
+    Tiles {
+        parts: Arc<Parts>,
+        overview: Box<DistanceOverview>,
+        /// The next tile: parts a ≤ b.
+        next: (usize, usize),
+    },
+}
+
+impl Work {
+    fn tiles(parts: Arc<Parts>) -> Self {
+        Self::Tiles {
+            overview: Box::new(DistanceOverview::new(Arc::clone(&parts))),
+            parts,
+            next: (0, 0),
+        }
+    }
 }
 
 impl CandidateStream {
     /// Prepares the search.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or a position is not finite.
+    /// [`GraphError`] when the options do not fit the clips.
     pub fn new(set: &Arc<FrameSet>, options: &GraphOptions) -> Result<Self, GraphError> {
         options.check(set)?;
-        let (level, window) = (level_m(set)?, options.blend_window);
-        let mut parts = Vec::new();
-        for (clip, source) in set.clips().iter().enumerate() {
-            let frames = source.clip().frames();
-            let windows = (frames + 1).saturating_sub(window);
-            for start in (0..windows).step_by(TILE) {
-                let starts = start..(start + TILE).min(windows);
-                let from = start.saturating_sub(1);
-                let clouds = PointClouds::new(source.clip(), from..starts.end + window, set.weights(), 1, level)?;
-                parts.push(Part {
-                    clip,
-                    starts,
-                    from,
-                    clouds,
-                });
-            }
-        }
+        let parts = Parts::new(set, options.blend_window)?;
+        let count = parts.count();
         Ok(Self {
-            set: Arc::clone(set),
             options: *options,
             picker: Picker::new(Arc::clone(set), *options),
-            parts,
-            next: (0, 0),
+            work: Work::Parts(Arc::new(parts)),
             done: 0,
+            total: count + count * (count + 1) / 2,
         })
     }
 
-    /// Does up to `tiles` more tiles, and says how many are done.
+    /// Does up to `steps` more steps, and says how many are done: each prepares one of the parts that the clips are cut into, or compares two of
+    /// them. A step takes about 1.5 ms.
     ///
     /// # Errors
-    /// [`GraphError::Registration`]; not for clips that [`new`](Self::new) took.
-    pub fn advance(&mut self, tiles: usize) -> Result<Progress, GraphError> {
-        let total = self.parts.len() * (self.parts.len() + 1) / 2;
-        for _ in 0..tiles.min(total - self.done) {
-            self.tile()?;
+    /// [`GraphError::Registration`] when a position is not finite.
+    pub fn advance(&mut self, steps: usize) -> Result<Progress, GraphError> {
+        for _ in 0..steps.min(self.total - self.done) {
+            self.step()?;
             self.done += 1;
-            self.next = match self.next {
-                (a, b) if b + 1 < self.parts.len() => (a, b + 1),
-                (a, _) => (a + 1, a + 1),
-            };
         }
-        Ok(Progress { done: self.done, total })
+        Ok(self.progress())
     }
 
-    /// How many tiles are done.
+    /// How many steps are done.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress {
             done: self.done,
-            total: self.parts.len() * (self.parts.len() + 1) / 2,
+            total: self.total,
         }
     }
 
-    /// The rest, and what is found.
+    /// The rest, what is found, and the distances from afar.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
-    pub fn finish(mut self) -> Result<Candidates, GraphError> {
+    pub fn finish(mut self) -> Result<(Candidates, DistanceOverview), GraphError> {
         self.advance(usize::MAX)?;
-        Ok(self.picker.finish())
+        let overview = match self.work {
+            Work::Tiles { overview, .. } => *overview,
+            Work::Parts(parts) => DistanceOverview::new(parts),
+        };
+        Ok((self.picker.finish(), overview))
     }
 
-    fn tile(&mut self) -> Result<(), GraphError> {
-        let (Some(a), Some(b)) = (self.parts.get(self.next.0), self.parts.get(self.next.1)) else {
+    fn step(&mut self) -> Result<(), GraphError> {
+        match &mut self.work {
+            Work::Parts(parts) => {
+                Arc::make_mut(parts).advance()?;
+                if parts.made().len() == parts.count() {
+                    self.work = Work::tiles(Arc::clone(parts));
+                }
+                Ok(())
+            }
+            Work::Tiles { parts, overview, next } => {
+                let (a, b) = *next;
+                *next = if b + 1 < parts.count() { (a, b + 1) } else { (a + 1, a + 1) };
+                Self::tile(&self.options, &mut self.picker, parts, (a, b), overview)
+            }
+        }
+    }
+
+    fn tile(
+        options: &GraphOptions,
+        picker: &mut Picker,
+        parts: &Parts,
+        (a, b): (usize, usize),
+        overview: &mut DistanceOverview,
+    ) -> Result<(), GraphError> {
+        let (Some(a), Some(b)) = (parts.made().get(a), parts.made().get(b)) else {
             return Ok(());
         };
-        let window = self.options.blend_window;
-        let mut terms = PairTerms::of_clouds(&a.clouds, &b.clouds)?;
-        terms.finish();
-        let everything = 0..usize::MAX;
-        let distances = terms.distances(window, &everything, &everything)?;
+        let (set, window) = (parts.set(), options.blend_window);
+        let (terms, distances) = a.tile(b, window)?;
+        overview.take(a, b, &distances);
         let align = |leave: Place, enter: Place| {
-            let [p, q] = [leave, enter].map(|place| self.set.clip(place.clip).and_then(|source| source.frames().get(place.frame)));
+            let [p, q] = [leave, enter].map(|place| set.clip(place.clip).and_then(|source| source.frames().get(place.frame)));
             let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
             Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)
         };
         let at = |row: usize, column: usize| distances.get(row, column);
-        let only_minima = self.options.construction == Construction::Minima;
+        let only_minima = options.construction == Construction::Minima;
         for i in a.starts.clone() {
-            if !only_minima && !self.options.is_end(&self.set, Place { clip: a.clip, frame: i }) {
+            let leave = Place { clip: a.clip, frame: i };
+            if !only_minima && !options.is_end(set, leave) {
                 continue;
             }
             let row = i - a.from;
@@ -127,11 +141,11 @@ impl CandidateStream {
             for j in b.starts.clone() {
                 let column = j - b.from;
                 let Some(&distance) = cells.get(column) else { continue };
-                let (leave, enter) = (Place { clip: a.clip, frame: i }, Place { clip: b.clip, frame: j });
+                let enter = Place { clip: b.clip, frame: j };
                 // Of a clip with itself only one half counts.
-                if leave < enter && self.picker.is_worth(distance) && (only_minima || self.options.is_end(&self.set, enter)) {
+                if leave < enter && picker.is_worth(distance) && (only_minima || options.is_end(set, enter)) {
                     let minimum = || !only_minima || is_minimum(at, row, column);
-                    self.picker.offer(leave, enter, distance, minimum, align)?;
+                    picker.offer(leave, enter, distance, minimum, align)?;
                 }
             }
         }

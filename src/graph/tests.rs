@@ -47,7 +47,7 @@ fn three(frames: [usize; 3]) -> Arc<FrameSet> {
 
 fn compared(set: &Arc<FrameSet>) -> AllPairs {
     let mut all = AllPairs::new(Arc::clone(set)).unwrap();
-    all.finish();
+    all.finish().unwrap();
     all
 }
 
@@ -115,6 +115,69 @@ fn frames_are_numbered_through() {
     ));
 }
 
+/// The overview is what one finds by looking at all distances, and so are its details.
+fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
+    let (frames, block) = (all.set().frames(), overview.block());
+    assert_eq!(overview.window(), all.window());
+    let held = all.picture(0..frames, 0..frames, 1);
+    let nearest = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>, factor: usize| -> Vec<f32> {
+        let mut picture = Vec::new();
+        for row in rows.clone().step_by(factor) {
+            for column in columns.clone().step_by(factor) {
+                let cells = (row..(row + factor).min(rows.end)).flat_map(|row| {
+                    let columns = column..(column + factor).min(columns.end);
+                    columns.map(move |column| (row, column))
+                });
+                picture.push(cells.map(|(row, column)| held[row * frames + column]).fold(f32::NAN, f32::min));
+            }
+        }
+        picture
+    };
+    let same = |found: &[f32], wanted: &[f32], what: &str| {
+        assert_eq!(found.len(), wanted.len(), "{what}");
+        for (at, (found, wanted)) in found.iter().zip(wanted).enumerate() {
+            // The points lie about other centres: see the accuracy of `PairTerms`.
+            let alike = (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted;
+            assert!(alike || (found.is_nan() && wanted.is_nan()), "{what} {at}: {found} {wanted}");
+        }
+    };
+    for factor in [block, 4 * block] {
+        let last = frames / factor * factor;
+        let (rows, columns) = (0..frames, (last / 2 / factor * factor)..frames);
+        same(
+            &overview.picture(rows.clone(), columns.clone(), factor),
+            &nearest(rows, columns, factor),
+            "from afar",
+        );
+    }
+    for (rows, columns, factor) in [
+        (0..frames, 0..frames, 2),
+        (frames / 3..frames / 2, frames / 4..frames, 1),
+        (5..6, 0..frames, 3),
+    ] {
+        let mut detail = overview.detail(rows.clone(), columns.clone(), factor);
+        while !detail.advance(1).unwrap().is_complete() {}
+        same(detail.picture(), &nearest(rows, columns, factor), "nearby");
+    }
+    let counts = (
+        overview.histogram(),
+        all.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS),
+    );
+    let off: usize = counts.0.iter().zip(&counts.1).map(|(a, b)| a.abs_diff(*b) as usize).sum();
+    let total: usize = counts.0.iter().map(|&count| count as usize).sum();
+    assert_eq!(total, counts.1.iter().map(|&count| count as usize).sum::<usize>());
+    // At the edge of a bin a last digit decides.
+    assert!(off * 200 <= total + 200, "{off} of {total}");
+    for (a, b) in [(0, frames - 1), (frames / 2, 3), (4, 4)] {
+        let (a, b) = (all.set().place(a).unwrap(), all.set().place(b).unwrap());
+        let (found, wanted) = (overview.cm(a, b), all.cm(a, b));
+        assert_eq!(found.is_some(), wanted.is_some());
+        if let (Some(found), Some(wanted)) = (found, wanted) {
+            assert!((found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted, "{found} {wanted}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
@@ -123,13 +186,13 @@ proptest! {
         let mut all = AllPairs::new(Arc::clone(&set)).unwrap();
         prop_assert!(all.distances(window).is_err());
         let mut before = 0;
-        while !all.advance(slice).is_complete() {
+        while !all.advance(slice).unwrap().is_complete() {
             prop_assert!(all.progress().done > before);
             before = all.progress().done;
         }
         prop_assert_eq!(all.progress().total, {
-            let pairs: usize = frames.iter().sum();
-            pairs * (pairs + 1) / 2
+            let all: usize = frames.iter().sum();
+            250 * all + all * (all + 1) / 2
         });
         let mut sweep = all.sweep(window).unwrap();
         while !sweep.advance(7).unwrap().is_complete() {}
@@ -164,7 +227,8 @@ proptest! {
         let options = options(construction, window, threshold);
         let all = compared(&set);
         let held = Candidates::find(&all, &all.distances(window).unwrap(), &options).unwrap();
-        let streamed = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        let (streamed, overview) = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        overview_is_of(&overview, &all.distances(window).unwrap());
         let places = |of: &Candidates| {
             let mut places: Vec<_> = of.found().iter().map(|found| (found.leave, found.enter)).collect();
             places.sort_unstable();
@@ -195,15 +259,17 @@ proptest! {
 
 #[test]
 fn long_clips_are_tiled_without_a_gap() {
-    let set = three([1_300, 530, 40]);
+    let set = three([2_600, 530, 40]);
     let options = options(Construction::Minima, 20, 12.0);
     let all = compared(&set);
     let held = Candidates::find(&all, &all.distances(20).unwrap(), &options).unwrap();
     let mut stream = CandidateStream::new(&set, &options).unwrap();
     let total = stream.advance(1).unwrap().total;
-    // Three parts, one, and one.
-    assert_eq!(total, 5 * 6 / 2);
-    let streamed = stream.finish().unwrap();
+    // 2,581, 511 and 21 windows, in parts that end at every 256th of all frames: 11, 3 and one.
+    assert_eq!(total, 15 + 15 * 16 / 2);
+    let (streamed, overview) = stream.finish().unwrap();
+    assert_eq!(overview.block(), 2);
+    overview_is_of(&overview, &all.distances(20).unwrap());
     assert!(held.found().len() > 100, "{}", held.found().len());
     let same = held
         .found()
@@ -505,6 +571,10 @@ fn pieces_follow_each_other_without_a_jump() {
             }
         }
         let (clip, frames) = assembled(&pieces).unwrap().unwrap();
+        let most = clip.frames() - 7;
+        let mut assembling = Assembling::new(&pieces, most).unwrap();
+        while !assembling.advance(&pieces, 23) {}
+        assert_eq!(assembling.finish().unwrap(), (clip.crop(0..most).unwrap(), frames[..most].to_vec()));
         assert_eq!((clip.frames(), frames.len()), (start, start));
         let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
         assert_eq!(metrics.seams.len(), pieces.len() - 1);
@@ -585,6 +655,21 @@ fn a_path_is_followed() {
         found.looked_at
     );
     assert_eq!(follow(&graph, start, &path, 60_000), found);
+    // In slices the same, with a best so far that comes ever farther.
+    for nodes in [1, 700] {
+        let mut search = PathSearch::new(&graph, start, &path, 60_000);
+        let (mut before, mut slices) = (0.0, 0);
+        while !search.advance(&graph, &path, nodes) {
+            slices += 1;
+            if slices % (2_100 / nodes) == 0 {
+                let (so_far, kept) = (search.so_far(&graph, &path), search.progress(&path));
+                assert!(!so_far.edges.is_empty() && kept >= before && so_far.along_m >= kept * path.length() - 1e-9);
+                before = kept;
+            }
+        }
+        assert!(slices > 10 && before > 0.3, "{slices} {before}");
+        assert_eq!(search.so_far(&graph, &path), found);
+    }
     for pair in found.edges.windows(2) {
         let [before, after] = [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
         assert_eq!(before.1, after.0);

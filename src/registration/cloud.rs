@@ -60,9 +60,15 @@ pub(super) struct Cloud {
 impl Cloud {
     /// `frames` lie inside the clip and are not empty. Heights are measured from `level`.
     pub(super) fn new(clip: &Clip, frames: Range<usize>, stride: usize, shares: &Shares, level: f64) -> Result<Self, RegistrationError> {
+        let mut cloud = Self::begun(frames, stride, shares);
+        cloud.advance(clip, stride, shares, level, usize::MAX)?;
+        Ok(cloud)
+    }
+
+    /// Room for the points; none is known yet.
+    pub(super) fn begun(frames: Range<usize>, stride: usize, shares: &Shares) -> Self {
         let samples = frames.len().div_ceil(stride);
-        let joints = shares.len();
-        let mut cloud = Self {
+        Self {
             start: frames.start,
             span: frames.len(),
             samples,
@@ -70,45 +76,67 @@ impl Cloud {
             x: Vec::with_capacity(samples),
             z: Vec::with_capacity(samples),
             square: Vec::with_capacity(samples),
-            points: vec![[Vec4::ZERO; 3]; samples.div_ceil(LANES) * joints],
-            joints,
-        };
-        let mut world = WorldPose::default();
-        for (sample, frame) in frames.step_by(stride).enumerate() {
-            clip.world_pose_into(frame, &mut world);
-            if !world.positions.iter().all(|p| p.is_finite()) {
-                return Err(RegistrationError::NotFinite);
-            }
-            let at = |joint: usize| world.positions[joint].as_dvec3();
-            let weighed = shares.0.iter().map(|&(joint, w)| at(joint) * f64::from(w));
-            let (sum, weight) = (
-                weighed.sum::<glam::DVec3>(),
-                shares.0.iter().map(|&(_, w)| f64::from(w)).sum::<f64>(),
-            );
-            let centre = sum / weight;
-            if sample == 0 {
-                cloud.origin = DVec2::new(centre.x, centre.z);
-            }
-            cloud.x.push(centre.x - cloud.origin.x);
-            cloud.z.push(centre.z - cloud.origin.y);
-            let (group, lane) = (sample / LANES, sample % LANES);
-            for (lanes, &(joint, _)) in cloud.points[group * joints..].iter_mut().zip(&shares.0) {
-                let p = at(joint);
-                let of = [p.x - centre.x, p.z - centre.z, p.y - level];
-                for (lanes, of) in lanes.iter_mut().zip(of) {
-                    lanes[lane] = of as f32;
+            points: Vec::with_capacity(samples.div_ceil(LANES) * shares.len()),
+            joints: shares.len(),
+        }
+    }
+
+    /// Samples whose points are known.
+    pub(super) fn done(&self) -> usize {
+        self.square.len()
+    }
+
+    /// The points of at least `samples` more samples of the clip that it was begun for, in whole groups.
+    pub(super) fn advance(
+        &mut self,
+        clip: &Clip,
+        stride: usize,
+        shares: &Shares,
+        level: f64,
+        samples: usize,
+    ) -> Result<(), RegistrationError> {
+        let (mut world, mut spread) = (WorldPose::default(), Vec::new());
+        let end = self.done().saturating_add(samples).min(self.samples).div_ceil(LANES);
+        for group in self.done().div_ceil(LANES)..end {
+            self.points.resize((group + 1) * self.joints, [Vec4::ZERO; 3]);
+            let samples = group * LANES..((group + 1) * LANES).min(self.samples);
+            for sample in samples.clone() {
+                clip.world_pose_into(self.start + sample * stride, &mut world);
+                if !world.positions.iter().all(|p| p.is_finite()) {
+                    return Err(RegistrationError::NotFinite);
                 }
+                self.take(sample, &world, shares, level);
+            }
+            spread.clear();
+            self.spread(group, shares, &mut spread);
+            let [flat, _, height] = tile(&spread, self.group(group));
+            let own = (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
+            self.square.extend(own.take(samples.len()));
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, sample: usize, world: &WorldPose, shares: &Shares, level: f64) {
+        let at = |joint: usize| world.positions[joint].as_dvec3();
+        let weighed = shares.0.iter().map(|&(joint, w)| at(joint) * f64::from(w));
+        let (sum, weight) = (
+            weighed.sum::<glam::DVec3>(),
+            shares.0.iter().map(|&(_, w)| f64::from(w)).sum::<f64>(),
+        );
+        let centre = sum / weight;
+        if sample == 0 {
+            self.origin = DVec2::new(centre.x, centre.z);
+        }
+        self.x.push(centre.x - self.origin.x);
+        self.z.push(centre.z - self.origin.y);
+        let (group, lane) = (sample / LANES, sample % LANES);
+        for (lanes, &(joint, _)) in self.points[group * self.joints..].iter_mut().zip(&shares.0) {
+            let p = at(joint);
+            let of = [p.x - centre.x, p.z - centre.z, p.y - level];
+            for (lanes, of) in lanes.iter_mut().zip(of) {
+                lanes[lane] = of as f32;
             }
         }
-        let mut spread = Vec::new();
-        for group in 0..cloud.groups() {
-            spread.clear();
-            cloud.spread(group, shares, &mut spread);
-            let [flat, _, height] = tile(&spread, cloud.group(group));
-            let own = (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
-            cloud.square.extend(own.take(samples - group * LANES));
-        }
-        Ok(cloud)
     }
 
     /// Groups of [`LANES`] samples; the last is filled up with points at its centre.

@@ -1,6 +1,7 @@
 use super::RegistrationError;
 use super::cloud::{Cloud, Shares};
 use super::points::checked_sum;
+use super::terms::Progress;
 use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,19 +23,7 @@ impl PointClouds {
     /// # Errors
     /// [`RegistrationError`] when the part is empty, the weights do not fit, or a position is not finite.
     pub fn new(clip: &Clip, frames: Range<usize>, weights: &[f64], stride: usize, level_m: f64) -> Result<Self, RegistrationError> {
-        let frame_weight = checked_sum(weights, clip.skeleton().len())?;
-        let frames = frames.start.min(clip.frames())..frames.end.min(clip.frames());
-        if frames.is_empty() {
-            return Err(RegistrationError::Empty { which: "outgoing" });
-        }
-        let (stride, shares) = (stride.max(1), Shares::new(weights, frame_weight));
-        let cloud = Arc::new(Cloud::new(clip, frames, stride, &shares, level_m)?);
-        Ok(Self {
-            cloud,
-            shares,
-            frame_weight,
-            stride,
-        })
+        PointCloudsBegun::new(clip, frames, weights, stride, level_m)?.finish(clip)
     }
 
     /// The weighted mean height of a clip's first frame, metres; 0 for a clip without frames.
@@ -53,5 +42,69 @@ impl PointClouds {
     #[must_use]
     pub fn samples(&self) -> usize {
         self.cloud.samples
+    }
+}
+
+/// [`PointClouds`] in slices. Between them it does not hold the clip: every call is given the same one.
+#[derive(Clone, Debug)]
+pub struct PointCloudsBegun {
+    cloud: Cloud,
+    shares: Shares,
+    frame_weight: f64,
+    stride: usize,
+    level_m: f64,
+}
+
+impl PointCloudsBegun {
+    /// As [`PointClouds::new`]; no points are known yet.
+    ///
+    /// # Errors
+    /// [`RegistrationError`] when the part is empty, or the weights do not fit.
+    pub fn new(clip: &Clip, frames: Range<usize>, weights: &[f64], stride: usize, level_m: f64) -> Result<Self, RegistrationError> {
+        let frame_weight = checked_sum(weights, clip.skeleton().len())?;
+        let frames = frames.start.min(clip.frames())..frames.end.min(clip.frames());
+        if frames.is_empty() {
+            return Err(RegistrationError::Empty { which: "outgoing" });
+        }
+        let (stride, shares) = (stride.max(1), Shares::new(weights, frame_weight));
+        Ok(Self {
+            cloud: Cloud::begun(frames, stride, &shares),
+            shares,
+            frame_weight,
+            stride,
+            level_m,
+        })
+    }
+
+    /// Samples whose points are known.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.cloud.done()
+    }
+
+    /// The points of at least `samples` more samples (they come in fours), and how many are known.
+    ///
+    /// # Errors
+    /// [`RegistrationError::NotFinite`].
+    pub fn advance(&mut self, clip: &Clip, samples: usize) -> Result<Progress, RegistrationError> {
+        self.cloud.advance(clip, self.stride, &self.shares, self.level_m, samples)?;
+        Ok(Progress {
+            done: self.cloud.done(),
+            total: self.cloud.samples,
+        })
+    }
+
+    /// The rest, and the clouds.
+    ///
+    /// # Errors
+    /// [`RegistrationError::NotFinite`].
+    pub fn finish(mut self, clip: &Clip) -> Result<PointClouds, RegistrationError> {
+        self.advance(clip, usize::MAX)?;
+        Ok(PointClouds {
+            cloud: Arc::new(self.cloud),
+            shares: self.shares,
+            frame_weight: self.frame_weight,
+            stride: self.stride,
+        })
     }
 }

@@ -91,7 +91,7 @@ mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use clouds::PointClouds;
+pub use clouds::{PointClouds, PointCloudsBegun};
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, PathSearch, RegistrationPath, optimal_path, path_in_corridor};

@@ -97,14 +97,12 @@ impl<'a> Sweep<'a> {
             height: vec![0.0; diagonals],
             source: Moments::new(&terms.source, &rows, samples),
             target: Moments::new(&terms.target, &columns, samples),
-            rms_m: vec![
-                0.0;
-                if terms.is_triangle() {
-                    packed_start(rows.len(), rows.len())
-                } else {
-                    rows.len() * columns.len()
-                }
-            ],
+            // Filled row by row, as the terms are.
+            rms_m: Vec::with_capacity(if terms.is_triangle() {
+                packed_start(rows.len(), rows.len())
+            } else {
+                rows.len() * columns.len()
+            }),
             rows,
             columns,
         };
@@ -237,6 +235,7 @@ impl Sums {
         } else {
             row * n
         };
+        self.rms_m.resize(start + n, 0.0);
         let out = &mut self.rms_m[start..][..n];
         let (dot, cross, height) = (&self.dot[shift..][..n], &self.cross[shift..][..n], &self.height[shift..][..n]);
         let target = &self.target;

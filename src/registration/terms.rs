@@ -163,7 +163,8 @@ impl PairTerms {
             target: Arc::clone(&target.cloud),
             spread: Vec::new(),
         };
-        terms.terms = vec![0.0; terms.row_start(terms.source.samples)];
+        // Filled row by row: to clear all of it at once takes longer than a frame may.
+        terms.terms = Vec::with_capacity(terms.row_start(terms.source.samples));
         terms
     }
 
@@ -225,6 +226,7 @@ impl PairTerms {
             rows.start.saturating_sub(self.band) / LANES
         };
         let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.target.groups());
+        self.terms.resize(self.row_start(rows.end.min(self.source.samples)), 0.0);
         self.spread.clear();
         for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);

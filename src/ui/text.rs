@@ -590,9 +590,6 @@ pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.
 pub(crate) const MATRIX_HELP: &str =
     "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
-/// Where the clips are too long for a picture.
-pub(crate) const NO_MATRIX: &str =
-    "So many frames are compared without holding all distances: there is no picture of them, only the transitions that were found.";
 /// The histogram's name.
 pub(crate) const ALL_HISTOGRAM: &str = "How many pairs of windows are how far apart";
 /// The strip's name.
@@ -721,8 +718,12 @@ pub(crate) fn moved_onto_first(cast: &Cast) -> Option<String> {
 /// How a walk follows its line.
 pub(crate) fn followed(trace: &Trace) -> String {
     format!(
-        "Follows {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
-        trace.along_m, trace.length_m, trace.rms_m, trace.looked_at
+        "{} {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
+        if trace.is_searching { "So far it follows" } else { "Follows" },
+        trace.along_m,
+        trace.length_m,
+        trace.rms_m,
+        trace.looked_at
     )
 }
 

@@ -145,7 +145,7 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
     );
     // A window that was there before is there at once, but for the walk.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
-    assert_eq!(session.graph_field().unwrap().distances().window(), 30);
+    assert_eq!(session.graph_field().unwrap().window(), 30);
     assert!(session.graph_built().is_some());
     while session.work() {}
 
@@ -231,6 +231,57 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
     assert!(start.length() < 0.1, "{start}");
     let at = walk.motion.ground_frames[6 * 60].origin();
     assert!(at.z > 5.0 && (at.x - 0.1 * at.z).abs() < 1.5, "{at}");
+}
+
+#[test]
+fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    let mut patient = opened(SMALL);
+    set(&mut patient, Key::WalkPath, Value::Text(write_path(&line)));
+    let mut hasty = opened(SMALL);
+    hasty
+        .apply(Command::Set(vec![(Key::WalkPath, Value::Text(write_path(&line)))]))
+        .unwrap();
+    let (mut shown, mut along) = (0, 0.0);
+    let mut last = Arc::clone(walk(&hasty));
+    while hasty.work() {
+        // A slow machine.
+        hasty.work_took(0.3);
+        if !Arc::ptr_eq(&last, walk(&hasty)) {
+            last = Arc::clone(walk(&hasty));
+            let trace = last.followed.as_ref().unwrap();
+            shown += usize::from(trace.is_searching);
+            assert!(trace.along_m + 2.0 > along && last.motion.clip.frames() >= 20 * 60);
+            along = trace.along_m;
+            assert_eq!(hasty.jobs().is_empty(), !trace.is_searching);
+        }
+    }
+    assert!(shown >= 2, "{shown}");
+    // How long one had to wait changes nothing in the end.
+    let (a, b) = (walk(&patient), walk(&hasty));
+    assert_eq!(a.followed, b.followed);
+    assert!(!a.followed.as_ref().unwrap().is_searching);
+    assert_eq!((&a.passed, &a.motion.clip), (&b.passed, &b.motion.clip));
+}
+
+#[test]
+fn held_feet_stay_where_they_are_while_the_walk_grows() {
+    let mut session = opened(&format!("{SMALL}&foot_lock=on"));
+    let before = Arc::clone(walk(&session));
+    let free = opened(SMALL);
+    assert_eq!(way(&before), way(walk(&free)), "the same walk");
+    assert_ne!(before.motion.clip, walk(&free).motion.clip);
+    session.apply(Command::Seek(15.0)).unwrap();
+    while session.work() {}
+    let after = walk(&session);
+    assert!(after.motion.clip.frames() > before.motion.clip.frames());
+    // What is about to play is what was shown before, but for roundings: the plane in which a leg usually bends is that of the whole walk.
+    let mut most = 0.0_f32;
+    for frame in 0..18 * 60 {
+        let pairs = after.motion.clip.rotations(frame).iter().zip(before.motion.clip.rotations(frame));
+        most = pairs.map(|(a, b)| (*a - *b).length()).fold(most, f32::max);
+    }
+    assert!(most < 1e-5, "{most}");
 }
 
 #[test]

@@ -502,6 +502,7 @@ fn one_switch_holds_the_feet_in_every_lab() {
         "lab=loop",
         "lab=layers&mask=whole",
         "lab=register&b=walk_left",
+        "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20",
     ] {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();

@@ -7,7 +7,7 @@ mod maker;
 mod walk;
 mod wanted;
 
-pub use built::{Built, Field};
+pub use built::{Built, Distances, Field};
 pub use cast::Cast;
 pub(in crate::session) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};

@@ -24,7 +24,7 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "layers" => group == Group::Layers || key == Key::FootLock,
         "register" => group == Group::Register || key == Key::FootLock,
         "path" => group == Group::Path || key == Key::FootLock,
-        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed),
+        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed | Key::FootLock),
         "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }

@@ -8,8 +8,8 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
-use segue::graph::{Choices, Place};
-use segue::session::{Built, Field, Key, Session, Walk};
+use segue::graph::{Choices, DistanceDetail, Place};
+use segue::session::{Built, Distances, Field, Key, Session, Walk};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -143,12 +143,7 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
         return;
     };
     let (walk, built) = (session.graph_walk(), session.graph_built());
-    let Some(field) = session.graph_field() else {
-        if built.is_some() {
-            note_ui(text::NO_MATRIX, palette.muted, ui);
-        }
-        return;
-    };
+    let Some(field) = session.graph_field() else { return };
     let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
     let set = cast.set();
     let parts: Vec<(usize, &str)> = (cast.names().iter().enumerate())
@@ -163,6 +158,10 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
     let matrix = Matrix {
         label: text::ALL_DISTANCES,
         size: set.frames(),
+        known: match field.distances() {
+            Distances::Held(_) => 1,
+            Distances::FromAfar(overview) => overview.block(),
+        },
         parts: &parts,
         marks: drawn.as_ref().map_or(&[], |drawn| &drawn.marks),
         lit,
@@ -171,8 +170,9 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
     let mut tiles = Tiles::of(field, ui);
     let ctx = ui.ctx().clone();
     let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
+    let high_cm = tiles.high_cm;
     tiles.keep(ui);
-    let [low, high] = text::heat_ends([0.0, tiles.high_cm]);
+    let [low, high] = text::heat_ends([0.0, high_cm]);
     kit::heat_legend_ui(&low, &high, ui);
     let mut words = text::MATRIX_HELP.to_owned();
     if let (Some(drawn), Some(built)) = (&drawn, built) {
@@ -183,7 +183,7 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
         } else if let Some([row, column]) = response.at {
             let place = |at: f32| set.place(at.max(0.0) as usize);
             if let (Some(leave), Some(enter)) = (place(row), place(column)) {
-                words = text::windows_apart([named(built, leave), named(built, enter)], field.distances().cm(leave, enter));
+                words = text::windows_apart([named(built, leave), named(built, enter)], field.cm(leave, enter));
             }
         }
         if let Some(&ends) = response.clicked.and_then(|mark| drawn.ends.get(mark)) {
@@ -199,9 +199,11 @@ struct Tiles {
     field: Arc<Field>,
     heat: [Color32; 5],
     made: Vec<(Tile, TextureHandle)>,
+    /// A tile that is computed over several frames, and whether it is still seen.
+    begun: Option<(Tile, Arc<DistanceDetail>, bool)>,
     /// The distance at the far end of the colours, centimetres.
     high_cm: f64,
-    /// Texels that may still be made in this frame.
+    /// Cells that may still be looked at in this frame.
     budget: usize,
 }
 
@@ -209,6 +211,8 @@ struct Tiles {
 const MOST_TILES: usize = 128;
 /// Cells that may be looked at in a frame.
 const PER_FRAME: usize = 500_000;
+/// Cells that could be looked at while 256 × 256 of them are computed.
+const COMPUTED: usize = 250_000;
 
 impl Tiles {
     fn of(field: &Arc<Field>, ui: &Ui) -> Self {
@@ -233,6 +237,7 @@ impl Tiles {
             field: Arc::clone(field),
             heat,
             made: Vec::new(),
+            begun: None,
             high_cm: (bin.unwrap_or(0) + 1) as f64 * field.bin_cm(),
             budget: PER_FRAME,
         }
@@ -248,20 +253,37 @@ impl Tiles {
         }
         if self.budget == 0 {
             ctx.request_repaint();
-            return None;
         }
         let cells = TILE * tile.factor;
-        self.budget = self.budget.saturating_sub(TILE * TILE * tile.factor.min(4).pow(2));
-        let distances = self.field.distances();
-        let frames = distances.set().frames();
+        let field = Arc::clone(&self.field);
+        let frames = match field.distances() {
+            Distances::Held(distances) => distances.set().frames(),
+            Distances::FromAfar(overview) => overview.set().frames(),
+        };
         let range = |at: usize| (at * cells).min(frames)..((at + 1) * cells).min(frames);
         let (rows, columns) = (range(tile.row), range(tile.column));
         if rows.is_empty() || columns.is_empty() {
             return None;
         }
         let size = [columns.len().div_ceil(tile.factor), rows.len().div_ceil(tile.factor)];
+        let cm = match field.distances() {
+            Distances::FromAfar(overview) if tile.factor < overview.block() => {
+                let detail = || overview.detail(rows, columns, tile.factor);
+                self.computed(tile, detail, ctx)?
+            }
+            _ if self.budget == 0 => return None,
+            Distances::FromAfar(overview) => {
+                let blocks = tile.factor / overview.block();
+                self.budget = self.budget.saturating_sub(TILE * TILE * blocks.pow(2));
+                overview.picture(rows, columns, tile.factor)
+            }
+            Distances::Held(distances) => {
+                self.budget = self.budget.saturating_sub(TILE * TILE * tile.factor.min(4).pow(2));
+                distances.picture(rows, columns, tile.factor)
+            }
+        };
         let high = self.high_cm as f32;
-        let colors = distances.picture(rows, columns, tile.factor).into_iter().map(|cm| {
+        let colors = cm.into_iter().map(|cm| {
             if cm.is_nan() {
                 Color32::TRANSPARENT
             } else {
@@ -283,8 +305,30 @@ impl Tiles {
         Some(id)
     }
 
-    fn keep(&self, ui: &Ui) {
-        ui.data_mut(|data| data.insert_temp(kit::tiles_id(), self.clone()));
+    /// A tile that nobody knows yet: a piece of it in this frame. One tile after the other, so that there is soon something to see.
+    fn computed(&mut self, tile: Tile, detail: impl FnOnce() -> DistanceDetail, ctx: &eframe::egui::Context) -> Option<Vec<f32>> {
+        ctx.request_repaint();
+        if self.begun.as_ref().is_some_and(|(known, ..)| *known != tile) {
+            return None;
+        }
+        let (_, mut detail, _) = self.begun.take().unwrap_or_else(|| (tile, Arc::new(detail()), true));
+        let mut complete = Ok(false);
+        while self.budget > 0 && complete == Ok(false) {
+            self.budget = self.budget.saturating_sub(COMPUTED);
+            complete = Arc::make_mut(&mut detail).advance(1).map(|progress| progress.is_complete());
+        }
+        if complete == Ok(false) {
+            self.begun = Some((tile, detail, true));
+            return None;
+        }
+        // What cannot be computed stays empty.
+        Some(detail.picture().to_vec())
+    }
+
+    fn keep(mut self, ui: &Ui) {
+        // One that is not seen any more makes room for another.
+        self.begun = self.begun.filter(|(.., seen)| *seen).map(|(tile, detail, _)| (tile, detail, false));
+        ui.data_mut(|data| data.insert_temp(kit::tiles_id(), self));
     }
 }
 

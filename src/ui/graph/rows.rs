@@ -195,6 +195,7 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if params.text(Key::WalkMethod) == "inertialize" {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
     }
+    param_row_ui(Key::FootLock, &plain, session, out, ui);
     for key in [Key::Transform, Key::Atan] {
         ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
         param_row_ui(key, &plain, session, out, ui);

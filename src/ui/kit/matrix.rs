@@ -41,6 +41,8 @@ pub(crate) struct Matrix<'a> {
     pub(crate) label: &'a str,
     /// Rows, and columns.
     pub(crate) size: usize,
+    /// Tiles with so many cells to a texel, a power of two, or more are quickly made; finer ones take their time.
+    pub(crate) known: usize,
     /// Names of the parts, each with the row at which it begins.
     pub(crate) parts: &'a [(usize, &'a str)],
     /// Marks, the most important first.
@@ -123,9 +125,11 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
     painter.rect_filled(field, 0.0, palette.ground);
     let pixels = ui.ctx().pixels_per_point();
     let coarse = factor_for(size / side / pixels);
-    let fine = factor_for(window.cells / pixels);
-    // The overview lies below what is not made yet.
-    for factor in if fine < coarse { vec![coarse, fine] } else { vec![coarse] } {
+    let fine = factor_for(window.cells / pixels).min(coarse);
+    // What is quickly made lies below what is not made yet.
+    let mut factors = vec![coarse, matrix.known.clamp(fine, coarse), fine];
+    factors.dedup();
+    for factor in factors {
         let cells = (TILE * factor) as f32;
         let range = |corner: f32| {
             let first = (corner / cells).floor().max(0.0) as usize;

@@ -1,6 +1,7 @@
 //! The Graph lab with the pointer.
 
 use super::*;
+use segue::session::Distances;
 
 #[test]
 fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
@@ -124,4 +125,53 @@ fn the_graph_lab_does_what_is_pressed() {
     press("First frame only", &mut harness);
     done(&mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
+}
+
+#[test]
+fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
+    let clips = "walk(make_seconds:30),walk(turn_rate:20,make_seconds:30),run(make_seconds:30),walk(turn_rate:-20,make_seconds:20)";
+    let link = format!("lab=graph&clips={clips}&walk_seconds=20&play=off&t=5");
+    let mut harness = harness(DESK, DARK, page(&link));
+    let (mark, ends, frames) = {
+        let session = &harness.state().session;
+        let (built, field) = (session.graph_built().unwrap(), session.graph_field().unwrap());
+        let frames = built.cast().set().frames();
+        assert!(frames > 6_000 && matches!(field.distances(), Distances::FromAfar(_)), "{frames}");
+        let jump = built.whole().jumps()[0];
+        let number = |place| built.cast().set().number(place).unwrap() as f32 + 0.5;
+        let at = vec2(number(jump.enter), number(jump.leave)) / frames as f32;
+        (at, [jump.leave, jump.enter], frames)
+    };
+    let field = harness.get_by_label(text::ALL_DISTANCES).rect();
+    picture("graph-afar-dark", &mut harness);
+    // The wheel over a ring: it stays where it is, and the picture gets finer until there is nothing left to compute.
+    let ring = field.min + mark * field.size();
+    harness.hover_at(ring);
+    for (name, turns) in [("graph-nearer-dark", 2), ("graph-nearby-dark", 4), ("graph-cells-dark", 4)] {
+        for _ in 0..turns {
+            harness.event(egui::Event::MouseWheel {
+                unit: egui::MouseWheelUnit::Point,
+                delta: vec2(0.0, 150.0),
+                phase: egui::TouchPhase::Move,
+                source: egui::MouseWheelSource::Wheel,
+                modifiers: egui::Modifiers::NONE,
+            });
+            harness.run_steps(20);
+        }
+        let mut steps = 0;
+        while harness.try_run().is_err() {
+            steps += 1;
+            assert!(steps < 20, "tiles are still made");
+        }
+        picture(name, &mut harness);
+    }
+    assert!(frames as f32 / field.width() > 8.0);
+    harness.hover_at(ring);
+    harness.run();
+    assert_eq!(harness.state().state.hovered_jump, Some(ends));
+    harness.drag_at(ring);
+    harness.drop_at(ring);
+    harness.run();
+    let jump = harness.state().session.params().text(Key::Jump).to_owned();
+    assert_eq!(jump, segue::session::write_jump(ends[0], ends[1]));
 }

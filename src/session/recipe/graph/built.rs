@@ -1,54 +1,102 @@
 use super::Cast;
 use super::wanted::GraphKey;
-use crate::graph::{Candidates, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
+use crate::graph::{Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
 use std::sync::Arc;
-
-/// Width of a bin of the histogram, centimetres.
-const BIN_CM: f64 = 0.5;
-/// Its bins: as far as a threshold goes.
-const BINS: usize = 120;
 
 /// The distances of all windows of one length.
 #[derive(Debug)]
 pub struct Field {
-    distances: FrameDistances,
+    distances: Distances,
+    /// Of held distances.
     histogram: Vec<u32>,
 }
 
+/// All distances of a set, as far as they are held.
+#[derive(Debug)]
+pub enum Distances {
+    /// Each of them.
+    Held(FrameDistances),
+    /// The smallest of every square of windows.
+    FromAfar(Box<DistanceOverview>),
+}
+
 impl Field {
-    pub(super) fn new(distances: FrameDistances) -> Self {
+    /// To be counted.
+    pub(super) fn held(distances: FrameDistances) -> Self {
         Self {
-            distances,
-            histogram: vec![0; BINS],
+            distances: Distances::Held(distances),
+            histogram: vec![0; DistanceOverview::BINS],
         }
     }
 
-    /// Counts one pair of clips; `true` behind the last one.
-    pub(super) fn count(&mut self, pair: usize) -> bool {
-        self.distances.count(pair, BIN_CM, &mut self.histogram);
-        pair + 1 >= self.distances.pairs_of_clips()
+    pub(super) fn from_afar(overview: DistanceOverview) -> Self {
+        Self {
+            distances: Distances::FromAfar(Box::new(overview)),
+            histogram: Vec::new(),
+        }
+    }
+
+    /// Counts about so many cells more; `true` behind the last one.
+    pub(super) fn count(&mut self, at: &mut CountedTo, cells: usize) -> bool {
+        match &self.distances {
+            Distances::Held(distances) => distances.count(at, cells, DistanceOverview::BIN_CM, &mut self.histogram),
+            Distances::FromAfar(_) => true,
+        }
     }
 
     /// The distances.
     #[must_use]
-    pub fn distances(&self) -> &FrameDistances {
+    pub fn distances(&self) -> &Distances {
         &self.distances
+    }
+
+    /// Where all of them are held.
+    pub(super) fn all(&self) -> Option<&FrameDistances> {
+        match &self.distances {
+            Distances::Held(distances) => Some(distances),
+            Distances::FromAfar(_) => None,
+        }
+    }
+
+    /// Frames of each window.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        match &self.distances {
+            Distances::Held(distances) => distances.window(),
+            Distances::FromAfar(overview) => overview.window(),
+        }
+    }
+
+    /// The distance of the windows that start at two frames, centimetres; `None` where a window crosses the end of its clip.
+    #[must_use]
+    pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
+        match &self.distances {
+            Distances::Held(distances) => distances.cm(a, b),
+            Distances::FromAfar(overview) => overview.cm(a, b),
+        }
     }
 
     /// How many pairs of windows lie in each half centimetre; the last takes what is farther.
     #[must_use]
     pub fn histogram(&self) -> &[u32] {
-        &self.histogram
+        match &self.distances {
+            Distances::Held(_) => &self.histogram,
+            Distances::FromAfar(overview) => overview.histogram(),
+        }
     }
 
     /// How wide each of its bins is, centimetres.
     #[must_use]
     pub fn bin_cm(&self) -> f64 {
-        BIN_CM
+        DistanceOverview::BIN_CM
     }
 
+    /// Numbers that are held.
     pub(super) fn cells(&self) -> usize {
-        self.histogram.iter().map(|&count| count as usize).sum()
+        match &self.distances {
+            Distances::Held(_) => self.histogram.iter().map(|&count| count as usize).sum(),
+            Distances::FromAfar(overview) => overview.cells(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@ use super::cast::Fitted;
 use super::maker::Maker;
 use super::wanted::{GraphKey, Wanted, sentence};
 use super::{Built, Cast, Field, GraphInputs};
-use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, GraphError, PausedAllSweep};
+use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, PausedAllSweep};
 use crate::registration::Progress;
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -31,8 +31,8 @@ pub(in crate::session) struct Grapher {
     cast: Option<Result<Arc<Cast>, String>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
-    /// Distances that are counted, and how many pairs of clips are.
-    counting: Option<(Field, usize)>,
+    /// Distances that are counted, and how far.
+    counting: Option<(Field, CountedTo)>,
     /// One for each window that was asked for last.
     fields: Vec<Arc<Field>>,
     search: Option<(GraphKey, Search)>,
@@ -49,6 +49,8 @@ pub(in crate::session) struct Grapher {
     /// Seconds of work, by what it was for.
     took: Vec<(GraphKey, f64)>,
     worked_for: Option<GraphKey>,
+    /// The last slice was one of the last maker's.
+    stepped: bool,
 }
 
 /// Where one may go over, on the way.
@@ -97,7 +99,7 @@ impl Grapher {
     /// The distances that the first pane asks for; the last ones that there are while it waits.
     pub(in crate::session) fn field(&self) -> Option<&Arc<Field>> {
         let window = self.wanted.first().map(|wanted| wanted.graph.options.blend_window);
-        let asked = self.fields.iter().find(|field| Some(field.distances().window()) == window);
+        let asked = self.fields.iter().find(|field| Some(field.window()) == window);
         asked.or(self.fields.last())
     }
 
@@ -118,6 +120,10 @@ impl Grapher {
 
     /// How long the last slice took, seconds.
     pub(in crate::session) fn took(&mut self, secs: f64) {
+        if let (true, Some((_, Ok(maker)))) = (self.stepped, self.makers.last_mut()) {
+            maker.took(secs);
+        }
+        self.stepped = false;
         let Some(key) = self.worked_for.take() else { return };
         match self.took.iter_mut().find(|(known, _)| *known == key) {
             Some((_, sum)) => *sum += secs,
@@ -140,7 +146,7 @@ impl Grapher {
     /// One slice of what panes wait for, and of walks that the playhead comes near the end of. `false` when there was nothing to do.
     pub(in crate::session) fn work(&mut self, now_secs: f64) -> bool {
         self.now_secs = now_secs;
-        self.worked_for = None;
+        (self.worked_for, self.stepped) = (None, false);
         let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
         let Some(wanted) = next else { return false };
         if let Err(problem) = self.step(&wanted) {
@@ -181,7 +187,7 @@ impl Grapher {
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
         match self.makers.iter().find(|(known, _)| known == wanted) {
             // That a walk gets longer is nothing to wait for.
-            Some((_, Ok(maker))) if maker.walk().is_some() => return None,
+            Some((_, Ok(maker))) if maker.walk().is_some() && !maker.is_searching() => return None,
             Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
             _ if self.known(wanted.graph).is_some() => return Some(0.85),
             _ => {}
@@ -189,7 +195,7 @@ impl Grapher {
         let fitted = self.fitted.len() as f64 / self.clips.len().max(1) as f64;
         let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
         let window = wanted.graph.options.blend_window;
-        let swept = if self.fields.iter().any(|field| field.distances().window() == window) {
+        let swept = if self.fields.iter().any(|field| field.window() == window) {
             1.0
         } else {
             match (&self.sweep, &self.all) {
@@ -233,6 +239,7 @@ impl Grapher {
             let guide = guide.map(|walk| (Arc::clone(&walk.passed), guide_window(wanted)));
             let entry = self.makers.remove(at);
             self.makers.push(entry);
+            self.stepped = true;
             if let Some((_, Ok(maker))) = self.makers.last_mut() {
                 self.is_ready |= maker.step(self.now_secs, guide)?;
             }
@@ -297,7 +304,12 @@ impl Grapher {
                 _ => Box::new(CandidateStream::new(cast.set(), &key.options)?),
             };
             if stream.advance(1)?.is_complete() {
-                return stream.finish().map(Some);
+                let (found, overview) = stream.finish()?;
+                // The same for every threshold: what is drawn of it stays.
+                if self.fields.iter().all(|field| field.window() != overview.window()) {
+                    self.keep_field(Arc::new(Field::from_afar(overview)));
+                }
+                return Ok(Some(found));
             }
             self.search = Some((key, Search::Streamed(stream)));
             return Ok(None);
@@ -307,16 +319,21 @@ impl Grapher {
             return Ok(None);
         };
         if !all.progress().is_complete() {
-            all.advance(PAIRS);
+            all.advance(PAIRS)?;
             return Ok(None);
         }
         let window = key.options.blend_window;
-        let Some(field) = self.fields.iter().find(|field| field.distances().window() == window) else {
-            if let Some((mut field, pair)) = self.counting.take().filter(|(field, _)| field.distances().window() == window) {
-                if field.count(pair) {
+        let known = self
+            .fields
+            .iter()
+            .filter(|field| field.window() == window)
+            .find_map(|field| field.all());
+        let Some(distances) = known else {
+            if let Some((mut field, mut at)) = self.counting.take().filter(|(field, _)| field.window() == window) {
+                if field.count(&mut at, CELLS) {
                     self.keep_field(Arc::new(field));
                 } else {
-                    self.counting = Some((field, pair + 1));
+                    self.counting = Some((field, at));
                 }
                 return Ok(None);
             }
@@ -325,7 +342,7 @@ impl Grapher {
                 None => all.sweep(window)?,
             };
             if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
-                self.counting = Some((Field::new(sweep.finish()?), 0));
+                self.counting = Some((Field::held(sweep.finish()?), CountedTo::default()));
             } else {
                 self.sweep = Some(sweep.pause());
             }
@@ -333,9 +350,9 @@ impl Grapher {
         };
         let mut search = match self.search.take() {
             Some((known, Search::Held(search))) if known == key => search,
-            _ => Box::new(CandidateSearch::new(field.distances(), &key.options)?),
+            _ => Box::new(CandidateSearch::new(distances, &key.options)?),
         };
-        if search.advance(all, field.distances(), CELLS)?.is_complete() {
+        if search.advance(all, distances, CELLS)?.is_complete() {
             return Ok(Some(search.finish()));
         }
         self.search = Some((key, Search::Held(search)));

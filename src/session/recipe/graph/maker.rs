@@ -3,11 +3,14 @@ use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
 use crate::clip::Contacts;
 use crate::graph::{
-    Choices, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece, Walker, assembled,
+    Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
+    Walker,
 };
 use crate::metrics::Metric;
 use crate::session::motion::Motion;
+use crate::session::recipe::feet::{slide, slide_before};
 use crate::skeleton::Side;
+use crate::transition::{FootLockOptions, FootLocking};
 use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 use std::sync::Arc;
@@ -18,17 +21,36 @@ const AHEAD_SECS: f64 = 20.0;
 const LONGEST_SECS: f64 = 1_800.0;
 /// Before and behind a single transition so much of both clips plays, seconds.
 const AROUND_JUMP_SECS: f64 = 1.2;
-/// Nodes that a search for a ground path looks at in all.
+/// Nodes that a search for a ground path looks at in all. It bounds what a link shows, on every machine the same.
 const PATH_BUDGET: usize = 60_000;
+/// Nodes in one slice, about two milliseconds.
+const PATH_NODES: usize = 2_000;
+/// How long one waits for a search, seconds of work: then the best so far is walked, while the search goes on to its end, and so again and again. How long that takes
+/// changes nothing of the walk in the end.
+const PATH_WAIT_SECS: f64 = 1.0;
 /// How far from another walk's transition one counts as the same, seconds at each end.
 const GUIDE_SECS: f64 = 0.3;
 /// Stays of that walk among which it is looked for.
 const GUIDE_STAYS: usize = 12;
+/// Frames that one slice puts together to be shown, about three milliseconds.
+const PUBLISHED_FRAMES: usize = 10_000;
 /// Edges that one slice goes over for the expected run.
 const RUN_EDGES: usize = 200_000;
 
+/// Frames that one slice holds the feet of, about four milliseconds.
+const LOCKED_FRAMES: usize = 2_000;
+
 /// The stays of a walk that another goes like, and its blend window.
 pub(super) type Guide = (Arc<Vec<Passed>>, usize);
+
+/// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it moves around it are a matter of a second, and a walk ends
+/// far ahead of the playhead. What has played stays but for the plane in which a leg usually bends, which is a mean over the whole walk and counts where a leg is
+/// nearly straight.
+#[derive(Debug)]
+enum Publishing {
+    Assembling(Assembling),
+    Locking(Box<FootLocking>, Motion),
+}
 
 /// Makes a walk, stay by stay.
 #[derive(Debug)]
@@ -39,6 +61,10 @@ pub(super) struct Maker {
     run: RunLength,
     run_is_known: bool,
     search: Option<(PathSearch, GroundPath)>,
+    /// Seconds of search since the best so far was shown.
+    searched_secs: f64,
+    /// Makes the walk that follows the path as far as it is known.
+    preview: Option<Box<Self>>,
     trace: Option<Trace>,
     walker: Walker,
     stitcher: Stitcher,
@@ -54,6 +80,10 @@ pub(super) struct Maker {
     ends: bool,
     /// How long it is to be next.
     goal: usize,
+    /// The walk to be shown, as far as it is put together.
+    publishing: Option<Publishing>,
+    /// How far feet slide where they are held, and how far they would.
+    slides: Option<[Metric; 2]>,
     walk: Option<Arc<Walk>>,
 }
 
@@ -73,6 +103,8 @@ impl Maker {
             run_is_known: false,
             walker,
             search,
+            searched_secs: 0.0,
+            preview: None,
             trace: None,
             stitcher: Stitcher::new(Arc::clone(built.cast.set()), &wanted.stitch),
             meter: WalkMeter::new(built.cast.set()),
@@ -84,6 +116,8 @@ impl Maker {
             guided: 0,
             ends: false,
             goal: 0,
+            publishing: None,
+            slides: None,
             walk: None,
             choices,
             built: Arc::clone(built),
@@ -102,7 +136,9 @@ impl Maker {
 
     /// Whether it should be longer while the playhead is there.
     pub(super) fn is_short(&self, now_secs: f64) -> bool {
-        let Some(walk) = &self.walk else { return true };
+        let Some(walk) = self.walk.as_ref().filter(|_| self.search.is_none()) else {
+            return true;
+        };
         let secs = walk.motion.clip.frames() as f64 / self.fps();
         !walk.ends && !walk.is_jump && secs < (now_secs + AHEAD_SECS).min(LONGEST_SECS)
     }
@@ -125,13 +161,10 @@ impl Maker {
             self.run_is_known = self.run.advance(self.built.graph(), &self.choices, steps);
             return Ok(false);
         }
-        if let Some((search, path)) = &mut self.search {
-            if search.advance(self.built.graph(), path) {
-                self.follow();
-            }
-            return Ok(false);
+        if self.search.is_some() {
+            return self.seek(now_secs);
         }
-        if self.goal <= self.frames || self.goal == 0 {
+        if self.publishing.is_none() && (self.goal <= self.frames || self.goal == 0) {
             self.goal = self.next_goal(now_secs);
         }
         if self.frames < self.goal && !self.ends {
@@ -143,8 +176,56 @@ impl Maker {
         if self.frames < self.goal && !self.ends {
             return Ok(false);
         }
-        self.walk = Some(Arc::new(self.so_far().map_err(told)?));
-        Ok(true)
+        let found = match self.publishing.take() {
+            Some(publishing) => publishing,
+            None => {
+                let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
+                Publishing::Assembling(assembling.ok_or(GraphError::NowhereToGo).map_err(told)?)
+            }
+        };
+        match self.published(found)? {
+            Ok(motion) => {
+                self.walk = Some(Arc::new(self.walk_of(motion)));
+                Ok(true)
+            }
+            Err(publishing) => {
+                self.publishing = Some(publishing);
+                Ok(false)
+            }
+        }
+    }
+
+    /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left to do.
+    fn published(&mut self, publishing: Publishing) -> Result<Result<Motion, Publishing>, String> {
+        match publishing {
+            Publishing::Assembling(mut assembling) => {
+                if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
+                    return Ok(Err(Publishing::Assembling(assembling)));
+                }
+                let motion = self.motion(assembling).map_err(|error| sentence(&error))?;
+                if !self.wanted.foot_lock {
+                    return Ok(Ok(motion));
+                }
+                let options = FootLockOptions::default();
+                let locking = FootLocking::new(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, &options);
+                let locking = locking.map_err(|error| error.to_string())?;
+                Ok(Err(Publishing::Locking(Box::new(locking), motion)))
+            }
+            Publishing::Locking(mut locking, motion) => {
+                if locking.advance(LOCKED_FRAMES) {
+                    return Ok(Err(Publishing::Locking(locking, motion)));
+                }
+                let locked = Motion {
+                    clip: Arc::new(locking.finish().map_err(|error| error.to_string())?),
+                    ..motion.clone()
+                };
+                if self.slides.is_none() {
+                    let of = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
+                    self.slides = Some([of(&locked), slide_before(of(&motion).value)]);
+                }
+                Ok(Ok(locked))
+            }
+        }
     }
 
     /// Frames: what is measured at first, then as far as the playhead asks for, and a good part more.
@@ -162,16 +243,63 @@ impl Maker {
             .mul_add(self.fps(), 0.5) as usize
     }
 
-    /// The line was searched for: the walk takes what was found.
-    fn follow(&mut self) {
-        let Some((search, path)) = self.search.take() else { return };
-        let found = search.finish(&path);
+    /// A slice of the search for a path, or of the walk that shows the best so far.
+    fn seek(&mut self, now_secs: f64) -> Result<bool, String> {
+        if let Some(mut preview) = self.preview.take() {
+            if preview.step(now_secs, None)? {
+                self.walk = preview.walk;
+                return Ok(true);
+            }
+            self.preview = Some(preview);
+            return Ok(false);
+        }
+        let Some((search, path)) = &mut self.search else { return Ok(false) };
+        let is_over = search.advance(self.built.graph(), path, PATH_NODES);
+        if is_over || self.searched_secs >= PATH_WAIT_SECS {
+            let found = search.so_far(self.built.graph(), path);
+            let length = path.length();
+            self.searched_secs = 0.0;
+            if is_over {
+                self.search = None;
+                self.follow(found, length, false);
+                // What was shown meanwhile does not count.
+                self.walk = None;
+            } else {
+                let wanted = Wanted {
+                    path: Vec::new(),
+                    ..self.wanted.clone()
+                };
+                let mut preview = Self::new(&self.built, &wanted)?;
+                (preview.run, preview.run_is_known) = (self.run.clone(), true);
+                preview.wanted.path.clone_from(&self.wanted.path);
+                preview.follow(found, length, true);
+                self.preview = Some(Box::new(preview));
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a path is searched for.
+    pub(super) fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// How long the last slice took, seconds.
+    pub(super) fn took(&mut self, secs: f64) {
+        if self.is_searching() && self.preview.is_none() {
+            self.searched_secs += secs;
+        }
+    }
+
+    /// The walk takes what was found.
+    fn follow(&mut self, found: Followed, length_m: f64, is_searching: bool) {
         self.trace = Some(Trace {
             points: self.wanted.path.clone(),
             rms_m: found.rms_m,
             along_m: found.along_m,
-            length_m: path.length(),
+            length_m,
             looked_at: found.looked_at,
+            is_searching,
         });
         self.walker.take(found.edges);
         self.stitcher.start_at(found.world_from_first);
@@ -297,40 +425,46 @@ impl Maker {
         metrics.list().to_vec()
     }
 
-    /// The walk as it is now.
-    fn so_far(&mut self) -> Result<Walk, GraphError> {
-        let metrics = match &self.metrics {
-            Some(metrics) => metrics.clone(),
-            None => self.measured(),
-        };
-        let frames = self.goal.min(self.frames);
-        let (clip, mut ground_frames) = assembled(&self.pieces)?.ok_or(GraphError::NowhereToGo)?;
-        let clip = if frames < clip.frames() { clip.crop(0..frames)? } else { clip };
-        ground_frames.truncate(clip.frames());
+    /// What was assembled, as a motion.
+    fn motion(&self, assembling: Assembling) -> Result<Motion, GraphError> {
+        let (clip, ground_frames) = assembling.finish()?;
         let planted = self.planted.clone().map(|mut flags| {
             flags.truncate(clip.frames());
             flags
         });
         let roles = self.built.cast.motions().first().map(|motion| motion.roles.clone());
-        let motion = Motion {
+        Ok(Motion {
             contacts: Contacts::from_flags(planted),
             roles: roles.unwrap_or_default(),
             ground_frames,
             clip: Arc::new(clip),
+        })
+    }
+
+    /// The walk as it is now.
+    fn walk_of(&self, motion: Motion) -> Walk {
+        let mut metrics = match &self.metrics {
+            Some(metrics) => metrics.clone(),
+            None => self.measured(),
         };
+        if let Some(slides) = &self.slides {
+            // That one is of feet that are not held.
+            metrics.retain(|metric| metric.id != "walk_skate_cm");
+            metrics.extend(slides.iter().cloned());
+        }
         let run_secs = self.run.secs(self.built.graph(), &self.choices);
-        Ok(Walk {
+        Walk {
             built: Arc::clone(&self.built),
             choices: Arc::clone(&self.choices),
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
-            motion: Arc::new(motion),
             passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
             metrics,
-            ends: self.ends && frames == self.frames,
+            ends: self.ends && motion.clip.frames() == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),
             is_guided: self.wanted.guide.is_some(),
-        })
+            motion: Arc::new(motion),
+        }
     }
 
     /// The end of one clip, a transition, and the beginning of another.
@@ -365,8 +499,16 @@ impl Maker {
             let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
             self.take(piece);
         }
-        self.goal = self.frames;
-        let mut walk = self.so_far().map_err(|error| sentence(&error))?;
+        let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NowhereToGo))?;
+        let mut publishing = Publishing::Assembling(assembling);
+        // A few seconds of motion.
+        let motion = loop {
+            match self.published(publishing)? {
+                Ok(motion) => break motion,
+                Err(rest) => publishing = rest,
+            }
+        };
+        let mut walk = self.walk_of(motion);
         // Of one transition these say nothing.
         walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
         Ok(walk)

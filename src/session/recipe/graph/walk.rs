@@ -97,6 +97,8 @@ pub struct Trace {
     pub length_m: f64,
     /// Nodes that were looked at.
     pub looked_at: usize,
+    /// It is the best so far.
+    pub is_searching: bool,
 }
 
 impl Walk {

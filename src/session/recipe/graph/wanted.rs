@@ -17,6 +17,8 @@ pub(super) struct Wanted {
     pub(super) seed: u64,
     pub(super) discount: f64,
     pub(super) stitch: StitchOptions,
+    /// Planted feet are held.
+    pub(super) foot_lock: bool,
     /// How much of the walk is measured, seconds.
     pub(super) measured_secs: f64,
     /// When to set off for which clip: seconds, and its index.
@@ -89,6 +91,7 @@ impl Wanted {
             seed: params.number(Key::Seed) as u64,
             discount: params.number(Key::VisitedDiscount),
             stitch: StitchOptions { mistake, ..stitch },
+            foot_lock: params.is_on(Key::FootLock),
             measured_secs: params.number(Key::WalkSeconds),
             visits,
             path: read_path(params.text(Key::WalkPath))?,

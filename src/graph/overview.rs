@@ -1,0 +1,238 @@
+use super::parts::{Part, Parts};
+use super::{FrameSet, GraphError, Place};
+use crate::blend::align_onto;
+use crate::registration::{DistanceMatrix, Progress};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The most cells of an overview to a side: 8 MB.
+const MOST_CELLS: usize = 2_000;
+
+/// All distances of a set from afar: of every square of [`block`](Self::block) × `block` windows the smallest, and how many pairs are how far
+/// apart. What is left of the matrix of all distances where that is not held; a [`CandidateStream`](super::CandidateStream) gives it.
+///
+/// Nearer by, a [`DistanceDetail`] is computed when it is looked at.
+#[derive(Clone, Debug)]
+pub struct DistanceOverview {
+    parts: Arc<Parts>,
+    block: usize,
+    side: usize,
+    /// Of blocks (row, column) with row ≤ column, row by row, metres; infinity where no window starts.
+    nearest_m: Vec<f32>,
+    counts: Vec<u32>,
+}
+
+impl DistanceOverview {
+    /// Width of a bin of the histogram, centimetres.
+    pub const BIN_CM: f64 = 0.5;
+    /// Bins of the histogram; the last takes what is farther.
+    pub const BINS: usize = 120;
+
+    /// Nothing is known yet.
+    pub(super) fn new(parts: Arc<Parts>) -> Self {
+        let frames = parts.set().frames();
+        let block = frames.div_ceil(MOST_CELLS).next_power_of_two();
+        let side = frames.div_ceil(block);
+        Self {
+            parts,
+            block,
+            side,
+            nearest_m: vec![f32::INFINITY; side * (side + 1) / 2],
+            counts: vec![0; Self::BINS],
+        }
+    }
+
+    /// The distances of the windows of two parts a ≤ b.
+    pub(super) fn take(&mut self, a: &Part, b: &Part, distances: &DistanceMatrix) {
+        let bins_per_m = (self.set().cm_per_m() / Self::BIN_CM) as f32;
+        let last = self.counts.len().saturating_sub(1);
+        for (row, i) in a.numbers().zip(a.starts.start - a.from..) {
+            // Of a part with itself one half.
+            let first = b.number.max(row);
+            let cells = distances
+                .row(i)
+                .get(first - b.number + (b.starts.start - b.from)..)
+                .unwrap_or_default();
+            let mut cells = cells.get(..b.numbers().end - first).unwrap_or(cells);
+            for &cell in cells.get(usize::from(first == row)..).unwrap_or_default() {
+                if let Some(count) = self.counts.get_mut(((cell * bins_per_m) as usize).min(last)) {
+                    *count += 1;
+                }
+            }
+            let mut column = first;
+            while !cells.is_empty() {
+                let (here, rest) = cells.split_at((self.block - column % self.block).min(cells.len()));
+                let nearest = here.iter().copied().fold(f32::INFINITY, f32::min);
+                let at = self.at(row / self.block, column / self.block);
+                if let Some(known) = self.nearest_m.get_mut(at) {
+                    *known = known.min(nearest);
+                }
+                (column, cells) = (column + here.len(), rest);
+            }
+        }
+    }
+
+    /// Where a block with row ≤ column is kept.
+    fn at(&self, row: usize, column: usize) -> usize {
+        row * (2 * self.side - row).saturating_sub(1) / 2 + column
+    }
+
+    /// The frames that are compared.
+    #[must_use]
+    pub fn set(&self) -> &Arc<FrameSet> {
+        self.parts.set()
+    }
+
+    /// Frames of each window.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.parts.window()
+    }
+
+    /// Frames of a cell to a side, a power of two.
+    #[must_use]
+    pub fn block(&self) -> usize {
+        self.block
+    }
+
+    /// Cells that are held.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.nearest_m.len()
+    }
+
+    /// How many pairs of windows lie in each of [`Self::BINS`] ranges of [`Self::BIN_CM`]. Every pair counts once, a window with itself not.
+    #[must_use]
+    pub fn histogram(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// The distance of the windows that start at two frames, centimetres, straight from the clips; `None` where a window crosses the end of its clip.
+    #[must_use]
+    pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
+        let (set, window) = (self.set(), self.window());
+        let fits = |place: Place| place.frame + window <= set.frames_of(place.clip);
+        if !fits(a) || !fits(b) {
+            return None;
+        }
+        let (source, target) = (set.clip(a.clip)?.clip(), set.clip(b.clip)?.clip());
+        let found = align_onto(source, a.frame, target, b.frame, window, set.weights(), 0.0).ok()?;
+        Some(set.rounded_cm(found.rms_m() as f32))
+    }
+
+    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value is the smallest distance (centimetres) in a square of `factor` × `factor` of
+    /// them, row-major; NaN where no window starts. It knows no more than the blocks do: squares that are not made of whole blocks take all that
+    /// they touch.
+    #[must_use]
+    pub fn picture(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> Vec<f32> {
+        let (frames, scale) = (self.set().frames(), self.set().cm_per_m() as f32);
+        let blocks = |of: &Range<usize>| of.start / self.block..of.end.div_ceil(self.block);
+        let columns: Vec<Range<usize>> = squares(columns, factor, frames).map(|columns| blocks(&columns)).collect();
+        let mut picture = Vec::new();
+        for rows in squares(rows, factor, frames).map(|rows| blocks(&rows)) {
+            for columns in &columns {
+                let mut nearest = f32::INFINITY;
+                for row in rows.clone() {
+                    for column in columns.clone() {
+                        let at = self.at(row.min(column), row.max(column));
+                        nearest = nearest.min(self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY));
+                    }
+                }
+                picture.push(if nearest.is_finite() { nearest * scale } else { f32::NAN });
+            }
+        }
+        picture
+    }
+
+    /// A picture as [`Self::picture`] gives it, made of the distances themselves. Nothing is computed yet: call [`DistanceDetail::advance`].
+    #[must_use]
+    pub fn detail(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> DistanceDetail {
+        let (frames, factor) = (self.set().frames(), factor.max(1));
+        let within = |of: Range<usize>| of.start.min(frames)..of.end.min(frames);
+        let (rows, columns) = (within(rows), within(columns));
+        let width = columns.len().div_ceil(factor);
+        let (down, across) = (self.parts.between(&rows), self.parts.between(&columns));
+        DistanceDetail {
+            parts: Arc::clone(&self.parts),
+            picture: vec![f32::NAN; rows.len().div_ceil(factor) * width],
+            width,
+            factor,
+            tiles: down.flat_map(|a| across.clone().map(move |b| (a, b))).collect(),
+            rows,
+            columns,
+            done: 0,
+        }
+    }
+}
+
+/// Frames `factor` by `factor`.
+fn squares(of: Range<usize>, factor: usize, frames: usize) -> impl Iterator<Item = Range<usize>> {
+    let (factor, end) = (factor.max(1), of.end.min(frames));
+    (of.start.min(end)..end)
+        .step_by(factor)
+        .map(move |from| from..(from + factor).min(end))
+}
+
+/// A part of the matrix of all distances, computed tile by tile when it is looked at.
+#[derive(Clone, Debug)]
+pub struct DistanceDetail {
+    parts: Arc<Parts>,
+    rows: Range<usize>,
+    columns: Range<usize>,
+    factor: usize,
+    width: usize,
+    picture: Vec<f32>,
+    /// The indices of two parts.
+    tiles: Vec<(usize, usize)>,
+    done: usize,
+}
+
+impl DistanceDetail {
+    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and says how many are done.
+    ///
+    /// # Errors
+    /// [`GraphError::Registration`]; not for an overview that a stream gave.
+    pub fn advance(&mut self, tiles: usize) -> Result<Progress, GraphError> {
+        let total = self.tiles.len();
+        let end = self.done.saturating_add(tiles).min(total);
+        for at in self.done..end {
+            self.tile(at)?;
+            self.done = at + 1;
+        }
+        Ok(Progress { done: self.done, total })
+    }
+
+    /// As far as it is computed, row-major; NaN where nothing is known, or no window starts.
+    #[must_use]
+    pub fn picture(&self) -> &[f32] {
+        &self.picture
+    }
+
+    fn tile(&mut self, at: usize) -> Result<(), GraphError> {
+        let Some(&(a, b)) = self.tiles.get(at) else { return Ok(()) };
+        // One tile stands for both of its places in the matrix.
+        let (Some(p), Some(q)) = (self.parts.made().get(a.min(b)), self.parts.made().get(a.max(b))) else {
+            return Ok(());
+        };
+        let (_, distances) = p.tile(q, self.parts.window())?;
+        let scale = self.parts.set().cm_per_m() as f32;
+        let (down, across) = if a <= b { (p, q) } else { (q, p) };
+        let seen = |part: &Part, of: &Range<usize>| part.numbers().start.max(of.start)..part.numbers().end.min(of.end);
+        let columns = seen(across, &self.columns);
+        for row in seen(down, &self.rows) {
+            let i = row - down.number + (down.starts.start - down.from);
+            let start = (row - self.rows.start) / self.factor * self.width;
+            for column in columns.clone() {
+                let j = column - across.number + (across.starts.start - across.from);
+                // Of a part with itself, too, the two halves are the same.
+                let (i, j) = if row <= column { (i, j) } else { (j, i) };
+                let found = distances.get(i, j).map(|distance| distance * scale);
+                if let (Some(texel), Some(found)) = (self.picture.get_mut(start + (column - self.columns.start) / self.factor), found) {
+                    // The smaller of the two, and not what is no number.
+                    *texel = texel.min(found);
+                }
+            }
+        }
+        Ok(())
+    }
+}
