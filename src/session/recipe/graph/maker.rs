@@ -49,7 +49,7 @@ pub(super) type Guide = (Arc<Vec<Passed>>, usize);
 #[derive(Debug)]
 enum Publishing {
     Assembling(Assembling),
-    Locking(Box<FootLocking>, Motion),
+    Locking(Box<FootLocking>, Box<Motion>),
 }
 
 /// Makes a walk, stay by stay.
@@ -176,12 +176,11 @@ impl Maker {
         if self.frames < self.goal && !self.ends {
             return Ok(false);
         }
-        let found = match self.publishing.take() {
-            Some(publishing) => publishing,
-            None => {
-                let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
-                Publishing::Assembling(assembling.ok_or(GraphError::NowhereToGo).map_err(told)?)
-            }
+        let found = if let Some(publishing) = self.publishing.take() {
+            publishing
+        } else {
+            let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
+            Publishing::Assembling(assembling.ok_or(GraphError::NowhereToGo).map_err(told)?)
         };
         match self.published(found)? {
             Ok(motion) => {
@@ -209,7 +208,7 @@ impl Maker {
                 let options = FootLockOptions::default();
                 let locking = FootLocking::new(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, &options);
                 let locking = locking.map_err(|error| error.to_string())?;
-                Ok(Err(Publishing::Locking(Box::new(locking), motion)))
+                Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
             }
             Publishing::Locking(mut locking, motion) => {
                 if locking.advance(LOCKED_FRAMES) {
@@ -217,7 +216,7 @@ impl Maker {
                 }
                 let locked = Motion {
                     clip: Arc::new(locking.finish().map_err(|error| error.to_string())?),
-                    ..motion.clone()
+                    ..(*motion).clone()
                 };
                 if self.slides.is_none() {
                     let of = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
@@ -450,7 +449,7 @@ impl Maker {
         if let Some(slides) = &self.slides {
             // That one is of feet that are not held.
             metrics.retain(|metric| metric.id != "walk_skate_cm");
-            metrics.extend(slides.iter().cloned());
+            metrics.extend(slides.iter().copied());
         }
         let run_secs = self.run.secs(self.built.graph(), &self.choices);
         Walk {
