@@ -717,14 +717,20 @@ pub(crate) fn moved_onto_first(cast: &Cast) -> Option<String> {
 
 /// How a walk follows its line.
 pub(crate) fn followed(trace: &Trace) -> String {
-    format!(
-        "{} {:.1} of {:.1} m of the path, {:.2} m off it on average; {} ways were looked at.",
-        if trace.is_searching { "So far it follows" } else { "Follows" },
-        trace.along_m,
-        trace.length_m,
-        trace.rms_m,
-        trace.looked_at
-    )
+    let Trace {
+        along_m,
+        length_m,
+        rms_m,
+        looked_at,
+        ..
+    } = trace;
+    if trace.is_searching {
+        format!(
+            "So far {along_m:.1} of {length_m:.1} m of the path are followed, {rms_m:.2} m off it on average; {looked_at} ways were looked at."
+        )
+    } else {
+        format!("Follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m off it on average; {looked_at} ways were looked at.")
+    }
 }
 
 /// That a walk has an end.
