@@ -1,5 +1,6 @@
-// Measures, and judges nothing: how soon the page shows its first frame, how long frames take while three panes play,
-// and how long they take while a slider is dragged over two clips of 3,000 frames and 31 joints. On both backends.
+// Measures, and judges nothing: how soon the page shows its first frame, how long frames take while three panes play, and how long
+// it takes until all of a change is there: in Blend and Path for clips of 3,000 frames, in Register for two of 1,500, all of 31
+// joints. On both backends.
 //   node tests/browser/measure.mjs [--size 1440x900] [--seconds 5]
 
 import process from "node:process";
@@ -10,6 +11,8 @@ import { BACKENDS, close, openSegue } from "./segue.mjs";
 const { values } = parseArgs({ options: { size: { type: "string", default: "1440x900" }, seconds: { type: "string", default: "5" } } });
 const viewport = values.size.split("x").map(Number);
 const millis = (number) => Number(number.toFixed(1));
+/** Two roads that differ in one of their twelve points by half a step. */
+const ROADS = ["AAwCAQHgAwDEBwCkCwCkCwCkCwqmCwmkCwCkCwCkCwDEBwDgAw", "AAwCAQHgAwDEBwCkCwCkCwCkC1CmC0-kCwCkCwCkCwDEBwDgAw"];
 const rows = {};
 
 try {
@@ -33,22 +36,24 @@ async function measure(backend) {
   const [a, b] = [await long.load("a.bvh", striding({ frames: 3000, hertz: 0.9 })), await long.load("b.bvh", striding({ frames: 3000, hertz: 1.6, swing: 40 }))];
   await long.segue("set", { a: a.clips[0].id, b: b.clips[0].id, leave_a: 20, enter_b: 5 });
   // The same work that a drag causes: one value after the other, each awaited, without the drawing that software rendering makes slow.
-  const set = await long.page.evaluate(async () => {
-    const took = [];
-    for (let frames = 10; frames < 210; frames += 5) {
-      const start = performance.now();
-      await window.segue.set({ blend_window: frames });
-      took.push(performance.now() - start);
-    }
-    return took.toSorted((x, y) => x - y);
-  });
+  const set = await changes(long, range(40, (i) => ({ blend_window: 10 + 5 * i })));
   await long.segue("set", { leave_a: "auto", enter_b: "auto" });
-  const search = await long.page.evaluate(async () => {
-    const start = performance.now();
-    await window.segue.set({ blend_window: 61 });
-    return performance.now() - start;
-  });
+  const search = await changes(long, [{ blend_window: 61 }]);
+  await long.segue("set", { lab: "path" });
+  const path = await changes(long, range(40, (i) => ({ path: ROADS[i % 2] })));
   await long.page.context().close();
+
+  const pair = await openSegue(backend, "lab=register&play=off", { viewport });
+  const [c, d] = [await pair.load("c.bvh", striding({ frames: 1500, hertz: 0.9 })), await pair.load("d.bvh", striding({ frames: 1500, hertz: 1.1, swing: 40 }))];
+  const [first, again] = [[c, d], [d, c]].map(([from, to]) => ({ a: from.clips[0].id, b: to.clips[0].id }));
+  const register = [...await changes(pair, [first]), ...await changes(pair, [again])];
+  const windows = await changes(pair, range(20, (i) => ({ registration_window: 7 + 2 * i })));
+  const slopes = [];
+  for (const window of [9, 11, 13, 15]) {
+    await changes(pair, [{ registration_window: window, slope_limit: 2 }]);
+    slopes.push(...await changes(pair, [3, 4, 5].map((slope_limit) => ({ slope_limit }))));
+  }
+  await pair.page.context().close();
   return {
     "first frame ms": millis(firstFrame),
     "again ms": millis(warm),
@@ -57,10 +62,37 @@ async function measure(backend) {
     "p95 ms": millis(playing.frame_ms.p95),
     "drawing p95 ms": millis(playing.draw_ms.p95),
     "wasm MB": millis(playing.wasm_bytes / 1e6),
-    "set p50 ms": millis(set[set.length >> 1]),
-    "set max ms": millis(set.at(-1)),
-    "match anew ms": millis(search),
+    "set p50, max ms": middleAndMost(set),
+    "match anew ms": millis(search[0]),
+    "road p50, max ms": middleAndMost(path),
+    "register, again ms": register.map(millis).join(", "),
+    "window p50, max ms": middleAndMost(windows),
+    "slope p50, max ms": middleAndMost(slopes),
   };
+}
+
+/** How long each of the changes takes until nothing is left to be done, milliseconds. */
+function changes({ page }, values) {
+  return page.evaluate(async (values) => {
+    const segue = await window.segueReady;
+    const took = [];
+    for (const value of values) {
+      const start = performance.now();
+      await segue.set(value);
+      while ((await segue.stats()).jobs.length) await new Promise((done) => setTimeout(done, 1));
+      took.push(performance.now() - start);
+    }
+    return took;
+  }, values);
+}
+
+function range(count, value) {
+  return Array.from({ length: count }, (_, i) => value(i));
+}
+
+function middleAndMost(took) {
+  const sorted = took.toSorted((x, y) => x - y);
+  return `${millis(sorted[sorted.length >> 1])}, ${millis(sorted.at(-1))}`;
 }
 
 /** The same page again in the same browser, its files in the cache. */
