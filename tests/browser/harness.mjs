@@ -14,6 +14,9 @@ import { BACKENDS, close, openSegue } from "./segue.mjs";
 
 after(close);
 
+/** A browser that stops for good fails its test, and the others go on. */
+const TEST_TIMEOUT_MS = 300_000;
+
 /** Registers the test once per backend. `body` is given `{ backend, open, t }`; what it opens is closed behind it. */
 export function onBothBackends(name, body) {
   for (const backend of BACKENDS) onBackend(backend, name, body);
@@ -21,7 +24,7 @@ export function onBothBackends(name, body) {
 
 /** Registers the test for one backend: for what does not depend on it, or exists on one only. */
 export function onBackend(backend, name, body) {
-  test(`${name} [${backend}]`, async (t) => {
+  test(`${name} [${backend}]`, { timeout: TEST_TIMEOUT_MS }, async (t) => {
     const opened = [];
     const open = async (query = "", options = {}) => {
       const segue = await openSegue(backend, query, options);
