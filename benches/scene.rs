@@ -1,7 +1,7 @@
 //! A frame of the screen with a hundred characters: everything on the processor up to what the graphics card is told.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use segue::scene::{Colors, Director, Look, Viewport, rgb};
+use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::{Command, Session};
 use segue::skeleton::Roles;
 use segue::skin::{Sculptor, SkinnedMesh};
@@ -9,15 +9,7 @@ use segue::synth::humanoid;
 use std::hint::black_box;
 
 fn frame(c: &mut Criterion) {
-    let colors = Colors {
-        a: rgb(0xf2_a3_5e),
-        b: rgb(0x5f_a8_f5),
-        result: rgb(0x58_d6_a9),
-        bad: rgb(0xff_7a_6b),
-        warning: rgb(0xf0_c0_5a),
-        others: [rgb(0xc0_8d_f0); 4],
-        ghost_alpha: 0.4,
-    };
+    let colors = Colors::default();
     let shown = [(
         0,
         Viewport {

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 use std::sync::Arc;
 
 /// The colours of what is made from A, from B, and from both, in the theme of the page.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Colors {
     /// A's ghost and path.
     pub a: Color,

@@ -140,22 +140,12 @@ impl Wardrobe {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Colors, Director, Look, Viewport, rgb};
+    use crate::scene::{Colors, Director, Look, Viewport};
     use crate::session::{Command, Key, Session, Value};
 
     /// Half the width of the waist of the skin that is worn; none where limbs are.
     fn width(director: &mut Director, session: &Session) -> Option<f32> {
-        let color = rgb(0);
-        let colors = Colors {
-            a: color,
-            b: color,
-            result: color,
-            bad: color,
-            warning: color,
-            others: [color; 4],
-            ghost_alpha: 0.0,
-        };
-        let stage = director.stage(session, &[(0, Viewport::default())], 1.0, Look::DARK, &colors, 0.0);
+        let stage = director.stage(session, &[(0, Viewport::default())], 1.0, Look::DARK, &Colors::default(), 0.0);
         let skin = stage.panes[0].figures.first()?.skin.as_ref()?;
         let waist = skin.mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
         Some(waist.map(|p| p.x).fold(0.0, f32::max))

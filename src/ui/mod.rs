@@ -207,6 +207,22 @@ fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
     }
 }
 
+/// The same where room is scarce. Strips of walks and drives fill what they get; tracks and stripes take what they need, and no panel may be smaller
+/// than what is in it: the next one would cover it.
+fn slim_time_ui(panel: Panel, margin: f32, session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+    let scale = theme_of(ui).scale();
+    let is_walked = session.graph_walk().is_some_and(|walk| !walk.is_jump);
+    let has_strip = is_walked || session.main_outcome().is_some_and(|outcome| outcome.driven.is_some());
+    let panel = if has_strip {
+        panel.exact_size(144.0 * scale)
+    } else {
+        panel.default_size(136.0 * scale)
+    };
+    panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {
+        time_ui(session, Layout::Phone, state, curves, out, ui);
+    });
+}
+
 /// One column: bar, stage, timeline, parameters.
 fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
@@ -223,18 +239,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
         .show(ui, |ui| {
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
-    // The stripes of the feet need more room than the bars of the clips.
-    let timeline = if matches!(session.params().text(Key::Lab), "register" | "graph" | "match") {
-        144.0
-    } else {
-        104.0
-    };
-    Panel::top("timeline")
-        .exact_size(timeline * scale)
-        .frame(panel_frame(ui, space::L, space::S))
-        .show(ui, |ui| {
-            time_ui(session, Layout::Phone, state, curves, out, ui);
-        });
+    slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
     egui::CentralPanel::default()
         .frame(scrolling_frame(ui, space::L, space::M))
         .show(ui, |ui| {
@@ -263,12 +268,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
 /// Inside another page: the stage, a slim timeline, and the parameters that the link names.
 fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
-    Panel::bottom("timeline")
-        .exact_size(104.0 * scale)
-        .frame(panel_frame(ui, space::M, space::S))
-        .show(ui, |ui| {
-            time_ui(session, Layout::Phone, state, curves, out, ui);
-        });
+    slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
     if lab_panel::has_named_params(session) {
         let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
         Panel::bottom("parameters")

@@ -8,7 +8,7 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use segue::formats::{FileKind, ImportOptions};
-use segue::scene::{Colors, Director, Look, Viewport, rgb};
+use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
 use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
@@ -45,6 +45,8 @@ struct Page {
     curves: CurveCache,
     director: Director,
     out: Out,
+    /// Where the stage was drawn last.
+    stage: Rect,
     /// Commands are carried out, as the app does; otherwise they are only kept.
     obeys: bool,
 }
@@ -59,18 +61,9 @@ impl Page {
             height: rect.height() as u32,
         };
         let shown: Vec<(usize, Viewport)> = places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
-        let color = rgb(0x58_d6_a9);
-        let colors = Colors {
-            a: color,
-            b: color,
-            result: color,
-            bad: color,
-            warning: color,
-            others: [color; 4],
-            ghost_alpha: 0.4,
-        };
         self.director.mark_path(self.state.path_marks(&self.session));
-        self.director.stage(&self.session, &shown, 1.0, Look::DARK, &colors, 10.0);
+        self.director
+            .stage(&self.session, &shown, 1.0, Look::DARK, &Colors::default(), 10.0);
         let panes = self.session.panes().len();
         self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
     }
@@ -86,6 +79,7 @@ fn page(link: &str) -> Page {
         curves: CurveCache::default(),
         director: Director::default(),
         out: Out::default(),
+        stage: Rect::NOTHING,
         obeys: true,
     }
 }
@@ -101,7 +95,9 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     let mut harness = builder.build_ui_state(
         |ui, page: &mut Page| {
             let mut places: Vec<(usize, Rect)> = Vec::new();
+            let mut shown = Rect::NOTHING;
             let mut paint = |stage: Rect, panes: &[(usize, Rect)], ui: &mut Ui| {
+                shown = stage;
                 places = panes.to_vec();
                 let colors = &palette_of(ui).stage;
                 ui.painter()
@@ -118,6 +114,7 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
                 }
             }
             page.aim(&places);
+            page.stage = shown;
             page.out.commands.extend(out.commands);
             page.out.actions.extend(out.actions);
         },
@@ -582,4 +579,21 @@ fn a_clip_of_another_skeleton_is_said_to_be_moved() {
     let alone = self::page("lab=graph&clips=idle&construction=segments&segment_size=20&blend_window=30&play=off");
     let harness = self::harness(DESK, LIGHT, alone);
     assert!(harness.query_all_by_label_contains("raise the segment to 31").next().is_some());
+}
+
+/// Inside another page no panel may cover another: the row with the play button stood half under the stage where the tracks need room.
+#[test]
+fn an_embedded_page_shows_all_of_its_timeline() {
+    for lab in ["blend", "transition", "loop", "register", "graph", "match"] {
+        for (name, size) in [("phone", PHONE), ("desk", vec2(800.0, 500.0)), ("projector", vec2(1280.0, 720.0))] {
+            let link = format!("lab={lab}&play=off&embed=1&half_life=0.2&blend_window=12");
+            let mut harness = harness(size, DARK, page(&link));
+            picture(&format!("embed-{lab}-{name}"), &mut harness);
+            let [slider, play] = ["Blend window", "Play"].map(|label| harness.get_by_label(label).rect());
+            let last = harness.query_by_label("Timeline").map_or(play, |timeline| timeline.rect());
+            let stage = harness.state().stage;
+            assert!(stage.height() > 150.0 && stage.bottom() <= slider.top(), "{lab}, {name}: {stage:?}");
+            assert!(slider.bottom() <= play.top() && last.bottom() <= size.y, "{lab}, {name}: {play:?}");
+        }
+    }
 }
