@@ -3,10 +3,13 @@
 use crate::platform::address::{backend_of, state_of, with_backend_of};
 use crate::platform::{Inbox, Incoming};
 use js_sys::{Function, Promise};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{Document, EventTarget, HtmlCanvasElement, HtmlElement, MessageChannel, Window};
+use web_sys::{Document, EventTarget, HtmlCanvasElement, HtmlElement, MessageChannel, MessagePort, Window};
 
 pub(super) fn window() -> Option<Window> {
     web_sys::window()
@@ -158,12 +161,47 @@ pub(super) async fn sleep(millis: i32) {
 /// Waits until the browser has had its turn: input and frames that are due come first. Unlike [`sleep`], which takes 4 ms at the least once it was
 /// called a few times in a row.
 pub(super) async fn turn() {
-    resolved(|resolve| {
-        let Ok(channel) = MessageChannel::new() else { return false };
-        channel.port1().set_onmessage(Some(resolve));
-        channel.port2().post_message(&JsValue::NULL).is_ok()
-    })
-    .await;
+    resolved(|resolve| TURNS.with(|turns| turns.as_ref().is_some_and(|turns| turns.wait(resolve)))).await;
+}
+
+thread_local! {
+    static TURNS: Option<Turns> = Turns::open();
+}
+
+/// One channel of the page to itself for all who wait for their turn. One for every wait would stay in memory: a browser keeps a port that has a
+/// listener for as long as its other end could still speak.
+struct Turns {
+    sender: MessagePort,
+    waiting: Rc<RefCell<VecDeque<Function>>>,
+}
+
+impl Turns {
+    fn open() -> Option<Self> {
+        let channel = MessageChannel::new().ok()?;
+        let waiting = Rc::new(RefCell::new(VecDeque::<Function>::new()));
+        let queue = Rc::clone(&waiting);
+        let on_message = Closure::<dyn FnMut()>::new(move || {
+            let first = queue.borrow_mut().pop_front();
+            if let Some(first) = first {
+                first.call0(&JsValue::NULL).ok();
+            }
+        });
+        channel.port1().set_onmessage(Some(on_message.as_ref().unchecked_ref()));
+        on_message.forget();
+        Some(Self {
+            sender: channel.port2(),
+            waiting,
+        })
+    }
+
+    /// Has a function called at the next turn; `false` when the browser takes no message.
+    fn wait(&self, resolve: &Function) -> bool {
+        let is_sent = self.sender.post_message(&JsValue::NULL).is_ok();
+        if is_sent {
+            self.waiting.borrow_mut().push_back(resolve.clone());
+        }
+        is_sent
+    }
 }
 
 /// Whether [`between_frames`] does anything.
