@@ -367,8 +367,6 @@ struct Picture {
 /// More texels than a map has points only cost time.
 const MOST_TEXELS: usize = 512;
 
-/// Colours of a picture, more than an eye tells apart.
-const SHADES: usize = 256;
 /// Every so manieth cell is looked at to learn where the worst begin.
 const SAMPLED_CELLS: usize = 13;
 
@@ -395,13 +393,12 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     let mut some: Vec<f32> = pooled.rms_m().iter().copied().step_by(SAMPLED_CELLS).collect();
     let worst = (some.len() - 1) * 98 / 100;
     let (_, &mut high, _) = some.select_nth_unstable_by(worst, f32::total_cmp);
-    let per_metre = (SHADES - 1) as f32 / (high - low).max(1e-6);
-    let shades: [Color32; SHADES] = std::array::from_fn(|shade| heat_at(shade as f32 / (SHADES - 1) as f32, &heat));
+    let per_metre = (high - low).max(1e-6).recip();
+    let shades = kit::Shades::new(&heat);
     let mut pixels = Vec::with_capacity(rows * columns);
     for column in (0..columns).rev() {
-        // A conversion takes what is below 0 to 0.
         let cells = pooled.rms_m().iter().skip(column).step_by(columns);
-        pixels.extend(cells.map(|rms| shades[(((rms - low) * per_metre + 0.5) as usize).min(SHADES - 1)]));
+        pixels.extend(cells.map(|rms| shades.at((rms - low) * per_metre)));
     }
     let image = ColorImage::new([rows, columns], pixels);
     let picture = Picture {
@@ -412,12 +409,6 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     };
     ui.data_mut(|data| data.insert_temp(id, picture.clone()));
     Some(picture)
-}
-
-pub(super) fn heat_at(share: f32, heat: &[Color32; 5]) -> Color32 {
-    let at = share * (heat.len() - 1) as f32;
-    let index = (at as usize).min(heat.len() - 2);
-    heat[index].lerp_to_gamma(heat[index + 1], at - index as f32)
 }
 
 /// A sentence in small type.

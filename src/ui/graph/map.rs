@@ -3,7 +3,6 @@
 use super::{jump_words, named, note_ui, open_jump, table};
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
-use crate::ui::register_panel::heat_at;
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -282,12 +281,12 @@ impl Tiles {
                 distances.picture(rows, columns, tile.factor)
             }
         };
-        let high = self.high_cm as f32;
+        let (per_cm, shades) = ((self.high_cm as f32).recip(), kit::Shades::new(&self.heat));
         let colors = cm.into_iter().map(|cm| {
             if cm.is_nan() {
                 Color32::TRANSPARENT
             } else {
-                heat_at((cm / high).clamp(0.0, 1.0), &self.heat)
+                shades.at(cm * per_cm)
             }
         });
         let image = ColorImage::new(size, colors.collect());

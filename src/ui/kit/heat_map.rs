@@ -9,6 +9,30 @@ use eframe::egui::{
 };
 use std::ops::Range;
 
+/// Colours of a picture of distances: more than an eye tells apart.
+const SHADES: usize = 256;
+
+/// What colour a distance has, looked up: a picture of distances asks for it hundreds of thousands of times.
+#[derive(Clone, Debug)]
+pub(crate) struct Shades([Color32; SHADES]);
+
+impl Shades {
+    /// From the palette's few colours, alike to far apart.
+    pub(crate) fn new(heat: &[Color32; 5]) -> Self {
+        Self(std::array::from_fn(|shade| {
+            let at = shade as f32 / (SHADES - 1) as f32 * (heat.len() - 1) as f32;
+            let index = (at as usize).min(heat.len() - 2);
+            heat[index].lerp_to_gamma(heat[index + 1], at - index as f32)
+        }))
+    }
+
+    /// The colour of a share of the way, 0 to 1; what is beyond an end has that end's.
+    pub(crate) fn at(&self, share: f32) -> Color32 {
+        // A conversion takes what is below 0 to 0.
+        self.0[((share * (SHADES - 1) as f32 + 0.5) as usize).min(SHADES - 1)]
+    }
+}
+
 /// A curve over both times, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MapCurve<'a> {

@@ -50,7 +50,7 @@ pub(crate) use cost_bars::{CostBars, CostRow, cost_bars_ui};
 pub(crate) use curves::{Curves, Series};
 pub(crate) use drop_zone::drop_zone_ui;
 pub(crate) use field::{text_field_ui, value_row_ui};
-pub(crate) use heat_map::{Feet, HeatMap, HeatMapEvent, MapCurve, heat_legend_ui, heat_map_ui};
+pub(crate) use heat_map::{Feet, HeatMap, HeatMapEvent, MapCurve, Shades, heat_legend_ui, heat_map_ui};
 pub(crate) use histogram::{Histogram, histogram_ui};
 pub(crate) use icon::{Icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};

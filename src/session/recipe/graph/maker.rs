@@ -1,7 +1,7 @@
 use super::walk::Trace;
 use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
-use crate::clip::Contacts;
+use crate::clip::{Clip, Contacts};
 use crate::graph::{
     Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
     Walker,
@@ -88,21 +88,35 @@ pub(super) struct Maker {
 }
 
 impl Maker {
+    /// One that first looks for a way along the path that is wanted, where there is one.
     pub(super) fn new(built: &Arc<Built>, wanted: &Wanted) -> Result<Self, String> {
+        let mut maker = Self::idle(built, wanted)?;
+        if !wanted.path.is_empty() && wanted.jump.is_none() {
+            let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
+            let search = PathSearch::new(built.graph(), NodeIndex::new(0), &path, PATH_BUDGET);
+            maker.search = Some((search, path));
+        }
+        Ok(maker)
+    }
+
+    /// One that goes by what has been found of the path so far.
+    fn preview(&self, found: Followed, length_m: f64) -> Result<Self, String> {
+        let mut maker = Self::idle(&self.built, &self.wanted)?;
+        (maker.run, maker.run_is_known) = (self.run.clone(), true);
+        maker.follow(found, length_m, true);
+        Ok(maker)
+    }
+
+    fn idle(built: &Arc<Built>, wanted: &Wanted) -> Result<Self, String> {
         let graph = built.graph();
         let choices = Arc::new(Choices::new(graph, &wanted.weights).map_err(|error| sentence(&error))?);
         let walker = Walker::new(Arc::clone(graph), Arc::clone(&choices), wanted.seed);
         let walker = walker.with_visited_discount(wanted.discount).map_err(|error| sentence(&error))?;
-        let mut search = None;
-        if !wanted.path.is_empty() && wanted.jump.is_none() {
-            let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
-            search = Some((PathSearch::new(graph, NodeIndex::new(0), &path, PATH_BUDGET), path));
-        }
         Ok(Self {
             run: RunLength::new(graph.graph().node_count()),
             run_is_known: false,
             walker,
-            search,
+            search: None,
             searched_secs: 0.0,
             preview: None,
             trace: None,
@@ -214,15 +228,12 @@ impl Maker {
                 if locking.advance(LOCKED_FRAMES) {
                     return Ok(Err(Publishing::Locking(locking, motion)));
                 }
-                let locked = Motion {
-                    clip: Arc::new(locking.finish().map_err(|error| error.to_string())?),
-                    ..(*motion).clone()
-                };
+                let clip = Arc::new(locking.finish().map_err(|error| error.to_string())?);
                 if self.slides.is_none() {
-                    let of = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
-                    self.slides = Some([of(&locked), slide_before(of(&motion).value)]);
+                    let of = |clip: &Clip| slide(clip, &motion.roles, &motion.contacts);
+                    self.slides = Some([of(&clip), slide_before(of(&motion.clip).value)]);
                 }
-                Ok(Ok(locked))
+                Ok(Ok(Motion { clip, ..*motion }))
             }
         }
     }
@@ -264,15 +275,7 @@ impl Maker {
                 // What was shown meanwhile does not count.
                 self.walk = None;
             } else {
-                let wanted = Wanted {
-                    path: Vec::new(),
-                    ..self.wanted.clone()
-                };
-                let mut preview = Self::new(&self.built, &wanted)?;
-                (preview.run, preview.run_is_known) = (self.run.clone(), true);
-                preview.wanted.path.clone_from(&self.wanted.path);
-                preview.follow(found, length, true);
-                self.preview = Some(Box::new(preview));
+                self.preview = Some(Box::new(self.preview(found, length)?));
             }
         }
         Ok(false)
