@@ -1,0 +1,48 @@
+// Work goes on between pictures: without a graphics card they are far apart, and in a page that nobody looks at there are none.
+
+import assert from "node:assert/strict";
+import { striding, until } from "./help.mjs";
+import { onBothBackends } from "./harness.mjs";
+
+// Fails when work waits for frames, and when every piece of it opens a channel: a browser keeps those.
+onBothBackends("work ends without a picture, through one channel", async ({ open }) => {
+  const { page, segue, load } = await open("lab=view&play=off", { prepare: countAndHold });
+  const [a, b] = [await load("a.bvh", striding({ frames: 1200, hertz: 0.9 })), await load("b.bvh", striding({ frames: 1200, hertz: 1.1, swing: 40 }))];
+  const before = await page.evaluate(() => window.channels);
+  await page.evaluate((link) => {
+    // One frame to read the address, one to begin.
+    window.framesLeft = 2;
+    history.pushState(null, "", link);
+    dispatchEvent(new PopStateEvent("popstate"));
+  }, `?lab=register&a=${a.clips[0].id}&b=${b.clips[0].id}&play=off`);
+  await until("the frames are used up", () => page.evaluate(() => window.framesLeft === 0 && window.held.length > 0));
+  await until("the clips are registered", async () => (await segue("params")).lab === "register" && (await segue("stats")).jobs.length === 0);
+  assert.equal(await page.evaluate(() => window.framesLeft), 0);
+  assert.ok(await page.evaluate(() => window.channels) - before <= 1, "more than one channel");
+  await page.evaluate(() => {
+    window.framesLeft = Infinity;
+    for (const callback of window.held.splice(0)) requestAnimationFrame(callback);
+  });
+  await segue("set", {});
+  assert.ok((await segue("metrics"))[0].metrics.length > 0);
+});
+
+function countAndHold(page) {
+  return page.addInitScript(() => {
+    window.channels = 0;
+    window.MessageChannel = class extends MessageChannel {
+      constructor() {
+        super();
+        window.channels += 1;
+      }
+    };
+    window.framesLeft = Infinity;
+    window.held = [];
+    const real = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (callback) => {
+      if (window.framesLeft <= 0) return -window.held.push(callback);
+      window.framesLeft -= 1;
+      return real(callback);
+    };
+  });
+}
