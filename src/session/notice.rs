@@ -1,5 +1,14 @@
 //! What Segue has to say, until it is read.
 
+/// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
+#[must_use]
+pub fn sentence(note: &str) -> String {
+    let mut letters = note.chars();
+    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
+    let stop = if note.ends_with('.') || note.is_empty() { "" } else { "." };
+    format!("{first}{}{stop}", letters.as_str())
+}
+
 /// How much it matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
@@ -20,6 +29,8 @@ pub struct Notice {
     pub level: Level,
     /// What happened and what to do, in a sentence or two.
     pub text: String,
+    /// The clip that it asks for.
+    awaits: Option<String>,
     age_secs: f64,
 }
 
@@ -38,7 +49,20 @@ const MOST: usize = 6;
 impl Notices {
     /// Says something. The same text again moves to the end instead of standing there twice.
     pub fn say(&mut self, level: Level, text: impl Into<String>) {
-        let text = text.into();
+        self.put(level, text.into(), None);
+    }
+
+    /// Says that a clip is missing. It stays until [`Notices::keep_missing`] finds that it is not.
+    pub fn miss(&mut self, reference: &str, text: impl Into<String>) {
+        self.put(Level::Warning, text.into(), Some(reference.to_owned()));
+    }
+
+    /// Takes away what asks for clips that are there by now, or that nobody wants any more.
+    pub fn keep_missing(&mut self, is_missing: impl Fn(&str) -> bool) {
+        self.list.retain(|notice| notice.awaits.as_deref().is_none_or(&is_missing));
+    }
+
+    fn put(&mut self, level: Level, text: String, awaits: Option<String>) {
         self.list.retain(|notice| notice.text != text);
         if self.list.len() >= MOST {
             self.list.remove(0);
@@ -47,6 +71,7 @@ impl Notices {
             id: self.next_id,
             level,
             text,
+            awaits,
             age_secs: 0.0,
         });
         self.next_id += 1;
@@ -85,6 +110,17 @@ impl Notices {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_missed_is_said_until_it_comes() {
+        let mut notices = Notices::default();
+        notices.miss("walk~1234", "drop walk");
+        notices.miss("run~5678", "drop run");
+        notices.say(Level::Warning, "odd");
+        notices.keep_missing(|reference| reference == "run~5678");
+        let left: Vec<&str> = notices.list().iter().map(|notice| notice.text.as_str()).collect();
+        assert_eq!(left, ["drop run", "odd"]);
+    }
 
     #[test]
     fn infos_go_and_errors_stay() {

@@ -1,6 +1,7 @@
 //! What is made from clips and parameters: inputs in, clip and numbers out.
 
 use super::motion::Motion;
+use super::params::Key;
 use crate::gait::GaitFacts;
 use crate::math::Planar;
 use crate::metrics::Metric;
@@ -57,6 +58,15 @@ impl Slot {
         match self {
             Self::A => "A",
             Self::B => "B",
+        }
+    }
+
+    /// The parameter that says which clip is in it.
+    #[must_use]
+    pub const fn key(self) -> Key {
+        match self {
+            Self::A => Key::A,
+            Self::B => Key::B,
         }
     }
 }

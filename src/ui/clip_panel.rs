@@ -10,7 +10,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue::clip::{UpAxis, ground_speed};
 use segue::formats::ImportOptions;
-use segue::session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, word_of_joint};
+use segue::session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, sentence, word_of_joint};
 use segue::skeleton::{Channel, Role, Skeleton};
 
 /// The tree of joints scrolls above this height, points.
@@ -60,7 +60,7 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
     }
     let muted = palette_of(ui).muted;
     if let Some(about) = &entry.about {
-        sentence_ui(&text::sentence(&about.measure), muted, ui);
+        sentence_ui(&sentence(&about.measure), muted, ui);
     }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {

@@ -19,7 +19,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::toggle_compare;
 use eframe::egui::{self, Ui};
 use segue::math::spring;
-use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value};
+use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value, split_reference};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -287,7 +287,7 @@ fn found_sentence(session: &Session) -> String {
 
 /// Which clip is in a slot, to be chosen anew.
 pub(super) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let chosen = session.slot(slot).map_or("", |entry| entry.id.as_str());
+    let chosen = session.params().text(slot.key());
     if let Some(id) = clip_choice_ui(slot.label(), chosen, session, ui) {
         out.commands.push(Command::Assign(slot, id));
     }
@@ -296,15 +296,15 @@ pub(super) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut
 /// A clip of the library to choose; the id of the one that was.
 pub(super) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &mut Ui) -> Option<String> {
     let entries = session.library().entries();
-    let options: Vec<(usize, &str)> = entries
-        .iter()
-        .enumerate()
-        .map(|(index, entry)| (index, entry.name.as_str()))
+    let found = session.library().find(chosen);
+    let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
+    let missing = (found.is_none() && !chosen.is_empty()).then(|| text::missing(split_reference(chosen).0));
+    // The one that is not here cannot be chosen, only seen.
+    let options: Vec<(usize, &str)> = (entries.iter().map(|entry| entry.name.as_str()).enumerate())
+        .chain(missing.as_deref().map(|words| (usize::MAX, words)))
         .collect();
-    let chosen = session.library().find(chosen);
-    let chosen = chosen.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
     let picked = ui
-        .push_id(label, |ui| kit::choice_row_ui(label, chosen.unwrap_or(usize::MAX), &options, ui))
+        .push_id(label, |ui| kit::choice_row_ui(label, found.unwrap_or(usize::MAX), &options, ui))
         .inner;
     Some(entries.get(picked?)?.id.clone())
 }

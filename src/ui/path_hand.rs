@@ -4,7 +4,7 @@ use super::out::Out;
 use super::text;
 use glam::DVec2;
 use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, drawn_path};
-use segue::session::{Command, Key, OnPath, Pane, Session, Value};
+use segue::session::{Command, Key, OnPath, Pane, Session, Value, sentence};
 
 /// The hand on the path, remembered between frames.
 #[derive(Clone, Debug, Default)]
@@ -70,7 +70,7 @@ impl PathHand {
                 true
             }
             Err(error) => {
-                self.said = Some(text::sentence(&error.to_string()));
+                self.said = Some(sentence(&error.to_string()));
                 false
             }
         }

@@ -9,8 +9,8 @@ use super::path_hand::path_of;
 use super::path_stage::{frame_once, handles_ui, said_ui};
 use super::state::{Filming, Layout, UiState};
 use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Align2, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
+use super::theme::{Type, palette_of, radius, space, theme_of};
+use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
 use segue::scene::{camera_of, figure_height, resting_point};
 use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
@@ -210,12 +210,14 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
             vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0),
         ));
         ui.scope_builder(builder, |ui| {
-            ui.vertical_centered(|ui| {
-                ui.label(
-                    egui::RichText::new(tr(problem, ui))
-                        .font(theme.font(Type::Body))
-                        .color(palette.warning),
-                )
+            // On a plate: the last good result goes on behind it.
+            let plate = Frame::new()
+                .fill(palette.panel_raised)
+                .corner_radius(radius::L)
+                .inner_margin(space::M);
+            plate.show(ui, |ui| {
+                let words = egui::RichText::new(tr(problem, ui)).font(theme.font(Type::Body));
+                ui.vertical_centered(|ui| ui.label(words.color(palette.warning)));
             });
         });
     } else if pane.outcome.is_none() {

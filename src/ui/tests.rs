@@ -597,3 +597,17 @@ fn an_embedded_page_shows_all_of_its_timeline() {
         }
     }
 }
+
+#[test]
+fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
+    for (name, size, theme) in [("missing-desk", DESK, LIGHT), ("missing-phone", PHONE, DARK)] {
+        let mut harness = harness(
+            size,
+            theme,
+            page("lab=blend&a=mine~1234abcd&b=run&compare=blend_window:30,15,10&play=off"),
+        );
+        picture(name, &mut harness);
+        harness.get_by_value("mine · missing");
+        assert!(harness.query_all_by_label_contains("drop its file").count() > 0);
+    }
+}

@@ -142,12 +142,9 @@ pub(crate) fn format(format: ExportFormat) -> &'static str {
     }
 }
 
-/// A note as a sentence.
-pub(crate) fn sentence(note: &str) -> String {
-    let mut letters = note.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+/// What the menu of clips shows of one that the link names and that is not here.
+pub(crate) fn missing(name: &str) -> String {
+    format!("{name} · missing")
 }
 
 /// So many joints have other channels.

@@ -24,7 +24,7 @@ onBothBackends("work ends without a picture, through one channel", async ({ open
     for (const callback of window.held.splice(0)) requestAnimationFrame(callback);
   });
   await segue("set", {});
-  assert.ok((await segue("metrics"))[0].metrics.length > 0);
+  assert.ok(Object.keys(await segue("metrics")).length > 0);
 });
 
 function countAndHold(page) {

@@ -1,12 +1,12 @@
 //! Files into the library, and the work back from storage.
 
-use super::{Job, Session, slot_key};
+use super::{Job, Session};
 use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
 use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::link;
 use crate::session::motion::Motion;
-use crate::session::notice::Level;
+use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
 use crate::session::reading::{About, Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use crate::session::recipe::{Slot, recipe_params};
@@ -186,7 +186,7 @@ impl Session {
         }
         self.remember(None);
         let mut loaded = Loaded::default();
-        let mut names = Vec::new();
+        let (mut names, mut t_poses) = (Vec::new(), 0);
         let brings_skeleton =
             |file: &ReadFile| file.kind == FileKind::Asf || file.result.as_ref().is_ok_and(|read| read.companion.is_some());
         let skeleton_came = report.files.iter().any(brings_skeleton);
@@ -195,6 +195,8 @@ impl Session {
             match file_entries(file, content, &setup.options) {
                 Ok((entries, warnings)) => {
                     names.push(name);
+                    let has_t_pose = |entry: &Entry| entry.about.as_ref().is_some_and(|about| about.t_pose_first_row);
+                    t_poses += usize::from(entries.iter().any(has_t_pose));
                     loaded.warnings.extend(warnings);
                     if let Some(first) = entries.iter().find(|entry| entry.mesh.is_some()) {
                         self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
@@ -218,9 +220,11 @@ impl Session {
         self.history.settle();
         self.library_revision += 1;
         if !names.is_empty() {
-            let told = std::iter::once(in_the_library(&names)).chain(loaded.warnings.iter().cloned());
+            let told = std::iter::once(in_the_library(&names)).chain(loaded.warnings.iter().map(|warning| sentence(warning)));
             let text = told.collect::<Vec<_>>().join(" ");
-            self.say(if loaded.warnings.is_empty() { Level::Info } else { Level::Warning }, text);
+            // A T-pose in front is how the takes of whole databases come: good to know, and nothing to do about it.
+            let is_odd = loaded.warnings.len() > t_poses;
+            self.say(if is_odd { Level::Warning } else { Level::Info }, text);
         }
         self.refresh();
         Ok(loaded)
@@ -390,7 +394,7 @@ impl Session {
         if self.slot(Slot::A).is_some_and(|entry| entry.id == id) || self.slot(Slot::B).is_some_and(|entry| entry.id == id) {
             return;
         }
-        self.set_unchecked(slot_key(slot), Value::Text(id.to_owned()));
+        self.set_unchecked(slot.key(), Value::Text(id.to_owned()));
         // Times of the clip that was there mean nothing in this one.
         for key in [Key::LeaveA, Key::EnterB, Key::In, Key::Out] {
             self.set_unchecked(key, Value::Auto);

@@ -271,7 +271,7 @@ impl Session {
     /// The clip in a slot.
     #[must_use]
     pub fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
-        self.library.find(self.params.text(slot_key(slot)))
+        self.library.find(self.params.text(slot.key()))
     }
 
     /// Says something to the user.
@@ -334,7 +334,7 @@ impl Session {
             }
             Command::Assign(slot, id) => {
                 let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
-                self.set(vec![(slot_key(slot), Value::Text(id))])?;
+                self.set(vec![(slot.key(), Value::Text(id))])?;
                 self.history.settle();
             }
             Command::Remove(id) => self.remove(&id)?,
@@ -513,7 +513,7 @@ impl Session {
     /// Looks for every clip that the parameters name.
     fn look_for_clips(&mut self) {
         for slot in [Slot::A, Slot::B] {
-            let reference = self.params.text(slot_key(slot)).to_owned();
+            let reference = self.params.text(slot.key()).to_owned();
             self.look_for(slot.label(), &reference);
         }
         for reference in self.compared_clips() {
@@ -566,7 +566,17 @@ impl Session {
         } else {
             format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
         };
-        self.say(Level::Warning, text);
+        self.notices.miss(reference, text);
+    }
+
+    /// Forgets what was said of clips that have come since, or that nothing names any more.
+    fn forget_found(&mut self) {
+        let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
+        let others = self.also_blended().into_iter().map(|(reference, _)| reference);
+        let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
+        let library = &self.library;
+        self.notices
+            .keep_missing(|reference| library.find(reference).is_none() && named.iter().any(|name| name == reference));
     }
 
     /// Whether the clip is in the library, or can be made from its id.
@@ -602,7 +612,7 @@ impl Session {
         }
         // A slot that held the clip takes the first one that the other slot does not hold.
         for slot in [Slot::A, Slot::B] {
-            let key = slot_key(slot);
+            let key = slot.key();
             if self.params.text(key) != entry.id {
                 continue;
             }
@@ -703,14 +713,6 @@ impl Session {
     #[must_use]
     pub fn clip_infos(&self) -> Vec<ClipInfo> {
         self.library.entries().iter().map(|entry| clip_info(entry)).collect()
-    }
-}
-
-/// The key that says what a slot holds.
-fn slot_key(slot: Slot) -> Key {
-    match slot {
-        Slot::A => Key::A,
-        Slot::B => Key::B,
     }
 }
 

@@ -322,6 +322,7 @@ impl Session {
         for clip in self.compared_clips() {
             self.bring(&clip);
         }
+        self.forget_found();
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.registrars.ask_anew();
         self.paths.ask_anew();

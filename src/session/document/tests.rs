@@ -180,6 +180,8 @@ fn a_link_to_a_dropped_file_waits_for_it() {
         sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned))
     );
     assert_eq!(receiver.panes()[0].problem, None);
+    let said: Vec<&str> = receiver.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    assert!(!said.iter().any(|text| text.contains("drop that file")), "{said:?}");
     assert_eq!(receiver.params().number(Key::BlendWindow), 24.0);
 }
 

@@ -13,7 +13,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue::matching::RATE;
-use segue::session::{Command, Key, Session, Value, write_ids};
+use segue::session::{Command, Key, Session, Value, sentence, write_ids};
 
 /// All rows of the lab.
 pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -199,7 +199,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let skipped = driven.database.skipped();
         note_ui(&text::database(&driven.database), palette.muted, ui);
         for error in skipped.iter().take(3) {
-            note_ui(&text::sentence(&error.to_string()), palette.warning, ui);
+            note_ui(&sentence(&error.to_string()), palette.warning, ui);
         }
     }
     row(Key::Mirrored, session, out, ui);
