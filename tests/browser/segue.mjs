@@ -125,10 +125,10 @@ async function snapshot(page) {
   return Buffer.from(base64, "base64");
 }
 
-// One browser per backend and test file, started when first asked for.
 const browsers = new Map();
 
-function launch(backend) {
+/** One browser per backend and test file, started when first asked for. */
+export function launch(backend) {
   if (!BACKENDS.includes(backend)) throw new Error(`there is no backend "${backend}", only ${BACKENDS.join(", ")}`);
   if (!browsers.has(backend)) {
     browsers.set(backend, chromium.launch({ executablePath: chromiumPath(), args: [...COMMON_FLAGS, ...BACKEND_FLAGS[backend]] }));

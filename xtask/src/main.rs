@@ -46,6 +46,9 @@ cargo xtask match-quality
     Drives a character by recorded input (straight on, 90° turns, a spin, starts and stops, into a run, a figure eight) with the synthesiser's
     motions and the default options, and prints how well it follows.
 
+cargo xtask match-speed
+    Asks databases of 5,000, 50,000 and 500,000 frames for the best frame by four methods, and prints the median and the 99th percentile.
+
 cargo xtask docs
     Writes the README's table of parameters anew, from the program's.
 
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Some((&"quality", rest)) => quality::run_pairs(rest),
         Some((&"graph-quality", rest)) => quality::run_walks(rest),
         Some((&"match-quality", rest)) => quality::run_drives(rest),
+        Some((&"match-speed", rest)) => quality::time_searches(rest),
         Some((&"docs", _)) => docs(),
         Some((&"seal", _)) => seal::run(),
         None | Some((&("help" | "--help" | "-h"), _)) => {

@@ -1,5 +1,5 @@
-//! `cargo xtask quality`, `graph-quality` and `match-quality`: transitions between all clips of a folder, walks through their motion graph, and
-//! characters driven by recorded input, measured.
+//! `cargo xtask quality`, `graph-quality`, `match-quality` and `match-speed`: transitions between all clips of a folder, walks through their motion
+//! graph, and characters driven by recorded input, measured.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -15,10 +15,18 @@ pub fn run_walks(args: &[&str]) -> Result<()> {
 }
 
 pub fn run_drives(args: &[&str]) -> Result<()> {
+    run_made("match_quality", args)
+}
+
+pub fn time_searches(args: &[&str]) -> Result<()> {
+    run_made("match_speed", args)
+}
+
+fn run_made(name: &str, args: &[&str]) -> Result<()> {
     if !args.is_empty() {
-        return fail("match-quality takes no arguments: it drives with the synthesiser's motions");
+        return fail("this command takes no arguments: it drives with the synthesiser's motions");
     }
-    run(&mut example("match_quality"))
+    run(&mut example(name))
 }
 
 fn run_example(name: &str, args: &[&str]) -> Result<()> {

@@ -1,0 +1,100 @@
+//! How long a search of motion matching takes, at the median and at the 99th percentile: 27 dimensions; 5,000, 50,000 and 500,000 frames;
+//! queries from a recorded drive and from noise; by four methods. `cargo xtask match-speed` runs it and prints a table in Markdown;
+//! `node tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
+
+#[path = "../../benches/common/search.rs"]
+mod search;
+
+/// Slow methods are asked so many queries only where there are many frames.
+#[cfg(not(target_arch = "wasm32"))]
+const FEW: usize = 200;
+
+#[cfg(not(target_arch = "wasm32"))]
+#[expect(clippy::print_stdout, reason = "the table is what it is for")]
+fn main() {
+    use search::{Kind, Method, Trial};
+    use std::hint::black_box;
+    use std::time::{Duration, Instant};
+
+    let methods = Method::ALL.map(|method| format!("{} (µs)", method.name())).join(" | ");
+    println!("| frames | queries | {methods} | frames looked at |");
+    println!("|---|---|---|---|---|---|---|");
+    for frames in [5_000, 50_000, 500_000] {
+        let trial = Trial::new(frames);
+        for kind in Kind::ALL {
+            let times = Method::ALL.map(|method| {
+                let all = trial.queries(kind);
+                let queries = if method == Method::Boxes { all } else { all.min(FEW) };
+                let mut times = vec![Duration::MAX; queries];
+                // Of each query the fastest of three passes over all of them: what else the machine does is not counted.
+                for _ in 0..3 {
+                    for (query, time) in times.iter_mut().enumerate() {
+                        let start = Instant::now();
+                        black_box(trial.search(method, kind, query));
+                        *time = start.elapsed().min(*time);
+                    }
+                }
+                times.sort_unstable();
+                let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e6;
+                format!("{:.1}, {:.1}", at(0.5), at(0.99))
+            });
+            let visited: usize = (0..trial.queries(kind))
+                .map(|query| trial.search(Method::Boxes, kind, query).1)
+                .sum();
+            println!(
+                "| {} | {} | {} | {} |",
+                trial.frames(),
+                kind.name(),
+                times.join(" | "),
+                visited / trial.queries(kind).max(1)
+            );
+        }
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+mod page {
+    use super::search::{Kind, Method, Trial};
+    use wasm_bindgen::prelude::wasm_bindgen;
+
+    /// What the page asks.
+    #[wasm_bindgen]
+    pub struct SearchTrial(Trial);
+
+    #[wasm_bindgen]
+    impl SearchTrial {
+        /// With about so many frames.
+        #[wasm_bindgen(constructor)]
+        pub fn new(frames: usize) -> Self {
+            Self(Trial::new(frames))
+        }
+
+        /// Frames that can be found.
+        pub fn frames(&self) -> usize {
+            self.0.frames()
+        }
+
+        /// What the kinds of queries are called.
+        pub fn kinds(&self) -> Vec<String> {
+            Kind::ALL.map(|kind| kind.name().to_owned()).into()
+        }
+
+        /// What the methods are called; the first is Segue's.
+        pub fn methods(&self) -> Vec<String> {
+            Method::ALL.map(|method| method.name().to_owned()).into()
+        }
+
+        /// Queries of a kind, by its number.
+        pub fn queries(&self, kind: usize) -> usize {
+            self.0.queries(Kind::ALL[kind])
+        }
+
+        /// The cost of the best frame by a method, by its number.
+        pub fn search(&self, method: usize, kind: usize, query: usize) -> f32 {
+            self.0.search(Method::ALL[method], Kind::ALL[kind], query).0
+        }
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+fn main() {}

@@ -1,0 +1,73 @@
+// Measures, and judges nothing: how long a search of motion matching takes in Chromium, by each method, at the median and the 99th percentile.
+// `cargo xtask match-speed` does the same outside the browser.
+//   node tests/browser/search.mjs [--frames 5000,50000,500000]
+
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import process from "node:process";
+import { fileURLToPath } from "node:url";
+import { parseArgs } from "node:util";
+import { close, launch } from "./segue.mjs";
+
+const { values } = parseArgs({ options: { frames: { type: "string", default: "5000,50000,500000" } } });
+const root = fileURLToPath(new URL("../..", import.meta.url));
+/** Slow methods are asked so many queries only. */
+const FEW = 200;
+
+const folder = mkdtempSync(join(tmpdir(), "segue-search-"));
+const rows = {};
+try {
+  build();
+  const page = await (await launch("webgl2")).newPage();
+  // Isolated, a page's clock goes by 5 microseconds and not by 100.
+  const headers = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
+  await page.route("**/*", (route) => {
+    const name = new URL(route.request().url()).pathname.slice(1);
+    if (name === "") return route.fulfill({ contentType: "text/html", headers, body: "<!doctype html>" });
+    const contentType = name.endsWith(".wasm") ? "application/wasm" : "text/javascript";
+    return route.fulfill({ contentType, headers, body: readFileSync(join(folder, name)) });
+  });
+  await page.goto("http://localhost/");
+  for (const frames of values.frames.split(",").map(Number)) Object.assign(rows, await page.evaluate(measure, { frames, FEW }));
+} finally {
+  await close();
+  rmSync(folder, { recursive: true });
+}
+console.table(rows);
+process.exit();
+
+function build() {
+  const target = "wasm32-unknown-unknown";
+  const run = (program, args) => execFileSync(program, args, { cwd: root, stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, encoding: "utf8" });
+  const told = run("cargo", ["build", "--release", "--locked", "--target", target, "--example", "match_speed", "--message-format", "json"]);
+  const messages = told.trim().split("\n").map((line) => JSON.parse(line));
+  const made = messages.filter((message) => message.target?.name === "match_speed").flatMap((message) => message.filenames ?? []);
+  run("wasm-bindgen", ["--target", "web", "--no-typescript", "--out-dir", folder, made.find((name) => name.endsWith(".wasm"))]);
+}
+
+async function measure({ frames, FEW }) {
+  const { default: start, SearchTrial } = await import("/match_speed.js");
+  await start();
+  const trial = new SearchTrial(frames);
+  const rows = {};
+  trial.kinds().forEach((kind, at) => {
+    rows[`${trial.frames()}, ${kind}`] = Object.fromEntries(trial.methods().map((method, number) => {
+      const all = trial.queries(at);
+      const times = Array(number === 0 ? all : Math.min(all, FEW)).fill(Infinity);
+      for (let pass = 0; pass < 3; pass++) {
+        for (let query = 0; query < times.length; query++) {
+          const begun = performance.now();
+          trial.search(number, at, query);
+          times[query] = Math.min(times[query], performance.now() - begun);
+        }
+      }
+      times.sort((a, b) => a - b);
+      const share = (share) => Math.round(1e3 * times[Math.floor((times.length - 1) * share)]);
+      return [`${method} µs`, `${share(0.5)}, ${share(0.99)}`];
+    }));
+  });
+  trial.free();
+  return rows;
+}
