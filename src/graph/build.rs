@@ -4,7 +4,6 @@ use petgraph::Direction;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// How the graph is made.
@@ -209,7 +208,8 @@ impl MotionGraph {
             jumps: Vec::new(),
         };
         made.add_stretches(&chosen);
-        let (by_start, by_end) = made.by_ends();
+        let (starting, ending) = (made.nodes_at(|stretch| stretch.start), made.nodes_at(|stretch| stretch.end));
+        let node_at = |nodes: &[Option<NodeIndex>], place| nodes.get(set.cut(place)?).copied().flatten();
         let mut ways_out = vec![0; made.graph.node_count()];
         for jump in chosen {
             let arrives = Place {
@@ -220,7 +220,7 @@ impl MotionGraph {
                 frame: jump.leave.frame + made.departure(),
                 ..jump.leave
             };
-            if let (Some(&from), Some(&to)) = (by_end.get(&leaves), by_start.get(&arrives))
+            if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives))
                 && ways_out[from.index()] < options.most_ways_out
             {
                 ways_out[from.index()] += 1;
@@ -245,17 +245,24 @@ impl MotionGraph {
     }
 
     fn add_stretches(&mut self, chosen: &[Jump]) {
-        let window = self.options.blend_window;
+        let mut is_cut = vec![false; self.set.cuts()];
+        for jump in chosen {
+            let arrival = Place {
+                frame: jump.enter.frame + self.options.blend_window,
+                ..jump.enter
+            };
+            for cut in [jump.leave, arrival].into_iter().filter_map(|place| self.set.cut(place)) {
+                is_cut[cut] = true;
+            }
+        }
         for clip in 0..self.set.clips().len() {
             let stretches = match self.options.construction {
                 Construction::Segments { .. } => self.options.stretches(&self.set, clip),
                 Construction::Minima => {
-                    let mut cuts = BTreeSet::from([0, self.set.frames_of(clip)]);
-                    for jump in chosen {
-                        cuts.extend((jump.leave.clip == clip).then_some(jump.leave.frame));
-                        cuts.extend((jump.enter.clip == clip).then_some(jump.enter.frame + window));
-                    }
-                    let cuts: Vec<usize> = cuts.into_iter().collect();
+                    let frames = self.set.frames_of(clip);
+                    let is_cut = |frame| self.set.cut(Place { clip, frame }).is_some_and(|cut| is_cut[cut]);
+                    let inside = (1..frames).filter(|&frame| is_cut(frame));
+                    let cuts: Vec<usize> = std::iter::once(0).chain(inside).chain([frames]).collect();
                     let stretch = |pair: &[usize]| Stretch {
                         clip,
                         start: pair[0],
@@ -275,17 +282,19 @@ impl MotionGraph {
         }
     }
 
-    /// The nodes by where they start, and by where they end.
-    fn by_ends(&self) -> (BTreeMap<Place, NodeIndex>, BTreeMap<Place, NodeIndex>) {
-        let at = |end: fn(&Stretch) -> usize| {
-            let nodes = self.graph.node_indices().zip(self.graph.node_weights());
-            let place = |(node, stretch): (NodeIndex, &Stretch)| {
-                let (clip, frame) = (stretch.clip, end(stretch));
-                (Place { clip, frame }, node)
+    /// The nodes by an end of theirs, one per cut of the set.
+    fn nodes_at(&self, end: fn(&Stretch) -> usize) -> Vec<Option<NodeIndex>> {
+        let mut nodes = vec![None; self.set.cuts()];
+        for (node, stretch) in self.graph.node_indices().zip(self.graph.node_weights()) {
+            let place = Place {
+                clip: stretch.clip,
+                frame: end(stretch),
             };
-            nodes.map(place).collect()
-        };
-        (at(|stretch| stretch.start), at(|stretch| stretch.end))
+            if let Some(slot) = self.set.cut(place).and_then(|cut| nodes.get_mut(cut)) {
+                *slot = Some(node);
+            }
+        }
+        nodes
     }
 
     /// The clips.
@@ -361,11 +370,19 @@ impl MotionGraph {
     /// # Errors
     /// [`GraphError::NoCycle`] when no component has a way inside it.
     pub fn pruned(&self) -> Result<Self, GraphError> {
+        self.pruned_to(&self.components())
+    }
+
+    /// [`Self::pruned`] where the components are known.
+    ///
+    /// # Errors
+    /// [`GraphError::NoCycle`] when no component has a way inside it.
+    pub fn pruned_to(&self, components: &[Vec<NodeIndex>]) -> Result<Self, GraphError> {
         let inside = |nodes: &[NodeIndex]| {
             let within = |edge: petgraph::graph::EdgeReference<'_, Way>| nodes.binary_search(&edge.target()).is_ok();
             nodes.iter().any(|&node| self.graph.edges(node).any(within))
         };
-        let Some(kept) = self.components().into_iter().find(|nodes| inside(nodes)) else {
+        let Some(kept) = components.iter().find(|nodes| inside(nodes)) else {
             return Err(GraphError::NoCycle {
                 transitions: self.jumps.len(),
                 threshold_cm: self.options.edge_threshold_cm,
@@ -377,14 +394,14 @@ impl MotionGraph {
             graph: DiGraph::new(),
             jumps: Vec::new(),
         };
-        let mut new: BTreeMap<NodeIndex, NodeIndex> = BTreeMap::new();
-        for &node in &kept {
-            if let Some(stretch) = self.graph.node_weight(node) {
-                new.insert(node, pruned.graph.add_node(*stretch));
+        let mut new = vec![None; self.graph.node_count()];
+        for &node in kept {
+            if let (Some(stretch), Some(slot)) = (self.graph.node_weight(node), new.get_mut(node.index())) {
+                *slot = Some(pruned.graph.add_node(*stretch));
             }
         }
         for edge in self.graph.edge_references() {
-            let (Some(&from), Some(&to)) = (new.get(&edge.source()), new.get(&edge.target())) else {
+            let (Some(from), Some(to)) = (new[edge.source().index()], new[edge.target().index()]) else {
                 continue;
             };
             let way = match (edge.weight(), self.jump(edge.id())) {

@@ -318,7 +318,7 @@ impl Picker {
 
     fn thin_out(&mut self) {
         if self.found.len() > MOST_CANDIDATES {
-            self.found.sort_by(closest_first);
+            self.found.sort_unstable_by(closest_first);
             self.left_out += self.found.len() - MOST_CANDIDATES;
             self.found.truncate(MOST_CANDIDATES);
         }
@@ -326,7 +326,7 @@ impl Picker {
 
     pub(super) fn finish(mut self) -> Candidates {
         self.thin_out();
-        self.found.sort_by(closest_first);
+        self.found.sort_unstable_by(closest_first);
         Candidates {
             found: self.found,
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),

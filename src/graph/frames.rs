@@ -125,6 +125,17 @@ impl FrameSet {
         (place.frame < self.frames_of(place.clip)).then(|| self.starts[place.clip] + place.frame)
     }
 
+    /// The number of a cut before a frame, or behind the last one of its clip, counted over all clips; less than [`Self::cuts`].
+    pub(super) fn cut(&self, place: Place) -> Option<usize> {
+        (place.clip < self.clips.len() && place.frame <= self.frames_of(place.clip))
+            .then(|| self.starts[place.clip] + place.clip + place.frame)
+    }
+
+    /// How many such cuts there are.
+    pub(super) fn cuts(&self) -> usize {
+        self.frames() + self.clips.len()
+    }
+
     /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded to 0.001 cm: what is decided by it does not
     /// hang on a last digit.
     #[must_use]

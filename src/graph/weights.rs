@@ -100,8 +100,8 @@ impl Choices {
     /// comes to an end.
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
-        let mut run = RunLength::new(self.ways.len());
-        while !run.advance(graph, self, MOST_STEPS) {}
+        let mut run = RunLength::new(graph, self);
+        while !run.advance(MOST_STEPS) {}
         run.secs(graph, self)
     }
 }
@@ -111,37 +111,56 @@ impl Choices {
 pub struct RunLength {
     /// How probable it is to be in each node.
     now: Vec<f64>,
+    next: Vec<f64>,
+    /// The ways into every node, one node's behind the other's: where they come from and how probable they are there.
+    ways: Vec<(u32, f64)>,
+    /// Where in `ways` those of a node end.
+    ends: Vec<usize>,
     steps: usize,
 }
 
 impl RunLength {
-    /// Of a graph with so many nodes.
+    /// Of walks through a graph.
     #[must_use]
-    pub fn new(nodes: usize) -> Self {
+    pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
+        let nodes = graph.graph.node_count();
+        let mut into = vec![Vec::new(); nodes];
+        for node in graph.graph.node_indices() {
+            for (edge, share) in choices.probabilities(node) {
+                if let Some((_, to)) = graph.graph.edge_endpoints(edge) {
+                    into[to.index()].push((node.index() as u32, 0.5 * share));
+                }
+            }
+        }
+        let ends = into.iter().scan(0, |sum, ways| {
+            *sum += ways.len();
+            Some(*sum)
+        });
         Self {
             now: vec![1.0 / nodes as f64; nodes],
+            next: vec![0.0; nodes],
+            ends: ends.collect(),
+            ways: into.concat(),
             steps: 0,
         }
     }
 
     /// Does up to `steps` more steps, O(edges) each; `true` when no more are needed.
-    pub fn advance(&mut self, graph: &MotionGraph, choices: &Choices, steps: usize) -> bool {
+    pub fn advance(&mut self, steps: usize) -> bool {
         for _ in 0..steps {
             if self.steps >= MOST_STEPS {
                 break;
             }
             self.steps += 1;
-            // Half of it stays where it is: a walk that comes round in a fixed number of steps would never settle.
-            let mut next: Vec<f64> = self.now.iter().map(|p| 0.5 * p).collect();
-            for (node, p) in graph.graph.node_indices().zip(&self.now) {
-                for (edge, share) in choices.probabilities(node) {
-                    if let Some((_, to)) = graph.graph.edge_endpoints(edge) {
-                        next[to.index()] += 0.5 * p * share;
-                    }
-                }
+            let (mut from, mut change) = (0, 0.0);
+            for ((next, &end), &now) in self.next.iter_mut().zip(&self.ends).zip(&self.now) {
+                // Half of it stays where it is: a walk that comes round in a fixed number of steps would never settle.
+                let arriving = self.ways[from..end].iter().map(|&(from, share)| self.now[from as usize] * share);
+                *next = arriving.fold(0.5 * now, |sum, p| sum + p);
+                change += (*next - now).abs();
+                from = end;
             }
-            let change: f64 = next.iter().zip(&self.now).map(|(a, b)| (a - b).abs()).sum();
-            self.now = next;
+            std::mem::swap(&mut self.now, &mut self.next);
             if change < 1e-12 {
                 self.steps = MOST_STEPS;
             }

@@ -8,8 +8,8 @@ use super::top_bar::toggle_compare;
 use eframe::egui::{Context, Event, Key as Keyboard, Modifiers, Popup};
 use segue::session::{Command, Key, Kind, Session, Value};
 
-/// The labs, from left to right.
-const DIGITS: [Keyboard; 9] = [
+/// The labs, from left to right: the row of digits and what stands behind them.
+pub(super) const LAB_KEYS: [Keyboard; 11] = [
     Keyboard::Num1,
     Keyboard::Num2,
     Keyboard::Num3,
@@ -19,6 +19,8 @@ const DIGITS: [Keyboard; 9] = [
     Keyboard::Num7,
     Keyboard::Num8,
     Keyboard::Num9,
+    Keyboard::Num0,
+    Keyboard::Minus,
 ];
 
 /// What the keyboard asks for, unless somebody is typing.
@@ -97,7 +99,7 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         toggle_compare(session, out);
     }
     if let Kind::Choice(labs) = Key::Lab.param().kind {
-        for (keyboard, lab) in DIGITS.into_iter().zip(labs) {
+        for (keyboard, lab) in LAB_KEYS.into_iter().zip(labs) {
             if pressed(none, keyboard) {
                 out.set_once(Key::Lab, Value::Choice(lab.key));
             }

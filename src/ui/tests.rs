@@ -11,7 +11,7 @@ use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
-use segue::session::{Command, Entry, Origin, Outcome, SourceFile, Value};
+use segue::session::{Command, Entry, Kind, Origin, Outcome, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -558,7 +558,7 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
 
 #[test]
 fn every_mistake_has_its_sentence() {
-    let segue::session::Kind::Choice(mistakes) = Key::Mistake.param().kind else {
+    let Kind::Choice(mistakes) = Key::Mistake.param().kind else {
         panic!("mistakes are a choice")
     };
     for mistake in mistakes {
@@ -609,5 +609,17 @@ fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
         picture(name, &mut harness);
         harness.get_by_value("mine · missing");
         assert!(harness.query_all_by_label_contains("drop its file").count() > 0);
+    }
+}
+
+#[test]
+fn every_lab_has_a_key() {
+    let Kind::Choice(labs) = Key::Lab.param().kind else { panic!() };
+    assert_eq!(labs.len(), shortcuts::LAB_KEYS.len());
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    for (lab, key) in labs.iter().zip(shortcuts::LAB_KEYS).rev() {
+        harness.key_press(key);
+        harness.step();
+        assert_eq!(harness.state().session.params().text(Key::Lab), lab.key);
     }
 }

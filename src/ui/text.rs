@@ -183,7 +183,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("L", "loop"),
     ("C", "compare full, half, third"),
     ("N", "lessons; Esc closes them"),
-    ("1 … 9", "the labs, from left to right"),
+    ("1 … 9, 0, -", "the labs, from left to right"),
     ("T", "from above"),
     ("F", "frame everything"),
     ("G", "camera follows or stands"),

@@ -1,6 +1,7 @@
 use super::Cast;
 use super::wanted::GraphKey;
 use crate::graph::{Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The distances of all windows of one length.
@@ -116,18 +117,37 @@ pub struct Built {
     dead_ends: usize,
 }
 
+/// A [`Built`] on its way: of very many transitions each slice takes milliseconds.
+#[derive(Debug)]
+pub(super) enum Building {
+    /// Where one may go over.
+    Found(Candidates),
+    /// Stretches and transitions.
+    Linked(MotionGraph),
+}
+
+impl Building {
+    /// The next slice: what is left, or the graph.
+    pub(super) fn advance(self, cast: &Arc<Cast>, key: GraphKey) -> Result<ControlFlow<Built, Self>, GraphError> {
+        Ok(match self {
+            Self::Found(candidates) => ControlFlow::Continue(Self::Linked(MotionGraph::new(cast.set(), &candidates, &key.options)?)),
+            Self::Linked(whole) => ControlFlow::Break(Built::new(cast, Arc::new(whole), key)?),
+        })
+    }
+}
+
 impl Built {
-    pub(super) fn new(cast: &Arc<Cast>, candidates: &Candidates, key: GraphKey) -> Result<Self, GraphError> {
-        let whole = Arc::new(MotionGraph::new(cast.set(), candidates, &key.options)?);
+    fn new(cast: &Arc<Cast>, whole: Arc<MotionGraph>, key: GraphKey) -> Result<Self, GraphError> {
+        let components = whole.components();
         let graph = if key.pruned {
-            Arc::new(whole.pruned()?)
+            Arc::new(whole.pruned_to(&components)?)
         } else {
             Arc::clone(&whole)
         };
         let mut component = vec![0; whole.graph().node_count()];
         let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
         let all = cast.set().frames().max(1) as f64;
-        for (index, nodes) in whole.components().iter().enumerate() {
+        for (index, nodes) in components.iter().enumerate() {
             for node in nodes {
                 if let Some(slot) = component.get_mut(node.index()) {
                     *slot = index;

@@ -1,3 +1,4 @@
+use super::built::Building;
 use super::cast::Fitted;
 use super::maker::Maker;
 use super::wanted::{GraphKey, Wanted, sentence};
@@ -8,6 +9,7 @@ use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::Params;
 use crate::session::recipe::pair::fitted;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Pairs of frames in one slice, about a millisecond for 31 joints.
@@ -36,6 +38,7 @@ pub(in crate::session) struct Grapher {
     /// One for each window that was asked for last.
     fields: Vec<Arc<Field>>,
     search: Option<(GraphKey, Search)>,
+    building: Option<(GraphKey, Building)>,
     built: Vec<(GraphKey, Result<Arc<Built>, String>)>,
     makers: Vec<(Wanted, Result<Maker, String>)>,
     /// What panes show or wait for, the first pane's first.
@@ -209,6 +212,7 @@ impl Grapher {
                 Search::Held(search) => share(search.progress()),
                 Search::Streamed(stream) => return Some(0.1 * fitted + 0.75 * share(stream.progress())),
             },
+            _ if self.building.as_ref().is_some_and(|(key, _)| *key == wanted.graph) => 1.0,
             _ => 0.0,
         };
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
@@ -249,16 +253,25 @@ impl Grapher {
         wanted.graph.options.check(cast.set()).map_err(|error| sentence(&error))?;
         if let Some(built) = self.known(wanted.graph) {
             let built = Arc::clone(built.as_ref().map_err(String::clone)?);
-            let maker = Maker::new(&built, wanted);
+            let like = self.makers.iter().filter_map(|(_, maker)| maker.as_ref().ok());
+            let maker = Maker::new(&built, wanted, like);
             self.settle(wanted, maker);
             return Ok(());
         }
         self.worked_for = Some(wanted.graph);
-        let found = match self.search_slice(&cast, wanted.graph).map_err(|error| sentence(&error))? {
-            Some(found) => Built::new(&cast, &found, wanted.graph)
-                .map(Arc::new)
-                .map_err(|error| sentence(&error)),
-            None => return Ok(()),
+        let key = wanted.graph;
+        let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
+            let found = self.search_slice(&cast, key).map_err(|error| sentence(&error))?;
+            self.building = found.map(|found| (key, Building::Found(found)));
+            return Ok(());
+        };
+        let found = match building.advance(&cast, key) {
+            Ok(ControlFlow::Continue(building)) => {
+                self.building = Some((key, building));
+                return Ok(());
+            }
+            Ok(ControlFlow::Break(built)) => Ok(Arc::new(built)),
+            Err(error) => Err(sentence(&error)),
         };
         if self.built.len() >= 2 * MAX_PANES {
             drop(self.built.remove(0));
@@ -352,9 +365,11 @@ impl Grapher {
             Some((known, Search::Held(search))) if known == key => search,
             _ => Box::new(CandidateSearch::new(distances, &key.options)?),
         };
-        if search.advance(all, distances, CELLS)?.is_complete() {
+        // What was found is sorted in a slice of its own.
+        if search.progress().is_complete() {
             return Ok(Some(search.finish()));
         }
+        search.advance(all, distances, CELLS)?;
         self.search = Some((key, Search::Held(search)));
         Ok(None)
     }

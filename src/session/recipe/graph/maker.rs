@@ -88,9 +88,16 @@ pub(super) struct Maker {
 }
 
 impl Maker {
-    /// One that first looks for a way along the path that is wanted, where there is one.
-    pub(super) fn new(built: &Arc<Built>, wanted: &Wanted) -> Result<Self, String> {
-        let mut maker = Self::idle(built, wanted)?;
+    /// One that first looks for a way along the path that is wanted, where there is one. `others` may know of the same graph what this one needs.
+    pub(super) fn new<'a>(built: &Arc<Built>, wanted: &Wanted, mut others: impl Iterator<Item = &'a Self>) -> Result<Self, String> {
+        let knows = |other: &&Self| other.run_is_known && Arc::ptr_eq(&other.built, built) && other.wanted.weights == wanted.weights;
+        let mut maker = if let Some(known) = others.find(knows) {
+            Self::like(known, wanted)?
+        } else {
+            let choices = Choices::new(built.graph(), &wanted.weights).map_err(|error| sentence(&error))?;
+            let run = RunLength::new(built.graph(), &choices);
+            Self::idle(built, wanted, Arc::new(choices), run)?
+        };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
             let search = PathSearch::new(built.graph(), NodeIndex::new(0), &path, PATH_BUDGET);
@@ -101,19 +108,24 @@ impl Maker {
 
     /// One that goes by what has been found of the path so far.
     fn preview(&self, found: Followed, length_m: f64) -> Result<Self, String> {
-        let mut maker = Self::idle(&self.built, &self.wanted)?;
-        (maker.run, maker.run_is_known) = (self.run.clone(), true);
+        let mut maker = Self::like(self, &self.wanted)?;
         maker.follow(found, length_m, true);
         Ok(maker)
     }
 
-    fn idle(built: &Arc<Built>, wanted: &Wanted) -> Result<Self, String> {
+    /// One in the same graph with the same weights: how long it runs is known.
+    fn like(other: &Self, wanted: &Wanted) -> Result<Self, String> {
+        let mut maker = Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
+        maker.run_is_known = true;
+        Ok(maker)
+    }
+
+    fn idle(built: &Arc<Built>, wanted: &Wanted, choices: Arc<Choices>, run: RunLength) -> Result<Self, String> {
         let graph = built.graph();
-        let choices = Arc::new(Choices::new(graph, &wanted.weights).map_err(|error| sentence(&error))?);
         let walker = Walker::new(Arc::clone(graph), Arc::clone(&choices), wanted.seed);
         let walker = walker.with_visited_discount(wanted.discount).map_err(|error| sentence(&error))?;
         Ok(Self {
-            run: RunLength::new(graph.graph().node_count()),
+            run,
             run_is_known: false,
             walker,
             search: None,
@@ -172,7 +184,7 @@ impl Maker {
         }
         if !self.run_is_known {
             let steps = (RUN_EDGES / self.built.graph().graph().edge_count().max(1)).max(1);
-            self.run_is_known = self.run.advance(self.built.graph(), &self.choices, steps);
+            self.run_is_known = self.run.advance(steps);
             return Ok(false);
         }
         if self.search.is_some() {
