@@ -245,14 +245,14 @@ impl Pass {
             let to = anchors.get(self.taken).copied();
             self.taken += 1;
             if to.is_none() && options.end == PathEnd::Corner {
-                return Ok(Some(self.trace(corner, None)));
+                return Ok(Some(self.trace(corner, None, ground)));
             }
-            let stretch = Stretch::new(from.unwrap_or_default(), to.unwrap_or(corner), options.slope_limit);
+            let states = self.carried.as_ref().map(|(_, states)| states.clone());
+            let stretch = Stretch::new(from.unwrap_or_default(), to.unwrap_or(corner), options.slope_limit, states);
             self.under_way = Some((stretch, to));
             return Ok(None);
         };
-        let states = self.carried.as_ref().map(|(_, states)| states.as_slice());
-        if !stretch.advance(ground, states, rows) {
+        if !stretch.advance(ground, rows) {
             self.under_way = Some((stretch, to));
             return Ok(None);
         }
@@ -268,18 +268,18 @@ impl Pass {
         let slack = if let PathEnd::Border { slack } = options.end { slack } else { 0.0 };
         let end = stretch.best_end(slack, (matrix.rows(), matrix.columns()));
         let end = end.ok_or_else(|| no_path(matrix, options, from, None))?;
-        Ok(Some(self.trace(end, Some(stretch))))
+        Ok(Some(self.trace(end, Some(stretch), ground)))
     }
 
     /// Back from the end to the start.
-    fn trace(&mut self, end: (usize, usize), last: Option<Stretch>) -> Vec<(usize, usize)> {
+    fn trace(&mut self, end: (usize, usize), last: Option<Stretch>, ground: &Ground<'_>) -> Vec<(usize, usize)> {
         self.done.extend(last);
         let mut cells = Vec::new();
         let mut cell = end;
-        let mut state = self.done.last().map_or(0, |stretch| stretch.any(end.0, end.1));
-        for (index, stretch) in self.done.iter().enumerate().rev() {
+        let mut state = self.done.last_mut().map_or(0, |stretch| stretch.any(end.0, end.1, ground));
+        for (index, stretch) in self.done.iter_mut().enumerate().rev() {
             // A stretch's first cell is the last of the one before it.
-            (cell, state) = stretch.trace(cell, state, index > 0, &mut cells);
+            (cell, state) = stretch.trace(cell, state, index > 0, ground, &mut cells);
         }
         cells.reverse();
         cells

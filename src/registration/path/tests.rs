@@ -248,3 +248,71 @@ fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
         assert_eq!(plain.cells, quick.cells);
     }
 }
+
+/// The smallest cost from corner to corner through a pin, by a table of all that a step may depend on: its way, how many such steps there were before it,
+/// and whether the pin was passed.
+fn cheapest_through(matrix: &DistanceMatrix, pin: (usize, usize), limit: usize, side_step_m: f64) -> f64 {
+    let (rows, columns) = (matrix.rows(), matrix.columns());
+    let mut table = vec![vec![[[f64::INFINITY; 16]; 2]; rows * columns]; 3];
+    let mut least = f64::INFINITY;
+    for row in 0..rows {
+        for column in 0..columns {
+            let here = f64::from(matrix.get(row, column).unwrap());
+            let at = row * columns + column;
+            for (way, (down, right)) in [(1, 1), (1, 0), (0, 1)].into_iter().enumerate() {
+                let cost = if way == 0 { 2.0 * here } else { here + side_step_m };
+                for passed_before in [0, 1] {
+                    let passed = usize::from(passed_before == 1 || (row, column) == pin);
+                    let mut put = |run: usize, sum: f64| {
+                        let slot = &mut table[way][at][passed][run];
+                        *slot = slot.min(sum + cost);
+                    };
+                    if (row, column, way) == (0, 0, 0) && passed_before == 0 {
+                        put(1, 0.0);
+                    }
+                    if row < down || column < right {
+                        continue;
+                    }
+                    let from = (row - down) * columns + column - right;
+                    for other in 0..3 {
+                        for run in 1..=limit {
+                            let sum = table[other][from][passed_before][run];
+                            let next = if other == way && way > 0 { run + 1 } else { 1 };
+                            if sum.is_finite() && next <= limit {
+                                let slot = &mut table[way][at][passed][next];
+                                *slot = slot.min(sum + cost);
+                            }
+                        }
+                    }
+                }
+                if (row, column) == (rows - 1, columns - 1) {
+                    least = table[way][at][1].iter().copied().fold(least, f64::min);
+                }
+            }
+        }
+    }
+    least
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Tall enough that the way back goes through many blocks of rows.
+    #[test]
+    fn the_way_back_is_the_cheapest_way(
+        rows in 70usize..140, columns in 70usize..140, seed in any::<u32>(), slope_limit in 1usize..6, pin in (0.1f64..0.9, 0.1f64..0.9)
+    ) {
+        let hash = |row: usize, column: usize| (row as u32).wrapping_mul(0x9E37_79B9) ^ (column as u32).wrapping_mul(0x85EB_CA6B) ^ seed;
+        let value = |row, column| (hash(row, column).wrapping_mul(0xC2B2_AE35) >> 16) as f32 / 65_536.0 + ((row as f32 / 9.0).sin() - (column as f32 / 7.0).sin()).abs();
+        let matrix = matrix(rows, columns, value);
+        let pin = ((pin.0 * rows as f64) as usize, (pin.1 * columns as f64) as usize);
+        let options = PathOptions { slope_limit, start: PathEnd::Corner, end: PathEnd::Corner, pins: vec![pin], side_step_m: 1e-3 };
+        if let Ok(found) = optimal_path(&matrix, &options) {
+            let least = cheapest_through(&matrix, pin, slope_limit, options.side_step_m);
+            let (cost, _) = weigh(&matrix, &found.cells, options.side_step_m);
+            prop_assert!(keeps_limit(&found.cells, slope_limit) && found.cells.contains(&pin));
+            prop_assert!((cost - least).abs() < 1e-9 * least, "{cost} {least}");
+        } else {
+            prop_assert!(!cheapest_through(&matrix, pin, slope_limit, options.side_step_m).is_finite());
+        }
+    }
+}
