@@ -2,7 +2,7 @@
 // `cargo xtask match-speed` does the same outside the browser.
 //   node tests/browser/search.mjs [--frames 5000,50000,500000]
 
-import { execFileSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -40,8 +40,12 @@ process.exit();
 
 function build() {
   const target = "wasm32-unknown-unknown";
-  const run = (program, args) => execFileSync(program, args, { cwd: root, stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, encoding: "utf8" });
-  const told = run("cargo", ["build", "--release", "--locked", "--target", target, "--example", "match_speed", "--message-format", "json"]);
+  const run = (program, args) => {
+    const { status, stdout } = spawnSync(program, args, { cwd: root, stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, encoding: "utf8" });
+    if (status !== 0) throw new Error(`${program} failed`);
+    return stdout;
+  };
+  const told = run("cargo", ["build", "--release", "--locked", "--target", target, "--example", "match_speed", "--message-format", "json-render-diagnostics"]);
   const messages = told.trim().split("\n").map((line) => JSON.parse(line));
   const made = messages.filter((message) => message.target?.name === "match_speed").flatMap((message) => message.filenames ?? []);
   run("wasm-bindgen", ["--target", "web", "--no-typescript", "--out-dir", folder, made.find((name) => name.endsWith(".wasm"))]);
