@@ -167,8 +167,10 @@ impl Front {
         let Self { before, here, costs } = self;
         std::mem::swap(before, here);
         let span = spans.map_or(0..matrix.columns(), |spans| spans.get(row).cloned().unwrap_or_default());
-        let low = span.start.max(first_column).max(limit.start);
-        let high = span.end.min(shape.last.1 + 1).min(limit.end).max(low);
+        let end = shape.last.1 + 1;
+        // A row beside the corridor has no cells, wherever that is.
+        let low = span.start.max(first_column).max(limit.start).min(end);
+        let high = span.end.min(end).min(limit.end).max(low);
         // Entries of this row: column c at c + 1 - first_column.
         let (from, to) = (low + 1 - first_column, high + 1 - first_column);
         here.open(from..to);

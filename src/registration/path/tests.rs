@@ -316,3 +316,21 @@ proptest! {
         }
     }
 }
+
+/// Rows beside the corridor have no cells: with a pin far from the last column they must not be looked for there.
+#[test]
+fn a_pin_in_a_corridor_that_begins_late_is_passed() {
+    let (rows, columns) = (400, 400);
+    for (late, pin) in [(60.0f32, (200, 140)), (-60.0, (140, 200))] {
+        let valley = matrix(rows, columns, |row, column| (row as f32 - column as f32 - late).abs() / 400.0);
+        let border = PathEnd::Border { slack: 0.3 };
+        let options = PathOptions {
+            start: border,
+            end: border,
+            pins: vec![pin],
+            ..PathOptions::default()
+        };
+        let path = optimal_path(&valley, &options).unwrap();
+        assert!(path.cells.contains(&pin) && path.mean_m < 1e-3, "{}", path.mean_m);
+    }
+}
