@@ -100,7 +100,9 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     if let Kind::Choice(labs) = Key::Lab.param().kind {
         for (keyboard, lab) in LAB_KEYS.into_iter().zip(labs) {
-            if pressed(none, keyboard) {
+            // A map that has the focus is made larger and smaller with these two.
+            let is_taken = focused && matches!(keyboard, Keyboard::Num0 | Keyboard::Minus);
+            if !is_taken && pressed(none, keyboard) {
                 out.set_once(Key::Lab, Value::Choice(lab.key));
             }
         }
