@@ -29,7 +29,7 @@ try {
     const contentType = name.endsWith(".wasm") ? "application/wasm" : "text/javascript";
     return route.fulfill({ contentType, headers, body: readFileSync(join(folder, name)) });
   });
-  await page.goto("http://localhost/");
+  await page.goto("http://127.0.0.1/");
   for (const frames of values.frames.split(",").map(Number)) Object.assign(rows, await page.evaluate(measure, { frames, FEW }));
 } finally {
   await close();
