@@ -112,7 +112,7 @@ pub struct RunLength {
     /// How probable it is to be in each node.
     now: Vec<f64>,
     next: Vec<f64>,
-    /// The ways into every node, one node's behind the other's: where they come from and how probable they are there.
+    /// The ways into every node, one node's behind the other's: where they come from, and half of how probable they are there.
     ways: Vec<(u32, f64)>,
     /// Where in `ways` those of a node end.
     ends: Vec<usize>,

@@ -50,11 +50,49 @@ impl Row {
         }
     }
 
-    /// Steps along rows go on from where they are, and everything else from the cheapest.
+    /// What is not diagonal of some entries. `corner` holds the states of the first entry of all, where they are given.
+    fn fill(&mut self, s: usize, tile: &Range<usize>, before: &Self, costs: &[f64], corner: Option<&[f64]>) {
+        if let Some(states) = corner {
+            self.states[0][1] = states[0];
+        }
+        self.not_columns[tile.clone()].copy_from_slice(&self.states[0][tile.clone()]);
+        self.not_rows[tile.clone()].copy_from_slice(&self.states[0][tile.clone()]);
+        for k in 1..=s {
+            let from_run = if k == 1 { &before.not_rows } else { &before.states[k - 1] };
+            let best = &mut self.not_columns[tile.clone()];
+            step_on(&mut self.states[k][tile.clone()], &from_run[tile.clone()], costs, best);
+            if let Some(states) = corner {
+                self.states[k][1] = states[k];
+            }
+        }
+        let least = |states: &[Vec<f64>], best: f64| states.iter().fold(best, |best, of| if of[1] < best { of[1] } else { best });
+        if corner.is_some() {
+            self.not_columns[1] = least(&self.states[1..=s], self.states[0][1]);
+        }
+        for k in 1..=s {
+            let (shorter, longer) = self.states.split_at_mut(s + k);
+            let from_run = if k == 1 { &self.not_columns } else { &shorter[s + k - 1] };
+            let best = &mut self.not_rows[tile.clone()];
+            step_on(&mut longer[0][tile.clone()], &from_run[tile.start - 1..tile.end - 1], costs, best);
+            if let Some(states) = corner {
+                longer[0][1] = states[s + k];
+            }
+        }
+        if corner.is_some() {
+            self.not_rows[1] = least(&self.states[s + 1..], self.states[0][1]);
+        }
+        let others = self.not_columns[tile.clone()].iter().zip(&self.not_rows[tile.clone()]);
+        for (best, (&a, &b)) in self.any[tile.clone()].iter_mut().zip(others) {
+            *best = if b < a { b } else { a };
+        }
+    }
+
+    /// What the next row needs: steps along rows go on from where they are, and everything else from the cheapest.
     fn keep(&self, slope_limit: usize) -> Kept {
         self.kept(self.states[1..=slope_limit].iter().chain([&self.not_rows, &self.any]))
     }
 
+    /// Some of its values where it is set; of all states a [`Kept::choice`] can be made.
     fn kept<'a>(&self, parts: impl Iterator<Item = &'a Vec<f64>>) -> Kept {
         let mut values = Vec::with_capacity((self.states.len() + 1) * self.used.len());
         for part in parts {
@@ -206,45 +244,6 @@ impl Front {
                 *cost += options.side_step_m;
             }
             here.fill(s, &tile, before, costs, corner.filter(|_| start == from));
-        }
-    }
-}
-
-impl Row {
-    /// What is not diagonal of some entries. `corner` holds the states of the first entry of all, where they are given.
-    fn fill(&mut self, s: usize, tile: &Range<usize>, before: &Self, costs: &[f64], corner: Option<&[f64]>) {
-        if let Some(states) = corner {
-            self.states[0][1] = states[0];
-        }
-        self.not_columns[tile.clone()].copy_from_slice(&self.states[0][tile.clone()]);
-        self.not_rows[tile.clone()].copy_from_slice(&self.states[0][tile.clone()]);
-        for k in 1..=s {
-            let from_run = if k == 1 { &before.not_rows } else { &before.states[k - 1] };
-            let best = &mut self.not_columns[tile.clone()];
-            step_on(&mut self.states[k][tile.clone()], &from_run[tile.clone()], costs, best);
-            if let Some(states) = corner {
-                self.states[k][1] = states[k];
-            }
-        }
-        let least = |states: &[Vec<f64>], best: f64| states.iter().fold(best, |best, of| if of[1] < best { of[1] } else { best });
-        if corner.is_some() {
-            self.not_columns[1] = least(&self.states[1..=s], self.states[0][1]);
-        }
-        for k in 1..=s {
-            let (shorter, longer) = self.states.split_at_mut(s + k);
-            let from_run = if k == 1 { &self.not_columns } else { &shorter[s + k - 1] };
-            let best = &mut self.not_rows[tile.clone()];
-            step_on(&mut longer[0][tile.clone()], &from_run[tile.start - 1..tile.end - 1], costs, best);
-            if let Some(states) = corner {
-                longer[0][1] = states[s + k];
-            }
-        }
-        if corner.is_some() {
-            self.not_rows[1] = least(&self.states[s + 1..], self.states[0][1]);
-        }
-        let others = self.not_columns[tile.clone()].iter().zip(&self.not_rows[tile.clone()]);
-        for (best, (&a, &b)) in self.any[tile.clone()].iter_mut().zip(others) {
-            *best = if b < a { b } else { a };
         }
     }
 }
