@@ -1,6 +1,5 @@
 use super::{GraphError, MotionGraph, Way};
 use petgraph::graph::{EdgeIndex, NodeIndex};
-use petgraph::visit::EdgeRef;
 
 /// How the distance of a transition makes it more or less probable.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -46,8 +45,10 @@ const MOST_STEPS: usize = 2_000;
 /// The ways out of every node with their probabilities, as whole numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choices {
-    /// Per node: edges in the order of their indices, with shares of [`WHOLE`] that add up to it.
-    ways: Vec<Vec<(EdgeIndex, u64)>>,
+    /// Edges in the order of their indices, one node's behind the other's, with shares of [`WHOLE`] that add up to it for each node.
+    ways: Vec<(EdgeIndex, u64)>,
+    /// Where in `ways` those of a node end.
+    ends: Vec<usize>,
 }
 
 impl Choices {
@@ -68,18 +69,37 @@ impl Choices {
         if let DistanceLaw::Exponential { sigma_cm } = options.law {
             setting("a width of the exponential law", sigma_cm, 1e-3, 1e6)?;
         }
-        let ways = graph.graph.node_indices().map(|node| ways_out(graph, node, options)).collect();
-        Ok(Self { ways })
+        let edges = graph.graph.raw_edges();
+        let sources = edges.iter().map(petgraph::graph::Edge::source);
+        let (ends, order) = grouped(graph.graph.node_count(), sources);
+        let mut ways = Vec::with_capacity(edges.len());
+        let (mut from, mut of_one) = (0, Vec::new());
+        for &end in &ends {
+            of_one.clear();
+            of_one.extend(order[from..end].iter().map(|&index| {
+                let jump = match edges[index].weight {
+                    Way::Continue => None,
+                    Way::Jump(jump) => graph.jumps.get(jump),
+                };
+                (EdgeIndex::new(index), jump.map(|jump| jump.distance_cm))
+            }));
+            share_out(&of_one, options, &mut ways);
+            from = end;
+        }
+        Ok(Self { ways, ends })
     }
 
     /// The ways out of a node, with shares of 2³² that add up to it.
     pub(super) fn ways(&self, node: NodeIndex) -> &[(EdgeIndex, u64)] {
-        self.ways.get(node.index()).map_or(&[], Vec::as_slice)
+        let end_of = |index: usize| self.ends.get(index).copied();
+        let from = node.index().checked_sub(1).map_or(Some(0), end_of);
+        let range = from.zip(end_of(node.index())).map(|(from, end)| from..end);
+        range.and_then(|range| self.ways.get(range)).unwrap_or_default()
     }
 
     /// The ways out of a node with their probabilities.
     pub fn probabilities(&self, node: NodeIndex) -> impl Iterator<Item = (EdgeIndex, f64)> + '_ {
-        self.ways(node).iter().map(|&(edge, share)| (edge, share as f64 / WHOLE as f64))
+        self.ways(node).iter().map(|&(edge, share)| (edge, share_of(share)))
     }
 
     /// The probability that the clip goes on behind a node.
@@ -124,23 +144,18 @@ impl RunLength {
     #[must_use]
     pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
         let nodes = graph.graph.node_count();
-        let mut into = vec![Vec::new(); nodes];
-        for node in graph.graph.node_indices() {
-            for (edge, share) in choices.probabilities(node) {
-                if let Some((_, to)) = graph.graph.edge_endpoints(edge) {
-                    into[to.index()].push((node.index() as u32, 0.5 * share));
-                }
-            }
-        }
-        let ends = into.iter().scan(0, |sum, ways| {
-            *sum += ways.len();
-            Some(*sum)
-        });
+        let from_nodes = graph.graph.node_indices().flat_map(|node| choices.ways(node).iter().map(move |way| (node, way)));
+        let edges = graph.graph.raw_edges();
+        let targets = choices.ways.iter().map(|(edge, _)| edges[edge.index()].target());
+        let (ends, order) = grouped(nodes, targets);
+        let all: Vec<(u32, f64)> = from_nodes
+            .map(|(node, &(_, share))| (node.index() as u32, 0.5 * share_of(share)))
+            .collect();
         Self {
             now: vec![1.0 / nodes as f64; nodes],
             next: vec![0.0; nodes],
-            ends: ends.collect(),
-            ways: into.concat(),
+            ways: order.iter().map(|&way| all[way]).collect(),
+            ends,
             steps: 0,
         }
     }
@@ -182,17 +197,34 @@ impl RunLength {
     }
 }
 
-fn ways_out(graph: &MotionGraph, node: NodeIndex, options: &WeightOptions) -> Vec<(EdgeIndex, u64)> {
-    let mut edges: Vec<(EdgeIndex, Option<f64>)> = (graph.graph.edges(node))
-        .map(|edge| {
-            let distance = match edge.weight() {
-                Way::Continue => None,
-                Way::Jump(index) => graph.jumps.get(*index).map(|jump| jump.distance_cm),
-            };
-            (edge.id(), distance)
-        })
-        .collect();
-    edges.sort_unstable_by_key(|&(edge, _)| edge);
+/// A share as a probability.
+fn share_of(share: u64) -> f64 {
+    share as f64 / WHOLE as f64
+}
+
+/// Brings things together that belong to the same of `groups`: where those of each group end, and the numbers of the things in that order, in
+/// which things of one group stay in theirs. Three passes over flat arrays: of very many edges, lists of lists would take most of the time.
+fn grouped(groups: usize, of: impl Iterator<Item = NodeIndex> + Clone) -> (Vec<usize>, Vec<usize>) {
+    let mut next = vec![0; groups + 1];
+    let mut count = 0;
+    for group in of.clone() {
+        next[group.index() + 1] += 1;
+        count += 1;
+    }
+    for group in 0..groups {
+        next[group + 1] += next[group];
+    }
+    let mut order = vec![0; count];
+    for (thing, group) in of.enumerate() {
+        order[next[group.index()]] = thing;
+        next[group.index()] += 1;
+    }
+    next.pop();
+    (next, order)
+}
+
+/// Appends the ways out of one node with their shares. `edges` are those of the node, with the distances of transitions.
+fn share_out(edges: &[(EdgeIndex, Option<f64>)], options: &WeightOptions, ways: &mut Vec<(EdgeIndex, u64)>) {
     let distances = || edges.iter().filter_map(|&(_, distance)| distance);
     let nearest = distances().fold(f64::INFINITY, f64::min);
     let weight = |distance: f64| match options.law {
@@ -209,17 +241,16 @@ fn ways_out(graph: &MotionGraph, node: NodeIndex, options: &WeightOptions) -> Ve
         (false, _) => 0,
     };
     let for_jumps = WHOLE - share;
-    let mut ways: Vec<(EdgeIndex, u64)> = (edges.iter())
-        .map(|&(edge, distance)| match distance {
-            None => (edge, share),
-            Some(distance) => (edge, (weight(distance) / sum * for_jumps as f64).floor() as u64),
-        })
-        .collect();
+    let first = ways.len();
+    ways.extend(edges.iter().map(|&(edge, distance)| match distance {
+        None => (edge, share),
+        Some(distance) => (edge, (weight(distance) / sum * for_jumps as f64).floor() as u64),
+    }));
     // What rounding down has left goes to the closest transition, the first of equals.
-    let given: u64 = ways.iter().map(|&(_, share)| share).sum();
+    let own = ways.get_mut(first..).unwrap_or_default();
+    let given: u64 = own.iter().map(|&(_, share)| share).sum();
     let closest = edges.iter().position(|&(_, distance)| distance == Some(nearest));
-    if let Some((_, share)) = closest.and_then(|at| ways.get_mut(at)) {
+    if let Some((_, share)) = closest.and_then(|at| own.get_mut(at)) {
         *share = (*share + WHOLE).saturating_sub(given);
     }
-    ways
 }

@@ -313,3 +313,27 @@ onBackend("webgl2", "copying puts the link into the clipboard, and says so only 
   await page.waitForTimeout(500);
   assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await segue("url"));
 });
+
+onBothBackends("a panic in the middle of a frame is told, and a reload brings the work back", async ({ open }) => {
+  const opened = await open("lab=blend&play=off");
+  const { page, segue, load, problems } = opened;
+  const { clips } = await load("turn.bvh", bvh());
+  await segue("set", { blend_window: 24 });
+  await page.waitForTimeout(1500); // the work is stored once it is quiet
+  // Without a clock the app's very next frame panics, as it would over a mistake of its own.
+  await page.evaluate(() => {
+    Object.defineProperty(window, "performance", { configurable: true, value: undefined });
+    window.segue.play();
+  });
+  const panel = page.getByRole("alertdialog");
+  await panel.waitFor();
+  assert.match(await panel.innerText(), /should have a Performance[^]*eframe/);
+  await assert.rejects(segue("params"), /has stopped: .*should have a Performance/);
+  problems.length = 0;
+
+  await page.getByRole("button", { name: "Reload with this state" }).click();
+  await page.waitForFunction(() => window.segue && window.performance);
+  await until(opened, "clips", (all) => brought(all).includes(clips[0].name), "the file is there again");
+  const { a, blend_window } = await segue("params");
+  assert.deepEqual({ a, blend_window }, { a: clips[0].id, blend_window: 24 });
+});

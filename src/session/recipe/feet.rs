@@ -1,7 +1,7 @@
 //! Planted feet: held where they stand, and how far they slide.
 
 use crate::clip::{Clip, Contacts};
-use crate::metrics::{Metric, foot_slide_cm};
+use crate::metrics::Metric;
 use crate::skeleton::Roles;
 use crate::transition::{FootLockOptions, foot_lock};
 use std::sync::Arc;
@@ -16,11 +16,11 @@ pub(super) fn with_feet(free: &Arc<Clip>, roles: &Roles, contacts: &Contacts, lo
 }
 
 /// How far the feet of a whole result slide.
-pub(super) fn slide(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Metric {
+pub(super) fn slide(cm: Option<f64>) -> Metric {
     Metric::lower(
         "skate_cm",
         "Foot slide",
-        foot_slide_cm(clip, roles, contacts),
+        cm,
         "cm",
         "How far a planted foot slides in the worst stance.",
     )

@@ -1,6 +1,7 @@
 use super::Outcome;
 use super::feet::{slide, slide_before, with_feet};
 use super::kept::belongs_to;
+use crate::metrics::foot_slide_cm;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
 use crate::synth::{self, Action};
@@ -42,11 +43,11 @@ fn synth_params(params: &Params) -> synth::Params {
 pub(in crate::session) fn make(params: &Params) -> Result<Outcome, String> {
     let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
     let mut motion = Motion::analyze(made.clip.with_name(made_id(params)), None);
-    let slides = |motion: &Motion| slide(&motion.clip, &motion.roles, &motion.contacts);
-    let mut metrics = vec![slides(&motion)];
+    let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
+    let mut metrics = vec![slide(slid(&motion))];
     if params.is_on(Key::FootLock) {
         motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, true)?;
-        metrics = vec![slides(&motion), slide_before(metrics[0].value)];
+        metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
     }
     Ok(Outcome {
         metrics,

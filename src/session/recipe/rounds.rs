@@ -2,7 +2,7 @@
 
 use super::feet::{slide, slide_before, with_feet};
 use crate::clip::{Clip, ClipError, Contacts, character_frames};
-use crate::metrics::Metric;
+use crate::metrics::{Metric, foot_slide_cm};
 use crate::session::motion::Motion;
 use crate::skeleton::{Roles, Side};
 use crate::transition::play_around;
@@ -33,11 +33,11 @@ pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: 
     };
     let cycle = second.after(&first.inverse());
     let three = Arc::new(three);
-    let before = slide(&three, roles, contacts);
-    let mut slides = vec![before];
+    let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
+    let mut slides = vec![slide(slid(&three))];
     let held = with_feet(&three, roles, contacts, lock)?;
     if lock {
-        slides = vec![slide(&held, roles, contacts), slide_before(before.value)];
+        slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
     }
     let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;
     let frames = count * cycle_frames + 1;

@@ -1,6 +1,7 @@
 use super::Cast;
 use super::wanted::GraphKey;
 use crate::graph::{Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
+use petgraph::graph::NodeIndex;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -124,6 +125,8 @@ pub(super) enum Building {
     Found(Candidates),
     /// Stretches and transitions.
     Linked(MotionGraph),
+    /// Which of them hang together.
+    Parted(Arc<MotionGraph>, Vec<Vec<NodeIndex>>),
 }
 
 impl Building {
@@ -131,16 +134,19 @@ impl Building {
     pub(super) fn advance(self, cast: &Arc<Cast>, key: GraphKey) -> Result<ControlFlow<Built, Self>, GraphError> {
         Ok(match self {
             Self::Found(candidates) => ControlFlow::Continue(Self::Linked(MotionGraph::new(cast.set(), &candidates, &key.options)?)),
-            Self::Linked(whole) => ControlFlow::Break(Built::new(cast, Arc::new(whole), key)?),
+            Self::Linked(whole) => {
+                let components = whole.components();
+                ControlFlow::Continue(Self::Parted(Arc::new(whole), components))
+            }
+            Self::Parted(whole, components) => ControlFlow::Break(Built::new(cast, whole, &components, key)?),
         })
     }
 }
 
 impl Built {
-    fn new(cast: &Arc<Cast>, whole: Arc<MotionGraph>, key: GraphKey) -> Result<Self, GraphError> {
-        let components = whole.components();
+    fn new(cast: &Arc<Cast>, whole: Arc<MotionGraph>, components: &[Vec<NodeIndex>], key: GraphKey) -> Result<Self, GraphError> {
         let graph = if key.pruned {
-            Arc::new(whole.pruned_to(&components)?)
+            Arc::new(whole.pruned_to(components)?)
         } else {
             Arc::clone(&whole)
         };
@@ -153,7 +159,7 @@ impl Built {
                     *slot = index;
                 }
             }
-            let inside = |node: &petgraph::graph::NodeIndex| {
+            let inside = |node: &NodeIndex| {
                 let mut next = whole.graph().neighbors(*node);
                 next.any(|next| nodes.binary_search(&next).is_ok())
             };

@@ -6,7 +6,7 @@ use crate::graph::{
     Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
     Walker,
 };
-use crate::metrics::Metric;
+use crate::metrics::{Metric, SlideMeter};
 use crate::session::motion::Motion;
 use crate::session::recipe::feet::{slide, slide_before};
 use crate::skeleton::Side;
@@ -39,6 +39,8 @@ const RUN_EDGES: usize = 200_000;
 
 /// Frames that one slice holds the feet of, about four milliseconds.
 const LOCKED_FRAMES: usize = 2_000;
+/// Frames that one slice measures the feet of, held and free, about four milliseconds.
+const MEASURED_FRAMES: usize = 2_000;
 
 /// The stays of a walk that another goes like, and its blend window.
 pub(super) type Guide = (Arc<Vec<Passed>>, usize);
@@ -50,6 +52,24 @@ pub(super) type Guide = (Arc<Vec<Passed>>, usize);
 enum Publishing {
     Assembling(Assembling),
     Locking(Box<FootLocking>, Box<Motion>),
+    Measuring(Box<Measuring>),
+}
+
+/// How far the feet of a walk slide, and would if they were not held: of each motion so far.
+#[derive(Debug)]
+struct Measuring {
+    held: Motion,
+    free: Arc<Clip>,
+    meters: [SlideMeter; 2],
+}
+
+impl Measuring {
+    /// A slice. `false` when nothing is left to do.
+    fn advance(&mut self, frames: usize) -> bool {
+        let Self { held, free, meters } = self;
+        let [of_held, of_free] = meters;
+        of_held.advance(&held.clip, &held.contacts, frames) | of_free.advance(free, &held.contacts, frames)
+    }
 }
 
 /// Makes a walk, stay by stay.
@@ -241,11 +261,22 @@ impl Maker {
                     return Ok(Err(Publishing::Locking(locking, motion)));
                 }
                 let clip = Arc::new(locking.finish().map_err(|error| error.to_string())?);
-                if self.slides.is_none() {
-                    let of = |clip: &Clip| slide(clip, &motion.roles, &motion.contacts);
-                    self.slides = Some([of(&clip), slide_before(of(&motion.clip).value)]);
+                let free = Arc::clone(&motion.clip);
+                let held = Motion { clip, ..*motion };
+                if self.slides.is_some() {
+                    return Ok(Ok(held));
                 }
-                Ok(Ok(Motion { clip, ..*motion }))
+                let meters = [&held.clip, &free].map(|clip| SlideMeter::new(clip, &held.roles));
+                Ok(Err(Publishing::Measuring(Box::new(Measuring { held, free, meters }))))
+            }
+            Publishing::Measuring(mut measuring) => {
+                if measuring.advance(MEASURED_FRAMES) {
+                    return Ok(Err(Publishing::Measuring(measuring)));
+                }
+                let Measuring { held, meters, .. } = *measuring;
+                let [of_held, of_free] = meters.map(SlideMeter::worst_cm);
+                self.slides = Some([slide(of_held), slide_before(of_free)]);
+                Ok(Ok(held))
             }
         }
     }
