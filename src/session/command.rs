@@ -44,8 +44,8 @@ pub enum Command {
     Step(i64),
     /// Plays or pauses.
     TogglePlay,
-    /// Opens "full, half, third" of a parameter in three panes.
-    CompareThirds(Key),
+    /// Opens several values of a parameter side by side: of a number the full, half and a third, of a choice those there are.
+    Compare(Key),
     /// Lays a link of the open lesson over the state of its page; an empty one is the page's own state.
     Try(String),
     /// Takes the last step back.

@@ -1,4 +1,4 @@
-use super::params::{Key, Kind, Value, ValueError};
+use super::params::{Choice, Key, Kind, Value, ValueError};
 use super::recipe::{read_ids, write_ids};
 use std::fmt;
 
@@ -49,21 +49,50 @@ impl Compare {
         Ok(Self { key, values })
     }
 
-    /// The experiment of the course: the full value, half of it and a third, each brought into the parameter's range.
-    /// `None` for a parameter that cannot be compared.
+    /// The experiment of the course: the full value, half of it and a third. Where the range (the parameter's own, or a narrower one) does not hold
+    /// all three apart, both its ends and its middle. `None` for a parameter that is no number or cannot be compared.
     #[must_use]
-    pub fn full_half_third(key: Key, full: f64) -> Option<Self> {
+    pub fn full_half_third(key: Key, full: f64, range: Option<(f64, f64)>) -> Option<Self> {
         let Kind::Number { min, max, .. } = key.param().kind else {
             return None;
         };
-        let values = [1.0, 2.0, 3.0].map(|share| match key.param().check(Value::Number((full / share).clamp(min, max))) {
-            Ok(value) => value,
-            Err(_) => Value::Number(full),
-        });
+        let (min, max) = range.unwrap_or((min, max));
+        let checked = |number: f64| key.param().check(Value::Number(number.clamp(min, max))).ok();
+        let of = |numbers: [f64; 3]| numbers.into_iter().map(checked).collect::<Option<Vec<Value>>>();
+        let mut values = of([full, full / 2.0, full / 3.0])?;
+        if values[0] == values[1] || values[1] == values[2] {
+            values = of([max, f64::midpoint(min, max), min])?;
+        }
+        key.param().is_comparable().then_some(Self { key, values })
+    }
+
+    /// A choice and the others that there are, as many as fit. `None` for a parameter that is no choice or cannot be compared.
+    #[must_use]
+    pub fn choices(key: Key, chosen: &str) -> Option<Self> {
+        let Kind::Choice(choices) = key.param().kind else { return None };
+        let (first, others): (Vec<&Choice>, Vec<&Choice>) = choices.iter().partition(|choice| choice.key == chosen);
+        let values = first.into_iter().chain(others).take(MAX_PANES);
         key.param().is_comparable().then(|| Self {
             key,
-            values: values.to_vec(),
+            values: values.map(|choice| Value::Choice(choice.key)).collect(),
         })
+    }
+
+    /// The same with one value more: of numbers the share of the first that comes next, a quarter after a third.
+    #[must_use]
+    pub fn with_one_more(&self) -> Self {
+        let mut more = self.clone();
+        let next = match (self.key.param().kind, self.values.first()) {
+            (Kind::Number { min, max, .. }, Some(Value::Number(first))) => {
+                Value::Number((first / (self.values.len() + 1) as f64).clamp(min, max))
+            }
+            _ => return more,
+        };
+        if let Ok(next) = self.key.param().check(next) {
+            more.values.push(next);
+            more.values.truncate(MAX_PANES);
+        }
+        more
     }
 }
 
@@ -87,13 +116,28 @@ mod tests {
     fn reads_what_it_writes() {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
-        assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0), Some(compare));
+        assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0, None), Some(compare.clone()));
+        assert_eq!(compare.with_one_more().to_string(), "blend_window:30,15,10,8");
+        assert_eq!(compare.with_one_more().with_one_more(), compare.with_one_more());
         // A kept clip's id has commas of its own, and so may a file's name.
         let clips = Compare::parse("a:walk,blend(a:walk,b:run),my%2C walk.bvh~0a1b2c3d").unwrap();
         assert_eq!(clips.values[2], Value::Text("my, walk.bvh~0a1b2c3d".into()));
         assert_eq!(Compare::parse(&clips.to_string()), Ok(clips));
         let methods = Compare::parse("method:inertialize, smooth,dead").unwrap();
         assert_eq!(methods.to_string(), "method:inertialize,smooth,dead");
+    }
+
+    #[test]
+    fn values_stay_apart_and_in_range() {
+        let of = |key, full, range| Compare::full_half_third(key, full, range).unwrap().to_string();
+        // No run is as slow as a third of its speed.
+        assert_eq!(of(Key::GaitSpeed, 3.5, Some((1.8, 6.5))), "gait_speed:6.5,4.15,1.8");
+        assert_eq!(of(Key::GaitSpeed, 1.4, Some((0.4, 2.2))), "gait_speed:1.4,0.7,0.45");
+        assert_eq!(of(Key::BlendWindow, 1.0, None), "blend_window:240,121,1");
+        assert_eq!(Compare::full_half_third(Key::Method, 1.0, None), None);
+        let methods = Compare::choices(Key::Method, "dead").unwrap();
+        assert!(methods.to_string().starts_with("method:dead,inertialize,"), "{methods}");
+        assert_eq!(methods.values.len(), MAX_PANES);
     }
 
     #[test]

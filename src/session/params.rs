@@ -53,12 +53,6 @@ impl Group {
     pub const fn is_of_lab(self) -> bool {
         !matches!(self, Self::Page | Self::Transport | Self::Camera | Self::Stage)
     }
-
-    /// Whether a change of one of these parameters is a step that undo takes back. Looking around and playing are not.
-    #[must_use]
-    pub const fn is_undoable(self) -> bool {
-        !matches!(self, Self::Transport | Self::Camera)
-    }
 }
 
 /// One of the choices of a [`Kind::Choice`].
@@ -714,6 +708,13 @@ impl Param {
             Json::String(text) => self.parse(text),
             other => self.parse(&other.to_string()),
         }
+    }
+
+    /// Whether a change of it is a step that undo takes back. Looking around, playing and stopping are not.
+    #[must_use]
+    pub const fn is_undoable(&self) -> bool {
+        use Key::{CameraDistance, CameraPitch, CameraYaw, PanX, PanY, PanZ, Play, Time};
+        !matches!(self.key, CameraYaw | CameraPitch | CameraDistance | PanX | PanY | PanZ | Play | Time)
     }
 
     /// Whether compare can make panes of it: a clip, a number or choice that changes the result, and the two ways of skinning.

@@ -70,7 +70,7 @@ impl History {
         });
         *open = None;
         *library = state.library;
-        for param in PARAMS.iter().filter(|param| param.group.is_undoable()) {
+        for param in PARAMS.iter().filter(|param| param.is_undoable()) {
             params.copy_from(&state.params, param.key);
         }
         true

@@ -9,7 +9,7 @@ use super::kit::{self, Button, Icon};
 use super::language::tr;
 use super::layers_rows::layers_ui;
 use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
+use super::param_row::{Detail, compare_choice_ui, param_row_ui};
 use super::path_panel::path_ui;
 use super::register_panel::register_ui;
 use super::save_rows::save_rows_ui;
@@ -19,7 +19,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::toggle_compare;
 use eframe::egui::{self, Ui};
 use segue::math::spring;
-use segue::session::{Command, Group, Key, Kind, PARAMS, Session, Slot, Value, split_reference};
+use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value, split_reference};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -37,6 +37,8 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
         "match" => drive_ui(session, state, out, ui),
         _ => view_ui(session, state, out, ui),
     }
+    ui.add_space(space::S);
+    compare_choice_ui(session, out, ui);
     ui.add_space(space::L);
     group_ui(text::STAGE, Group::Stage, session, out, ui);
     group_ui(text::CAMERA, Group::Camera, session, out, ui);
@@ -81,23 +83,16 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
-        let detail = match (param.key, session.params().text(Key::Gait)) {
-            // What the chosen motion does not have is not offered.
-            (Key::GaitSpeed | Key::TurnRate, "idle" | "spin" | "jump") | (Key::TurnRate, "start" | "stop") => continue,
-            (Key::GaitSpeed, "walk" | "start" | "stop") => Detail {
-                max: Some(2.2),
-                help: Some("How fast it walks.".into()),
-                ..Detail::default()
-            },
-            (Key::GaitSpeed, _) => Detail {
-                help: Some("How fast it runs: 1.8 to 6.5.".into()),
-                ..Detail::default()
-            },
-            _ => Detail::default(),
-        };
-        param_row_ui(param.key, &detail, session, out, ui);
+        // What the chosen motion does not have is not offered.
+        if let (Key::GaitSpeed, "idle" | "spin") | (Key::TurnRate, "idle" | "spin" | "jump" | "start" | "stop") =
+            (param.key, session.params().text(Key::Gait))
+        {
+            continue;
+        }
+        param_row_ui(param.key, &Detail::default(), session, out, ui);
     }
-    compare_ui(Key::GaitSpeed, session, out, ui);
+    let has_speed = !matches!(session.params().text(Key::Gait), "idle" | "spin");
+    compare_ui(if has_speed { Key::GaitSpeed } else { Key::BodyHeight }, session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
@@ -122,7 +117,7 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     param_row_ui(
         Key::BlendWindow,
         &Detail {
-            secondary: format!("{:.2} s", window / fps),
+            fps: Some(fps),
             max: longest_window.map(|max| max.max(window)),
             ..Detail::default()
         },
@@ -144,7 +139,6 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     };
     param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A, automatic(Key::EnterB)), session, out, ui);
     param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B, false), session, out, ui);
-    ui.label(egui::RichText::new(tr(Key::WeightLaw.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
@@ -216,9 +210,8 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
         param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
     }
     if any(&["smooth", "linear"]) {
-        let secondary = format!("{:.2} s", params.number(Key::BlendWindow) / fps);
         let detail = Detail {
-            secondary,
+            fps: Some(fps),
             ..Detail::default()
         };
         param_row_ui(Key::BlendWindow, &detail, session, out, ui);
@@ -318,7 +311,7 @@ pub(super) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
         if on {
             out.set_once(Key::Compare, Value::Text(String::new()));
         } else {
-            out.commands.push(Command::CompareThirds(key));
+            out.commands.push(Command::Compare(key));
         }
     }
 }
@@ -329,10 +322,6 @@ fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mu
             .iter()
             .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
-            if matches!(param.kind, Kind::Choice(choices) if choices.len() <= 4) {
-                ui.label(egui::RichText::new(tr(param.label, ui)).font(theme_of(ui).font(Type::Label)))
-                    .on_hover_text(tr(param.help, ui));
-            }
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
     });
@@ -348,16 +337,15 @@ pub(super) fn lab_label(session: &Session) -> String {
     Key::Lab.param().spoken(session.params().get(Key::Lab))
 }
 
-/// The lab's parameters that the link names: what an embedding page wants its readers to try.
+/// The parameters that an embedding page wants its readers to try: those that its link names, whatever they are by now, and those of the lab that were
+/// changed since. Looking around and playing have controls of their own.
 fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
-    let named = session.params().changed().map(|(param, _)| param);
-    let named = named.filter(|param| param.group.is_of_lab()).map(|param| param.key);
-    named.chain(
-        compared
-            .into_iter()
-            .filter(|key| session.params().get(*key) == &key.param().default_value()),
-    )
+    PARAMS.iter().map(|param| param.key).filter(move |&key| {
+        let (group, named) = (key.param().group, session.names(key));
+        let changed = group.is_of_lab() && session.params().get(key) != &key.param().default_value();
+        changed || compared == Some(key) || (named && (group.is_of_lab() || matches!(group, Group::Stage) || matches!(key, Key::A | Key::B)))
+    })
 }
 
 /// Whether the link names a parameter of the lab.
@@ -368,6 +356,10 @@ pub(crate) fn has_named_params(session: &Session) -> bool {
 /// Their rows.
 pub(crate) fn named_params_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     for key in named_params(session) {
-        param_row_ui(key, &Detail::default(), session, out, ui);
+        match key {
+            Key::A => slot_row_ui(Slot::A, session, out, ui),
+            Key::B => slot_row_ui(Slot::B, session, out, ui),
+            _ => param_row_ui(key, &Detail::default(), session, out, ui),
+        }
     }
 }

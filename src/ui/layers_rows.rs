@@ -25,11 +25,9 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     compare_ui(Key::LayerWeight, session, out, ui);
     param_row_ui(Key::Feather, &plain, session, out, ui);
     if additive {
-        label_ui(Key::LayerReference, ui);
         param_row_ui(Key::LayerReference, &plain, session, out, ui);
         ui.add_space(space::XS);
     }
-    label_ui(Key::LayerFit, ui);
     param_row_ui(Key::LayerFit, &plain, session, out, ui);
     if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer.as_ref()) {
         let words = RichText::new(tr(&text::fit(layer), ui)).font(theme_of(ui).font(Type::Small));
@@ -44,8 +42,4 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     param_row_ui(Key::FootLock, &plain, session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
-}
-
-fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }

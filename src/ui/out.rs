@@ -45,6 +45,8 @@ pub(crate) struct Out {
     pub(crate) commands: Vec<Command>,
     /// What the platform is asked for.
     pub(crate) actions: Vec<Action>,
+    /// The parameters whose rows were shown and that can be compared, in order.
+    pub(crate) rows: Vec<Key>,
 }
 
 impl Out {

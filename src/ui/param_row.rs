@@ -1,11 +1,12 @@
 //! One parameter of the table as a row of a panel.
 
-use super::kit::{self, Mark, SliderRow, Source};
+use super::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
+use super::language::tr;
 use super::out::Out;
 use super::text;
 use super::theme::palette_of;
 use eframe::egui::Ui;
-use segue::session::{Command, Key, Kind, Session, Value, decimals_of};
+use segue::session::{Command, Compare, Key, Kind, MAX_PANES, Session, Value, decimals_of};
 use segue::skeleton::Role;
 
 /// What a panel knows about a parameter beyond the table.
@@ -13,8 +14,8 @@ use segue::skeleton::Role;
 pub(crate) struct Detail {
     /// A narrower upper end, where the clips allow no more.
     pub(crate) max: Option<f64>,
-    /// The same value said in another way: seconds behind frames.
-    pub(crate) secondary: String,
+    /// The rate at which a number of frames is also said in seconds.
+    pub(crate) fps: Option<f64>,
     /// A sentence in place of the table's.
     pub(crate) help: Option<String>,
     /// Marks on the track, besides those of a comparison.
@@ -24,7 +25,10 @@ pub(crate) struct Detail {
 /// The row of a parameter: a slider, a switch or a choice, as the table has it.
 pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {
     let param = key.param();
-    ui.push_id(param.name, |ui| match param.kind {
+    if param.is_comparable() {
+        out.rows.push(key);
+    }
+    let row = ui.push_id(param.name, |ui| match param.kind {
         Kind::Number { .. } => number_ui(key, detail, session, out, ui),
         Kind::Switch => {
             if let Some(on) = kit::switch_row_ui(param.label, session.params().is_on(key), ui) {
@@ -38,6 +42,9 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
                 .find(|choice| choice.key == session.params().text(key))
                 .map_or("", |choice| choice.key);
             let picked = if choices.len() <= 4 {
+                if kit::segmented_label_ui(param.label, ui) {
+                    out.commands.push(Command::Reset(key));
+                }
                 kit::segmented_ui(param.label, chosen, &options, ui)
             } else {
                 kit::choice_row_ui(param.label, chosen, &options, ui)
@@ -50,6 +57,10 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
         Kind::Text if key == Key::Character => character_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::Compare => {}
     });
+    // A slider has its sentence below it.
+    if matches!(param.kind, Kind::Switch | Kind::Choice(_)) {
+        row.response.on_hover_text(tr(param.help, ui));
+    }
 }
 
 /// A body part to choose. A joint that is named in the link and is no body part keeps its place until another is chosen.
@@ -100,23 +111,17 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
         Value::Number(number) => number,
         _ => session.automatic_value(key).unwrap_or(min),
     };
+    let (min, max) = session.range_of(key).unwrap_or((min, max));
     let max = detail.max.map_or(max, |limit| limit.clamp(min + step, max));
     let compare = session.compare().filter(|compare| compare.key == key);
     let color = palette_of(ui).muted;
-    let marks: Vec<Mark> = compare
-        .iter()
-        .flat_map(|compare| &compare.values)
-        .filter_map(|value| match value {
-            Value::Number(value) => Some(Mark { value: *value, color }),
-            _ => None,
-        })
+    let values = |compare: &Compare| -> Vec<f64> { compare.values.iter().filter_map(number_of).collect() };
+    let marks: Vec<Mark> = (compare.iter().flat_map(values))
+        .map(|value| Mark { value, color })
         .chain(detail.marks.iter().copied())
         .collect();
-    let help = detail.help.as_deref().unwrap_or(param.help);
     let mut row = SliderRow::new(param.label, min..=max, default)
         .unit(param.unit)
-        .secondary(&detail.secondary)
-        .help(help)
         .step(step)
         .marks(&marks);
     row = if step == 1.0 {
@@ -127,18 +132,88 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     if logarithmic {
         row = row.log();
     }
-    row = row.source(match (auto, given) {
+    let in_seconds = |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
+    let help = detail.help.as_deref().unwrap_or(param.help);
+    if let Some(compare) = compare {
+        return compared_ui(&compare, &row, &in_seconds, help, out, ui);
+    }
+    let value = given.or_else(|| session.automatic_value(key)).unwrap_or(default);
+    let secondary = in_seconds(value);
+    row = row.secondary(&secondary).help(help).source(match (auto, given) {
         (false, _) => Source::Manual,
         (true, Some(_)) => Source::ManualOverAuto,
         (true, None) => Source::Auto,
     });
-    let response = kit::slider_row_ui(given.or_else(|| session.automatic_value(key)).unwrap_or(default), &row, ui);
+    let response = kit::slider_row_ui(value, &row, ui);
     if response.reset {
         out.commands.push(Command::Reset(key));
     } else if let Some(value) = response.changed {
         out.set(key, Value::Number(value));
     }
+    settle(&response, out);
+}
+
+/// What follows a drag is one thing to undo.
+fn settle(response: &SliderResponse, out: &mut Out) {
     if response.drag_ended || (response.changed.is_some() && !response.response.dragged()) {
         out.commands.push(Command::Settle);
+    }
+}
+
+fn number_of(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(number) => Some(*number),
+        _ => None,
+    }
+}
+
+/// A number that differs from pane to pane: a slider for each of them, so that what is dragged is what one sees.
+fn compared_ui(compare: &Compare, row: &SliderRow<'_>, in_seconds: &dyn Fn(f64) -> String, help: &str, out: &mut Out, ui: &mut Ui) {
+    let param = compare.key.param();
+    let mut panes = compare.clone();
+    let last = compare.values.len() - 1;
+    for (pane, value) in compare.values.iter().enumerate() {
+        let Some(value) = number_of(value) else { continue };
+        let (label, secondary) = (format!("{} · {}", param.label, pane + 1), in_seconds(value));
+        let row = row.clone().label(&label).secondary(&secondary);
+        let response = kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
+        if let Some(value) = response.changed {
+            panes.values[pane] = Value::Number(value);
+            out.set(Key::Compare, Value::Text(panes.to_string()));
+        }
+        settle(&response, out);
+    }
+    ui.horizontal(|ui| {
+        let more = Button::new(text::PANE_MORE).quiet().icon(Icon::Plus);
+        if compare.values.len() < MAX_PANES && kit::button_ui(more, ui).clicked() {
+            out.set_once(Key::Compare, Value::Text(compare.with_one_more().to_string()));
+        }
+        if kit::button_ui(Button::new(text::PANE_LESS).quiet(), ui).clicked() {
+            panes.values.pop();
+            // One value is the parameter's own again.
+            match panes.values.as_slice() {
+                [only] => out.commands.push(Command::Set(vec![
+                    (compare.key, only.clone()),
+                    (Key::Compare, Value::Text(String::new())),
+                ])),
+                _ => out.set(Key::Compare, Value::Text(panes.to_string())),
+            }
+            out.commands.push(Command::Settle);
+        }
+    });
+}
+
+/// Which parameter of those that have a row stands side by side with other values of itself.
+pub(crate) fn compare_choice_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let compared = session.compare().map(|compare| compare.key);
+    let mut keys = std::mem::take(&mut out.rows);
+    keys.extend(compared.filter(|key| !keys.contains(key)));
+    let options: Vec<(Option<Key>, &str)> = std::iter::once((None, text::COMPARE_NOTHING))
+        .chain(keys.iter().map(|&key| (Some(key), key.param().label)))
+        .collect();
+    match kit::choice_row_ui(text::SIDE_BY_SIDE, compared, &options, ui) {
+        Some(Some(key)) => out.commands.push(Command::Compare(key)),
+        Some(None) => out.set_once(Key::Compare, Value::Text(String::new())),
+        None => {}
     }
 }

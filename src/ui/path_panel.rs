@@ -60,10 +60,8 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         warnings_ui(path, ui);
     }
     ui.add_space(space::S);
-    label_ui(Key::PathKeep, ui);
     param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
     note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
-    label_ui(Key::PathFacing, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
@@ -244,10 +242,6 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
         out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));
     }
     note_ui(text::COMPANY_HELP, palette.muted, ui);
-}
-
-fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }
 
 /// A sentence in small type.

@@ -54,13 +54,12 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     kit::section_header_ui(text::REGISTRATION, ui);
     let fps = session.distance_map().map_or(60.0, |map| map.fps());
     let window = Detail {
-        secondary: format!("{:.2} s", params.number(Key::RegistrationWindow) / fps),
+        fps: Some(fps),
         ..Detail::default()
     };
     param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
-    ui.label(RichText::new(tr(Key::Ends.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::Ends, &plain, session, out, ui);
     if params.text(Key::Ends) == "free" {
         param_row_ui(Key::EndSlack, &plain, session, out, ui);

@@ -68,7 +68,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     }
     camera_buttons_ui(session, stage, state, out, ui);
     stick_on_stage_ui(session, stage, layout, state, ui);
-    let roomy = stage.height() > 420.0 * theme_of(ui).scale();
+    let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     let hint = if is_welcome(session) {
         text::WELCOME_HINT
     } else if session.params().text(Key::Lab) == "register" {
@@ -85,7 +85,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
-    } else if state.hint && roomy && !hint.is_empty() && layout != Layout::Phone {
+    } else if state.hint && roomy && !hint.is_empty() {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
             free.min.x += kit::stick_size(ui) + space::L;
@@ -483,7 +483,13 @@ const TURN_PER_POINT: f64 = 0.35;
 fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut Out, ui: &Ui) {
     let params = session.params();
     let mut values = Vec::new();
-    let (drag, panning) = if draws { (Vec2::ZERO, false) } else { drag_of(response, ui) };
+    let (mut drag, mut panning) = if draws { (Vec2::ZERO, false) } else { drag_of(response, ui) };
+    let mut nearer = 1.0;
+    if !session.is_driven() {
+        let keys = camera_keys(ui);
+        (drag, panning) = if keys.drag == Vec2::ZERO { (drag, panning) } else { (keys.drag, keys.panning) };
+        nearer = keys.nearer;
+    }
     let from_above = params.text(Key::Camera) == "top";
     if drag != Vec2::ZERO && (panning || from_above) {
         values.extend(pan(session, drag, response.rect));
@@ -495,15 +501,55 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
     }
     if response.contains_pointer() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = f64::from(pinch) * f64::from(scroll * 0.002).exp();
-        if (factor - 1.0).abs() > 1e-4 {
-            let distance = (params.number(Key::CameraDistance) / factor).clamp(0.5, 60.0);
-            values.push((Key::CameraDistance, Value::Number(distance)));
-        }
+        nearer *= f64::from(pinch) * f64::from(scroll * 0.002).exp();
+    }
+    if (nearer - 1.0).abs() > 1e-4 {
+        let distance = (params.number(Key::CameraDistance) / nearer).clamp(0.5, 60.0);
+        values.push((Key::CameraDistance, Value::Number(distance)));
     }
     if !values.is_empty() {
         out.commands.push(segue::session::Command::Set(values));
     }
+}
+
+/// What keys ask of the camera: a drag of as many points, with or without Shift, and how much nearer it comes.
+struct CameraKeys {
+    drag: Vec2,
+    panning: bool,
+    nearer: f64,
+}
+
+/// A press of a key, or its repetition, is a drag of so many points.
+const POINTS_PER_KEY: f32 = 16.0;
+
+/// W, A, S, D turn the camera (with Shift they move it), the page keys zoom. What has the focus keeps its keys.
+fn camera_keys(ui: &Ui) -> CameraKeys {
+    let mut keys = CameraKeys {
+        drag: Vec2::ZERO,
+        panning: false,
+        nearer: 1.0,
+    };
+    if ui.ctx().memory(|memory| memory.focused().is_some()) {
+        return keys;
+    }
+    let ways = [
+        (egui::Key::A, vec2(1.0, 0.0)),
+        (egui::Key::D, vec2(-1.0, 0.0)),
+        (egui::Key::W, vec2(0.0, 1.0)),
+        (egui::Key::S, vec2(0.0, -1.0)),
+    ];
+    ui.input_mut(|input| {
+        for (modifiers, panning) in [(egui::Modifiers::SHIFT, true), (egui::Modifiers::NONE, false)] {
+            for (key, way) in ways {
+                let times = input.count_and_consume_key(modifiers, key) as f32;
+                keys.drag += way * times * POINTS_PER_KEY;
+                keys.panning |= panning && times > 0.0;
+            }
+        }
+        let [nearer, farther] = [egui::Key::PageUp, egui::Key::PageDown].map(|key| input.count_and_consume_key(egui::Modifiers::NONE, key) as i32);
+        keys.nearer = 1.1_f64.powi(nearer - farther);
+    });
+    keys
 }
 
 /// How far the pointer, or two fingers, moved, and whether that moves the camera instead of turning it.

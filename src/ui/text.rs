@@ -14,6 +14,11 @@ pub(crate) const OPEN_FILES: &str = "open…";
 pub(crate) const DROP_NOW: &str = "Drop to open";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const COMPARE_OFF: &str = "One pane";
+/// Of what several values stand side by side, and nothing of the kind.
+pub(crate) const SIDE_BY_SIDE: &str = "Side by side";
+pub(crate) const COMPARE_NOTHING: &str = "one value of each";
+pub(crate) const PANE_MORE: &str = "One more";
+pub(crate) const PANE_LESS: &str = "One fewer";
 pub(crate) const COMPARE_HELP: &str = "Full, half and a third of the value side by side";
 pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";
@@ -194,7 +199,9 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("Ctrl C", "copy the link, when nothing else is selected"),
     ("?", "this list"),
     ("drag", "turn the camera; with Shift or the right button, move it"),
+    ("W A S D", "the same, outside of the Match lab"),
     ("wheel, pinch", "zoom"),
+    ("Page up, down", "zoom"),
 ];
 
 /// The artefact numbers under a pane, by id, with the short names that fit there. The first four are what a narrow pane has room for.

@@ -137,19 +137,25 @@ pub(crate) fn timeline_panel_ui(
         stripes: &stripes,
         transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
         transition_editable: session.panes().len() == 1 && outcome.walk.is_none(),
-        in_point: params.optional(Key::In),
-        out_point: params.optional(Key::Out),
+        // Left to Segue they stand at the ends, to be taken hold of.
+        in_point: Some(params.optional(Key::In).unwrap_or(0.0)),
+        out_point: Some(params.optional(Key::Out).unwrap_or(session.duration_secs())),
         moments: &seams,
         curves: (layout != Layout::Phone).then_some(curves),
     };
     for event in kit::timeline_ui(&timeline, ui) {
-        timeline_event(event, outcome, out);
+        timeline_event(event, session, outcome, out);
     }
 }
 
-fn timeline_event(event: TimelineEvent, outcome: &Outcome, out: &mut Out) {
-    let fps = outcome.motion.clip.fps();
+fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
+    let (params, fps) = (session.params(), outcome.motion.clip.fps());
+    let in_transition = params.text(Key::Lab) == "transition";
+    let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
     match event {
+        // At the ends they mark nothing.
+        TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.commands.push(Command::Reset(Key::In)),
+        TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => out.commands.push(Command::Reset(Key::Out)),
         TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
@@ -161,14 +167,27 @@ fn timeline_event(event: TimelineEvent, outcome: &Outcome, out: &mut Out) {
                 out.set(Key::WarpTo, Value::Number((beat.frames[0] / fps).max(0.0)));
             }
         }
+        TimelineEvent::SetTransitionStart(secs) if in_transition => {
+            out.set(Key::MixFrameA, Value::Number((secs * fps).round().max(0.0)));
+        }
         TimelineEvent::SetTransitionStart(secs) => {
             // The result runs on A's time up to the window.
             out.set(Key::LeaveA, Value::Number(secs.max(0.0)));
         }
         TimelineEvent::SetTransitionEnd(secs) => {
-            let start = outcome.transition.map_or(0.0, |transition| transition.start_secs);
-            let frames = ((secs - start) * fps).round().clamp(1.0, 240.0);
-            out.set(Key::BlendWindow, Value::Number(frames));
+            let (start, end) = outcome.transition.map_or((0.0, 0.0), |found| (found.start_secs, found.end_secs));
+            let wanted = secs - start;
+            // What sets how long it takes depends on the method.
+            let (key, value) = match params.text(Key::Method) {
+                _ if !in_transition => (Key::BlendWindow, wanted * fps),
+                "cubic" | "quintic" | "dead" => (Key::BlendTime, wanted),
+                "inertialize" => (Key::HalfLife, params.number(Key::HalfLife) * wanted / (end - start).max(1.0 / fps)),
+                "cut" => return,
+                _ => (Key::BlendWindow, wanted * fps),
+            };
+            if let Kind::Number { min, max, .. } = key.param().kind {
+                out.set(key, Value::Number(value.clamp(min, max)));
+            }
         }
         TimelineEvent::ScrubEnded | TimelineEvent::EditStarted => {}
         TimelineEvent::EditEnded => out.commands.push(Command::Settle),

@@ -180,7 +180,7 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
-    out.commands.push(Command::CompareThirds(key));
+    out.commands.push(Command::Compare(key));
 }
 
 /// Two clips as they are, side by side: a reference, and what somebody made after it.

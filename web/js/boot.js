@@ -32,11 +32,10 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("Neither WebGPU nor WebGL2 is available");
   }
 
-  let bindings, compiled;
+  let bindings;
   try {
     const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
-    // Compiled here and not by the bindings: the worker that reads files runs the same code.
-    compiled = await WebAssembly.compileStreaming(download(wasmUrl));
+    const compiled = await WebAssembly.compileStreaming(download(wasmUrl));
     bindings = await module;
     await bindings.default({ module_or_path: compiled });
   } catch (reason) {
@@ -52,7 +51,7 @@ async function start(jsUrl, wasmUrl) {
 
   const life = new Life();
   try {
-    life.handle = await Promise.race([SegueHandle.start(canvas(), () => newReader(jsUrl, compiled)), life.trapped]);
+    life.handle = await Promise.race([SegueHandle.start(canvas(), newReader), life.trapped]);
     life.watch();
     await Promise.race([life.handle.firstFrame(), life.trapped]);
   } catch (reason) {
@@ -84,11 +83,7 @@ function keepForLater() {
 }
 
 /** A worker that reads files; see reader.js. */
-function newReader(jsUrl, module) {
-  const worker = new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
-  worker.postMessage({ jsUrl: String(new URL(jsUrl, document.baseURI)), module });
-  return worker;
-}
+const newReader = () => new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
 
 /** Fetches the module and moves the bar as its bytes arrive. */
 async function download(url) {

@@ -1,20 +1,17 @@
-// A worker that reads large motion files with the app's own WebAssembly. src/platform/web/reader.rs gives it tasks.
+// A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs). src/platform/web/reader.rs gives it tasks.
 //
-// The page sends first { jsUrl, module }, then tasks { task, name, setup, file }. For each the worker answers with messages
-// { task, progress }, { task, head }, { task, piece } …, { task, end: true }, or { task, failed: reason }.
+// Tasks are { task, name, setup, file }. For each the worker answers with messages { task, progress }, { task, head },
+// { task, piece } …, { task, end: true }, or { task, failed: reason }.
 
-let started;
+import init, { readFile } from "./read/reader.js";
 
-self.onmessage = async ({ data }) => {
-  if (data.module) {
-    started = start(data);
-    started.catch(() => {}); // each task tells of it
-    return;
-  }
-  const { task, name, setup, file } = data;
+const started = init();
+started.catch(() => {}); // each task tells of it
+
+self.onmessage = async ({ data: { task, name, setup, file } }) => {
   const tell = (news, transfer = []) => self.postMessage({ task, ...news }, transfer);
   try {
-    const { readFile } = await started;
+    await started;
     const buffer = await file.arrayBuffer();
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
@@ -31,10 +28,4 @@ async function digest(buffer) {
   if (!self.crypto?.subtle) return undefined;
   const sum = new Uint8Array(await crypto.subtle.digest("SHA-256", buffer));
   return Array.from(sum, (byte) => byte.toString(16).padStart(2, "0")).join("");
-}
-
-async function start({ jsUrl, module }) {
-  const bindings = await import(jsUrl);
-  await bindings.default({ module_or_path: module });
-  return bindings;
 }

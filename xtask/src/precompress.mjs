@@ -11,7 +11,7 @@ import zlib from "node:zlib";
 const [folder, cache] = process.argv.slice(2);
 const PACKED = /\.(br|gz|png|jpe?g|webp)$/;
 /** Fetched only when someone asks for it. */
-const LATER = /^(samples|lessons|lang)\//;
+const LATER = /^(samples|lessons|lang|js-\w+\/read)\//;
 
 const brotli = promisify(zlib.brotliCompress);
 const gzip = promisify(zlib.gzip);

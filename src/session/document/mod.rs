@@ -27,7 +27,7 @@ use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
 };
-use super::recipe::{middle_mps, recipe_id, recipe_name, recipe_params, synth_action};
+use super::recipe::{middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::skin::Character;
@@ -113,6 +113,8 @@ pub struct Session {
     tasks: u64,
     library_revision: u64,
     revision: u64,
+    /// The parameters that the opened link names.
+    named_by_link: Vec<Key>,
 }
 
 impl Default for Session {
@@ -149,6 +151,7 @@ impl Session {
             tasks: 0,
             library_revision: 0,
             revision: 0,
+            named_by_link: Vec::new(),
         };
         session.open_link(WELCOME);
         session.refresh();
@@ -369,10 +372,11 @@ impl Session {
                 }
                 self.set_unchecked(Key::Play, Value::Switch(!playing));
             }
-            Command::CompareThirds(key) => {
+            Command::Compare(key) => {
                 let full = self.params.optional(key).or_else(|| self.automatic_value(key)).unwrap_or_default();
-                let compare =
-                    Compare::full_half_third(key, full).ok_or(CommandError::NotPossible("only a number of the lab can be compared"))?;
+                let compare = Compare::full_half_third(key, full, self.range_of(key))
+                    .or_else(|| Compare::choices(key, self.params.text(key)))
+                    .ok_or(CommandError::NotPossible("only a number or a choice of the lab can be compared"))?;
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
@@ -474,7 +478,7 @@ impl Session {
                 changed.push(key);
             }
         }
-        let mut undoable = changed.iter().copied().filter(|key| key.param().group.is_undoable());
+        let mut undoable = changed.iter().copied().filter(|key| key.param().is_undoable());
         if let Some(first) = undoable.next() {
             // A slider that is dragged changes one parameter again and again: one step.
             let alone = undoable.next().is_none();
@@ -507,7 +511,20 @@ impl Session {
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
         self.take_over(params, &link.problems);
+        self.named_by_link.clone_from(&named);
         self.lesson_was_set(named);
+    }
+
+    /// Whether the link that was opened names this parameter, be it with its default.
+    #[must_use]
+    pub fn names(&self, key: Key) -> bool {
+        self.named_by_link.contains(&key)
+    }
+
+    /// What of a number's range makes sense now, where that is less than the table says: the speeds and lengths of a made motion.
+    #[must_use]
+    pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
+        range_of(&self.params, key)
     }
 
     /// Looks for every clip that the parameters name.

@@ -6,9 +6,11 @@ use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
 use crate::metrics::{Subject, TransitionMetrics};
 use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
+use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
 use crate::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// What a blend depends on. Equal inputs, equal result.
@@ -112,8 +114,8 @@ pub(in crate::session) struct Blender {
     search: Option<TransitionSearch>,
     /// Begun when a lab asks for it.
     poses: Option<PoseSearch>,
-    /// The last match that was found, and what was asked: panes share one, and most changes leave it as it is.
-    found: Option<(Wanted, Place)>,
+    /// The last matches that were found, and what was asked: panes share one, or have one each, and most changes leave them as they are.
+    found: VecDeque<(Wanted, Place)>,
     progress: f32,
 }
 
@@ -199,7 +201,7 @@ impl Blender {
         self.search = Some(search.map_err(|error| error.to_string())?);
         self.pair = Some(Arc::clone(pair));
         self.poses = None;
-        self.found = None;
+        self.found.clear();
         self.compare_rows(ROWS_AT_ONCE);
         Ok(())
     }
@@ -233,10 +235,8 @@ impl Blender {
                 distance_cm: f32::NAN,
             });
         }
-        if let Some((asked, place)) = self.found
-            && asked == wanted
-        {
-            return Ok(place);
+        if let Some((_, place)) = self.found.iter().find(|(asked, _)| *asked == wanted) {
+            return Ok(*place);
         }
         let mut options = SearchOptions::new(window);
         if let Some(frame) = leave {
@@ -261,7 +261,8 @@ impl Blender {
             enter: enter.unwrap_or(best_enter),
             distance_cm: distance_cm as f32,
         };
-        self.found = Some((wanted, place));
+        self.found.truncate(MAX_PANES - 1);
+        self.found.push_front((wanted, place));
         Ok(place)
     }
 

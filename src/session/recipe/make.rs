@@ -3,7 +3,7 @@ use super::feet::{slide, slide_before, with_feet};
 use super::kept::belongs_to;
 use crate::metrics::foot_slide_cm;
 use crate::session::motion::Motion;
-use crate::session::params::{Key, Params};
+use crate::session::params::{Key, Kind, Params};
 use crate::synth::{self, Action};
 use std::sync::Arc;
 
@@ -20,11 +20,28 @@ pub(in crate::session) fn synth_action(params: &Params) -> Action {
     }
 }
 
+/// What of a number's range the chosen motion can be made with, where it is not all of it.
+pub(in crate::session) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
+    let (own, table) = match (key, key.param().kind) {
+        (Key::GaitSpeed, Kind::Number { min, max, .. }) => (synth::Params::speed_range(synth_action(params))?, (min, max)),
+        (Key::MakeSeconds, Kind::Number { min, max, .. }) => (synth::Params::duration_range(synth_action(params)), (min, max)),
+        _ => return None,
+    };
+    // As the decimals are written: 0.4 of an f32 is a little more than 0.4.
+    let own = [own.0, own.1].map(|end| (f64::from(end) * 1e3).round() / 1e3);
+    Some((own[0].max(table.0), own[1].min(table.1)))
+}
+
 fn synth_params(params: &Params) -> synth::Params {
     let of = |key| params.number(key) as f32;
+    // A number that was set for another motion is brought to what this one can do.
+    let within = |key, value: f32| match range_of(params, key) {
+        Some((min, max)) => value.clamp(min as f32, max as f32),
+        None => value,
+    };
     let natural = synth::Params::new(synth_action(params));
     synth::Params {
-        speed_mps: params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32),
+        speed_mps: within(Key::GaitSpeed, params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32)),
         turn_rate_dps: of(Key::TurnRate),
         height_m: of(Key::BodyHeight),
         style: synth::Style {
@@ -34,7 +51,7 @@ fn synth_params(params: &Params) -> synth::Params {
             ..natural.style
         },
         seed: of(Key::Seed) as u32,
-        duration_secs: of(Key::MakeSeconds),
+        duration_secs: within(Key::MakeSeconds, of(Key::MakeSeconds)),
         ..natural
     }
 }

@@ -50,9 +50,6 @@ pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut 
     ui.add_space(space::S);
     kit::folded_ui(text::SEARCHING, ui, |ui| {
         for key in [Key::SearchInterval, Key::SearchBy, Key::AheadNear, Key::AheadMiddle, Key::AheadFar] {
-            if key == Key::SearchBy {
-                label_ui(key, ui);
-            }
             row(key, session, out, ui);
         }
     });
@@ -73,10 +70,6 @@ fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 
 fn heading_ui(words: &str, ui: &mut Ui) {
     ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Strong)));
-}
-
-fn label_ui(key: Key, ui: &mut Ui) {
-    ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
 }
 
 /// What is done with the input: from the start, again, or by hand.
@@ -142,7 +135,6 @@ pub(in crate::ui) fn compare_hysteresis(session: &Session, out: &mut Out) {
 }
 
 fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    label_ui(Key::JumpMethod, ui);
     row(Key::JumpMethod, session, out, ui);
     if any(Key::JumpMethod, "inertialize", session) {
         row(Key::JumpHalfLife, session, out, ui);

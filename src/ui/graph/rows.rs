@@ -121,11 +121,10 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let palette = palette_of(ui);
     let fps = session.graph_cast().map_or(60.0, |cast| cast.set().fps());
-    let secs = |key| format!("{:.2} s", params.number(key) / fps);
     param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
     let longest = session.graph_cast().map(|cast| cast.set().longest() as f64);
     let window = Detail {
-        secondary: secs(Key::BlendWindow),
+        fps: Some(fps),
         max: longest.map(|longest| (longest - 2.0).max(params.number(Key::BlendWindow))),
         help: Some("How long a transition takes, and over which windows are compared. Long drags, short bursts.".into()),
         ..Detail::default()
@@ -135,7 +134,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compared = session.compare().map(|compare| compare.key);
     if params.text(Key::Construction) == "segments" || matches!(compared, Some(Key::SegmentSize | Key::Construction)) {
         let segment = Detail {
-            secondary: secs(Key::SegmentSize),
+            fps: Some(fps),
             max: longest.map(|longest| longest.max(params.number(Key::SegmentSize))),
             ..Detail::default()
         };
@@ -184,20 +183,17 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     param_row_ui(Key::Seed, &seed, session, out, ui);
     param_row_ui(Key::Continuity, &plain, session, out, ui);
-    ui.label(RichText::new(tr(Key::EdgeWeight.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
     if params.text(Key::EdgeWeight) == "exponential" {
         param_row_ui(Key::EdgeSigma, &plain, session, out, ui);
     }
     param_row_ui(Key::VisitedDiscount, &plain, session, out, ui);
-    ui.label(RichText::new(tr(Key::WalkMethod.param().label, ui)).font(theme_of(ui).font(Type::Label)));
     param_row_ui(Key::WalkMethod, &plain, session, out, ui);
     if params.text(Key::WalkMethod) == "inertialize" {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
     }
     param_row_ui(Key::FootLock, &plain, session, out, ui);
     for key in [Key::Transform, Key::Atan] {
-        ui.label(RichText::new(tr(key.param().label, ui)).font(theme_of(ui).font(Type::Label)));
         param_row_ui(key, &plain, session, out, ui);
     }
     param_row_ui(Key::WalkSeconds, &plain, session, out, ui);

@@ -1,8 +1,19 @@
 //! One of a few, all of them visible: cut | dissolve | inertialize.
 
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
+use super::words::Words;
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, EventFilter, Key, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, EventFilter, Key, Label, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+
+/// What a choice among a few is about, above it. `true` when a double click on it asks for the default.
+pub(crate) fn segmented_label_ui(label: &str, ui: &mut Ui) -> bool {
+    let words = RichText::new(tr(label, ui)).font(theme_of(ui).font(Type::Label));
+    let response = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
+    response.on_hover_text(tr(Words::of(ui).reset_hint, ui)).double_clicked()
+}
 
 /// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen anew, if anything.
 ///

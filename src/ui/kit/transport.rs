@@ -10,7 +10,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 
 /// The speeds one may choose.
-const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
+const SPEEDS: [f64; 7] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Where time is, as the row shows it.
 #[derive(Clone, Copy, Debug)]

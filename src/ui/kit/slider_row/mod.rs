@@ -68,6 +68,12 @@ impl<'a> SliderRow<'a> {
         }
     }
 
+    /// The same row with another label.
+    pub(crate) fn label(mut self, label: &'a str) -> Self {
+        self.label = label;
+        self
+    }
+
     /// The unit behind the number, in the quiet colour.
     pub(crate) fn unit(mut self, unit: &'a str) -> Self {
         self.unit = unit;
