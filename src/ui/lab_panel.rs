@@ -302,17 +302,11 @@ pub(super) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &
     Some(entries.get(picked?)?.id.clone())
 }
 
-/// The experiment of the course, and the way back from it.
+/// The experiment of the course. The rows of what is compared have the way back.
 pub(super) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
-    let label = if on { text::COMPARE_OFF } else { text::FULL_HALF_THIRD };
-    let response = kit::button_ui(Button::new(label).hint(text::COMPARE_HELP), ui);
-    if response.clicked() {
-        if on {
-            out.set_once(Key::Compare, Value::Text(String::new()));
-        } else {
-            out.commands.push(Command::Compare(key));
-        }
+    if !on && kit::button_ui(Button::new(text::FULL_HALF_THIRD).hint(text::COMPARE_HELP), ui).clicked() {
+        out.commands.push(Command::Compare(key));
     }
 }
 

@@ -200,6 +200,9 @@ fn compared_ui(compare: &Compare, row: &SliderRow<'_>, in_seconds: &dyn Fn(f64) 
             }
             out.commands.push(Command::Settle);
         }
+        if kit::button_ui(Button::new(text::COMPARE_OFF).quiet(), ui).clicked() {
+            out.set_once(Key::Compare, Value::Text(String::new()));
+        }
     });
 }
 

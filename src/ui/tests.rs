@@ -11,7 +11,7 @@ use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
-use segue::session::{Command, Entry, Kind, Origin, Outcome, SourceFile, Value};
+use segue::session::{Command, Entry, Kind, Origin, Outcome, Slot, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -610,6 +610,40 @@ fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
         harness.get_by_value("mine · missing");
         assert!(harness.query_all_by_label_contains("drop its file").count() > 0);
     }
+}
+
+/// What a first visitor drags is what the panes show: every pane of a comparison has its own slider.
+#[test]
+fn values_side_by_side_are_dragged_one_by_one() {
+    let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
+    picture("compare-rows", &mut harness);
+    let compare = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Compare).to_owned();
+    harness.get_by_label("Blend window · 2").focus();
+    harness.step();
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(compare(&harness), "blend_window:30,16,10");
+    press(text::PANE_MORE, &mut harness);
+    assert_eq!(compare(&harness), "blend_window:30,16,10,8");
+    for _ in 0..3 {
+        press(text::PANE_LESS, &mut harness);
+    }
+    assert_eq!(compare(&harness), "");
+    assert_eq!(harness.state().session.panes().len(), 1);
+    harness.state_mut().session.apply(Command::Undo).unwrap();
+    assert_eq!(compare(&harness), "blend_window:30,16");
+}
+
+#[test]
+fn an_embedded_page_keeps_the_rows_that_its_link_names() {
+    let link = "lab=blend&embed=1&blend_window=30&a=walk&look=both&play=off";
+    let mut harness = harness(vec2(800.0, 500.0), DARK, page(link));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Blend window").is_some() && harness.query_by_label(Slot::A.label()).is_some());
+    // At its default a parameter is still there to be tried.
+    harness.state_mut().session.apply(Command::Reset(Key::BlendWindow)).unwrap();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Blend window").is_some());
 }
 
 #[test]

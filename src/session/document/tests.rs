@@ -97,6 +97,50 @@ fn undo_leaves_the_playhead_and_the_camera_alone() {
 }
 
 #[test]
+fn undo_takes_back_marks_speed_and_what_the_camera_follows() {
+    let mut session = Session::new();
+    let values = [
+        (Key::In, Value::Number(1.0)),
+        (Key::Rate, Value::Number(0.5)),
+        (Key::Follow, Value::Choice("off")),
+    ];
+    for (key, value) in values.clone() {
+        session.apply(Command::Set(vec![(key, value)])).unwrap();
+        session.apply(Command::Settle).unwrap();
+    }
+    for (key, value) in values.into_iter().rev() {
+        assert_eq!(session.params().get(key), &value);
+        session.apply(Command::Undo).unwrap();
+        assert_eq!(session.params().get(key), &key.param().default_value());
+    }
+}
+
+#[test]
+fn a_motion_is_made_whatever_was_set_for_another() {
+    let mut session = Session::new();
+    let make = [
+        (Key::Lab, Value::Choice("make")),
+        (Key::Gait, Value::Choice("run")),
+        (Key::GaitSpeed, Value::Number(6.0)),
+        (Key::MakeSeconds, Value::Number(1.0)),
+        (Key::Compare, Value::Text(String::new())),
+    ];
+    session.apply(Command::Set(make.to_vec())).unwrap();
+    for gait in ["run", "walk", "idle", "start", "stop", "spin", "jump"] {
+        session.apply(Command::Set(vec![(Key::Gait, Value::Choice(gait))])).unwrap();
+        assert_eq!(session.panes()[0].problem, None, "{gait}");
+        // Side by side, too, each pane shows something, and no two the same.
+        if session.range_of(Key::GaitSpeed).is_some() {
+            session.apply(Command::Compare(Key::GaitSpeed)).unwrap();
+            let values = session.compare().unwrap().values;
+            assert!(values[0] != values[1] && values[1] != values[2], "{gait}: {values:?}");
+            assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{gait}: {values:?}");
+            session.apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))])).unwrap();
+        }
+    }
+}
+
+#[test]
 fn the_playhead_goes_round_in_the_span_between_the_marks() {
     let mut session = Session::new();
     session
