@@ -6,6 +6,7 @@ mod going_round;
 mod graphing;
 mod loading;
 mod panes;
+mod slots;
 mod teaching;
 
 pub use company::Companion;
@@ -13,6 +14,7 @@ pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
 pub use panes::{Pane, Shown};
+use slots::forget_places;
 pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
@@ -111,6 +113,8 @@ pub struct Session {
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
+    /// Whether A and B were named with the addresses of the link, or since.
+    named: [bool; 2],
     library_revision: u64,
     revision: u64,
 }
@@ -127,7 +131,7 @@ impl Session {
     pub fn new() -> Self {
         let mut session = Self {
             params: Params::default(),
-            library: built_in_library(),
+            library: built_in_entries().collect(),
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
@@ -147,6 +151,7 @@ impl Session {
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
+            named: [false; 2],
             library_revision: 0,
             revision: 0,
         };
@@ -332,11 +337,7 @@ impl Session {
                 self.open_link(&query);
                 held = None;
             }
-            Command::Assign(slot, id) => {
-                let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
-                self.set(vec![(slot.key(), Value::Text(id))])?;
-                self.history.settle();
-            }
+            Command::Assign(slot, id) => self.assign(slot, id)?,
             Command::Remove(id) => self.remove(&id)?,
             Command::Rename(id, name) => {
                 let name = name.trim().to_owned();
@@ -474,6 +475,15 @@ impl Session {
                 changed.push(key);
             }
         }
+        let chosen = [Slot::A, Slot::B].map(|slot| changed.contains(&slot.key()).then_some(slot));
+        for slot in chosen.into_iter().flatten() {
+            let before = self.slot(slot).map(|entry| &entry.id);
+            let now = self.library.find(params.text(slot.key())).map(|entry| &entry.id);
+            // Another name of the same clip changes nothing.
+            if before.is_none() || before != now {
+                changed.extend(forget_places(&mut params, slot, &named));
+            }
+        }
         let mut undoable = changed.iter().copied().filter(|key| key.param().group.is_undoable());
         if let Some(first) = undoable.next() {
             // A slider that is dragged changes one parameter again and again: one step.
@@ -481,14 +491,22 @@ impl Session {
             self.remember(alone.then_some(first));
         }
         self.params = params;
+        self.note_named(&named, changed.contains(&Key::Src));
+        for slot in chosen.into_iter().flatten() {
+            let id = self.params.text(slot.key()).to_owned();
+            self.bring_back(&id);
+        }
+        if changed
+            .iter()
+            .any(|key| matches!(key, Key::Lab | Key::Clips | Key::MatchClips | Key::Others))
+        {
+            self.bring_back_listed();
+        }
         if changed.contains(&Key::Src) {
             self.fetch_sources();
         }
         if changed.iter().any(|key| key.param().group.is_of_lab()) {
             self.grapher.stop(false);
-        }
-        if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
-            self.library_revision += 1;
         }
         if changed.contains(&Key::Lesson) {
             self.lesson_was_set(named);
@@ -506,7 +524,8 @@ impl Session {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
-        self.take_over(params, &link.problems);
+        self.named = [false; 2];
+        self.take_over(params, &link.problems, &named);
         self.lesson_was_set(named);
     }
 
@@ -522,6 +541,7 @@ impl Session {
         for (reference, _) in self.also_blended() {
             self.look_for("A clip of the blend", &reference);
         }
+        self.bring_back_listed();
     }
 
     /// The clips that stand side by side.
@@ -557,7 +577,7 @@ impl Session {
 
     /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
     fn look_for(&mut self, what: &str, reference: &str) {
-        if reference.is_empty() || self.bring(reference) {
+        if reference.is_empty() || self.bring_back(reference) || self.bring(reference) {
             return;
         }
         let (name, sha, _) = split_reference(reference);
@@ -624,6 +644,7 @@ impl Session {
                 .or_else(|| entries.first());
             let next = next.map(|e| e.id.clone()).unwrap_or_default();
             self.set_unchecked(key, Value::Text(next));
+            forget_places(&mut self.params, slot, &[]);
         }
         self.say(Level::Info, format!("{} was removed; undo brings it back.", entry.name));
         Ok(())
@@ -716,18 +737,15 @@ impl Session {
     }
 }
 
-fn built_in_library() -> Library {
-    let mut library = Library::default();
+/// What the library holds at first.
+fn built_in_entries() -> impl Iterator<Item = Entry> {
     let presets = synth::presets()
         .into_iter()
         .map(|preset| (preset.id.to_owned(), preset.title.to_owned(), Origin::Preset));
     let samples = SAMPLES
         .iter()
         .map(|sample| (sample.id.to_owned(), sample.label.to_owned(), Origin::Sample(sample)));
-    for (id, name, origin) in presets.chain(samples) {
-        library.put(Entry::new(id, name, origin));
-    }
-    library
+    presets.chain(samples).map(|(id, name, origin)| Entry::new(id, name, origin))
 }
 
 fn clip_info(entry: &Entry) -> ClipInfo {
@@ -758,6 +776,8 @@ mod loading_tests;
 mod path_tests;
 #[cfg(test)]
 mod registering_tests;
+#[cfg(test)]
+mod slots_tests;
 #[cfg(test)]
 mod teaching_tests;
 #[cfg(test)]

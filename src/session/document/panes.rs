@@ -257,7 +257,7 @@ impl Session {
     fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, String> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
-            self.bring(&reference);
+            let _was_gone = self.bring_back(&reference) || self.bring(&reference);
         }
         let mut pane = Pane::default();
         self.grapher.guide_by(None);
