@@ -193,7 +193,11 @@ impl Library {
 
     /// Adds a clip at the end, or puts it in the place of the one with the same id.
     pub fn put(&mut self, entry: Entry) {
-        let entry = Arc::new(entry);
+        self.put_shared(Arc::new(entry));
+    }
+
+    /// As [`Library::put`], for one that another library holds as well.
+    pub fn put_shared(&mut self, entry: Arc<Entry>) {
         match self.entries.iter_mut().find(|old| old.id == entry.id) {
             Some(old) => *old = entry,
             None => self.entries.push(entry),

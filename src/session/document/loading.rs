@@ -1,18 +1,14 @@
-//! Files into the library, and the work back from storage.
+//! Files into the library.
 
 use super::slots::Came;
 use super::{Job, Session};
 use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
 use crate::session::command::{CommandError, Request};
-use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id, file_stem};
-use crate::session::link;
+use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::motion::Motion;
 use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
-use crate::session::reading::{About, Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
-use crate::session::recipe::recipe_params;
-use crate::session::saved::{Saved, SavedEntry, SavedFile};
-use crate::session::undo::History;
+use crate::session::reading::{About, Companion, Content, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -450,114 +446,15 @@ impl Session {
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         if let Some(clip) = imported.clips.into_iter().next() {
             let about = About::from(&clip);
-            let motion = Arc::new(Motion::analyze(clip.clip, None));
+            let motion = Motion::analyze(clip.clip, None);
             self.library.change(sample.id, |entry| {
-                entry.motion = Some(motion);
+                entry.motion = Some(Arc::new(motion.with_roles(entry.roles_by_hand.as_ref())));
                 entry.about = Some(about);
                 entry.warnings = warnings;
             });
         }
         self.refresh();
         Ok(())
-    }
-
-    /// What is stored of the work.
-    #[must_use]
-    pub fn saved(&self) -> Saved {
-        Saved {
-            query: self.query(),
-            entries: self.library.entries().iter().map(|entry| SavedEntry::from(&**entry)).collect(),
-        }
-    }
-
-    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are gone or no longer read are named in a notice, large
-    /// ones are asked for with [`Request::Read`]. The parameters come from `query` when there is one (a link was opened), else from what was stored.
-    pub fn restore(&mut self, saved: &Saved, mut content_of: impl FnMut(&str) -> Option<Content>, query: Option<&str>) {
-        let mut lost = Vec::new();
-        let mut library = Library::default();
-        for stored in &saved.entries {
-            let entry = match &stored.file {
-                None => match self.library.find(&stored.id) {
-                    Some(entry) => (**entry).clone(),
-                    None if recipe_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
-                    None => continue,
-                },
-                Some(file) => {
-                    let Some(content) = content_of(&file.sha256) else {
-                        lost.push(file.name.clone());
-                        continue;
-                    };
-                    Entry {
-                        roles_by_hand: stored.roles.clone(),
-                        ..Entry::new(&stored.id, &stored.name, Origin::File(file.with(content)))
-                    }
-                }
-            };
-            library.put(Entry {
-                name: stored.name.clone(),
-                ..entry
-            });
-        }
-        if !library.entries().is_empty() {
-            self.library = library;
-        }
-        lost.extend(self.read_stored());
-        if !lost.is_empty() {
-            self.say(
-                Level::Warning,
-                format!(
-                    "Not found in this browser's storage any more: {}. Drop them again.",
-                    lost.join(", ")
-                ),
-            );
-        }
-        // A language that was chosen by hand stays, whatever link the page is opened with, unless the link names another.
-        if let Some((key, chosen)) = link::read(&saved.query).values.into_iter().find(|(key, _)| *key == Key::Lang) {
-            let result = self.params.set(key, chosen);
-            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
-        }
-        self.open_link(query.unwrap_or(&saved.query));
-        self.history = History::default();
-        self.refresh();
-    }
-
-    /// Reads the files of the library that have no motion yet. Returns the names of those that cannot be read any more; their clips are gone.
-    fn read_stored(&mut self) -> Vec<String> {
-        let mut lost = Vec::new();
-        let entries = self.library.entries().to_vec();
-        for entry in entries {
-            let Origin::File(file) = &entry.origin else { continue };
-            let read_by_now = self.library.find(&entry.id).is_none_or(|entry| entry.motion.is_some());
-            if read_by_now {
-                continue;
-            }
-            if file.is_large() {
-                self.read_again(file.clone());
-            } else if self.read_at_once(file).is_err() {
-                self.library.remove(&entry.id);
-                lost.push(file.name.clone());
-            }
-        }
-        lost
-    }
-}
-
-impl SavedFile {
-    fn with(&self, content: Content) -> SourceFile {
-        let size = match &content {
-            Content::Here(bytes) => bytes.len() as u64,
-            Content::Outside(_) => self.size.max(LARGE_BYTES + 1),
-        };
-        SourceFile {
-            name: self.name.clone(),
-            sha256: self.sha256.clone(),
-            content,
-            size,
-            kind: self.kind,
-            companion: self.companion.clone(),
-            index: self.index,
-            options: self.options,
-        }
     }
 }
 

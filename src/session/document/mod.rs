@@ -7,6 +7,7 @@ mod graphing;
 mod loading;
 mod panes;
 mod slots;
+mod storing;
 mod teaching;
 
 pub use company::Companion;
@@ -20,11 +21,11 @@ pub use teaching::{Lesson, LessonPage};
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
 use super::lesson::Shelf;
-use super::library::{Entry, Library, Origin, Sample, split_reference};
+use super::library::{Entry, Library, Origin, Sample};
 use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
-use super::params::{Key, Kind, Params, Value};
+use super::params::{Key, Params, Value};
 use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
@@ -529,32 +530,6 @@ impl Session {
         self.lesson_was_set(named);
     }
 
-    /// Looks for every clip that the parameters name.
-    fn look_for_clips(&mut self) {
-        for slot in [Slot::A, Slot::B] {
-            let reference = self.params.text(slot.key()).to_owned();
-            self.look_for(slot.label(), &reference);
-        }
-        for reference in self.compared_clips() {
-            self.look_for("A clip to compare", &reference);
-        }
-        for (reference, _) in self.also_blended() {
-            self.look_for("A clip of the blend", &reference);
-        }
-        self.bring_back_listed();
-    }
-
-    /// The clips that stand side by side.
-    fn compared_clips(&self) -> Vec<String> {
-        let compare = self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
-        let values = compare.map(|compare| compare.values).unwrap_or_default();
-        let clips = values.into_iter().filter_map(|value| match value {
-            Value::Text(id) => Some(id),
-            _ => None,
-        });
-        clips.collect()
-    }
-
     fn fetch_sources(&mut self) {
         let addresses: Vec<String> = self.params.text(Key::Src).split_whitespace().map(str::to_owned).collect();
         if addresses.len() > MOST_SOURCES {
@@ -573,41 +548,6 @@ impl Session {
                 );
             }
         }
-    }
-
-    /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
-    fn look_for(&mut self, what: &str, reference: &str) {
-        if reference.is_empty() || self.bring_back(reference) || self.bring(reference) {
-            return;
-        }
-        let (name, sha, _) = split_reference(reference);
-        let text = if sha.is_empty() {
-            format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
-        } else {
-            format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
-        };
-        self.notices.miss(reference, text);
-    }
-
-    /// Forgets what was said of clips that have come since, or that nothing names any more.
-    fn forget_found(&mut self) {
-        let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
-        let others = self.also_blended().into_iter().map(|(reference, _)| reference);
-        let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
-        let library = &self.library;
-        self.notices
-            .keep_missing(|reference| library.find(reference).is_none() && named.iter().any(|name| name == reference));
-    }
-
-    /// Whether the clip is in the library, or can be made from its id.
-    fn bring(&mut self, reference: &str) -> bool {
-        if self.library.find(reference).is_some() {
-            return true;
-        }
-        let Some(params) = recipe_params(reference) else { return false };
-        self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
-        self.library_revision += 1;
-        true
     }
 
     fn change_entry(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> Result<(), CommandError> {
@@ -778,6 +718,8 @@ mod path_tests;
 mod registering_tests;
 #[cfg(test)]
 mod slots_tests;
+#[cfg(test)]
+mod storing_tests;
 #[cfg(test)]
 mod teaching_tests;
 #[cfg(test)]

@@ -1,10 +1,11 @@
-//! What A and B hold: chosen by hand or by a link, brought by a file, or built in and back from where it was taken out.
+//! What A and B hold, and other places that name clips: chosen by hand or by a link, brought by a file, or built in and back from where it was
+//! taken out.
 
 use super::{Session, built_in_entries};
 use crate::session::command::CommandError;
-use crate::session::library::{Entry, Origin};
-use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::Slot;
+use crate::session::library::{Entry, Origin, split_reference};
+use crate::session::params::{Key, Kind, Params, Value};
+use crate::session::recipe::{Slot, recipe_name, recipe_params};
 
 /// How a file has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +66,67 @@ impl Session {
             let before = self.named[slot as usize] && !has_new_sources;
             self.named[slot as usize] = before || named.contains(&slot.key());
         }
+    }
+
+    /// Looks for every clip that the parameters name.
+    pub(super) fn look_for_clips(&mut self) {
+        for slot in [Slot::A, Slot::B] {
+            let reference = self.params.text(slot.key()).to_owned();
+            self.look_for(slot.label(), &reference);
+        }
+        for reference in self.compared_clips() {
+            self.look_for("A clip to compare", &reference);
+        }
+        for (reference, _) in self.also_blended() {
+            self.look_for("A clip of the blend", &reference);
+        }
+        self.bring_back_listed();
+    }
+
+    /// The clips that stand side by side.
+    pub(super) fn compared_clips(&self) -> Vec<String> {
+        let compare = self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
+        let values = compare.map(|compare| compare.values).unwrap_or_default();
+        let clips = values.into_iter().filter_map(|value| match value {
+            Value::Text(id) => Some(id),
+            _ => None,
+        });
+        clips.collect()
+    }
+
+    /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
+    fn look_for(&mut self, what: &str, reference: &str) {
+        if reference.is_empty() || self.bring_back(reference) || self.bring(reference) {
+            return;
+        }
+        let (name, sha, _) = split_reference(reference);
+        let text = if sha.is_empty() {
+            format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
+        } else {
+            format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
+        };
+        self.notices.miss(reference, text);
+    }
+
+    /// Forgets what was said of clips that have come since, or that nothing names any more.
+    pub(super) fn forget_found(&mut self) {
+        let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
+        let others = self.also_blended().into_iter().map(|(reference, _)| reference);
+        let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
+        let library = &self.library;
+        self.notices
+            .keep_missing(|reference| library.find(reference).is_none() && named.iter().any(|name| name == reference));
+    }
+
+    /// Whether the clip is in the library, or can be made from its id.
+    pub(super) fn bring(&mut self, reference: &str) -> bool {
+        if self.library.find(reference).is_some() {
+            return true;
+        }
+        let Some(params) = recipe_params(reference) else { return false };
+        self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
+        self.library_revision += 1;
+        true
     }
 
     /// The built-in clip of that id, where it was taken out of the library.
