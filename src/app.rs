@@ -297,6 +297,11 @@ impl Segue {
         self.keeper.is_waiting()
     }
 
+    /// Whether what is stored is to be expected any moment, though something is shown already.
+    pub(crate) fn awaits_work(&mut self) -> bool {
+        self.is_waiting() || self.keeper.is_late(platform::now_ms())
+    }
+
     /// Carries out a command of the user's. What cannot be done is said.
     fn obey(&mut self, command: Command) {
         if let Err(error) = self.apply(command) {
