@@ -297,6 +297,11 @@ impl Segue {
         self.keeper.is_waiting()
     }
 
+    /// Whether what is stored is to be expected any moment, though something is shown already.
+    pub(crate) fn awaits_work(&mut self) -> bool {
+        self.is_waiting() || self.keeper.is_late(platform::now_ms())
+    }
+
     /// Carries out a command of the user's. What cannot be done is said.
     fn obey(&mut self, command: Command) {
         if let Err(error) = self.apply(command) {
@@ -512,15 +517,11 @@ impl Segue {
     /// What there is to tell listeners since the last call.
     pub(crate) fn take_events(&mut self) -> Vec<Event> {
         let mut events = std::mem::take(&mut self.events);
-        for notice in self.session.notices().list() {
-            if notice.id >= self.told.next_notice {
-                self.told.next_notice = notice.id + 1;
-                if notice.level == Level::Error {
-                    events.push(Event::Error {
-                        message: notice.text.clone(),
-                    });
-                }
-            }
+        for notice in self.session.notices().errors_since(self.told.next_notice) {
+            self.told.next_notice = notice.id + 1;
+            events.push(Event::Error {
+                message: notice.text.clone(),
+            });
         }
         for job in self.session.jobs() {
             events.push(Event::Progress {

@@ -9,7 +9,7 @@ use segue::session::{Command, Key, Level, Request, Value};
 impl Segue {
     pub(super) fn receive(&mut self, incoming: Incoming) {
         match incoming {
-            Incoming::File { name, bytes } => self.load(&name, bytes),
+            Incoming::File { name, bytes } => self.load(&name, bytes, false),
             Incoming::Large { name, file } => {
                 self.begin_reading(&name, file);
             }
@@ -48,7 +48,7 @@ impl Segue {
                 self.downloads.finished(&address, result);
                 while let Some(fetched) = self.downloads.next_ready() {
                     match fetched {
-                        Ok((name, bytes)) => self.load(&name, bytes),
+                        Ok((name, bytes)) => self.load(&name, bytes, true),
                         Err(reason) => self.session.say(Level::Error, reason),
                     }
                 }
@@ -105,13 +105,23 @@ impl Segue {
     }
 
     /// Loads a file. What is wrong with it stands in a notice.
-    fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>) {
+    fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>, was_fetched: bool) {
         let size = bytes.len() as u64;
         if size > LARGE_BYTES {
-            self.session.begin_reading(name, Content::Here(bytes), size);
+            let content = Content::Here(bytes);
+            if was_fetched {
+                self.session.begin_reading_fetched(name, content, size);
+            } else {
+                self.session.begin_reading(name, content, size);
+            }
             return;
         }
-        if let Err(error) = self.session.load(name, bytes) {
+        let loaded = if was_fetched {
+            self.session.load_fetched(name, bytes)
+        } else {
+            self.session.load(name, bytes)
+        };
+        if let Err(error) = loaded {
             log::info!("{name} was not loaded: {error}");
         }
     }

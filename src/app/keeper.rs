@@ -2,9 +2,12 @@
 
 use crate::platform::{Storage, Stored, StoredFiles, Vault, Work};
 use segue::session::{Origin, Saved, Session};
+use std::collections::BTreeSet;
 
 /// The page does not wait longer than this for what is stored, milliseconds.
 const PATIENCE_MS: f64 = 150.0;
+/// Nor does the page's API, milliseconds: a storage that is locked may never answer.
+const LATEST_MS: f64 = 4000.0;
 /// Work that has not changed for so long is stored, milliseconds.
 const QUIET_MS: f64 = 600.0;
 
@@ -28,8 +31,8 @@ impl Mark {
 enum Phase {
     /// Nothing is shown yet: what is stored may come any moment.
     Waiting { since_ms: f64 },
-    /// It takes longer than anybody waits. The session has begun without it.
-    Late { begun: Mark },
+    /// It takes longer than anybody waits. The session has begun without it, and nothing is stored before it has come: that would be in its place.
+    Late { begun: Mark, since_ms: f64 },
     /// What was stored is here, or there is nothing.
     Ready,
 }
@@ -42,6 +45,8 @@ pub(crate) struct Keeper {
     /// The link that the page was opened with; empty for none.
     link: String,
     stored: Mark,
+    /// The ids of all clips that were read from storage or written to it here. Others that are found there are another window's.
+    known: BTreeSet<String>,
     seen: Mark,
     /// The session's revision at which `seen` was taken.
     revision: u64,
@@ -56,6 +61,7 @@ impl Keeper {
             phase: Phase::Waiting { since_ms: now_ms },
             link,
             stored: Mark::default(),
+            known: BTreeSet::new(),
             seen: Mark::default(),
             revision: 0,
             changed_at_ms: None,
@@ -67,6 +73,11 @@ impl Keeper {
         matches!(self.phase, Phase::Waiting { .. })
     }
 
+    /// Whether what is stored is still to be expected soon, though something is shown by now.
+    pub(crate) fn is_late(&self, now_ms: f64) -> bool {
+        matches!(self.phase, Phase::Late { since_ms, .. } if now_ms - since_ms < LATEST_MS)
+    }
+
     /// Begins without what is stored when it takes too long. Says whether the session has begun just now.
     pub(crate) fn wait(&mut self, session: &mut Session, vault: &mut Vault, now_ms: f64) -> bool {
         let Phase::Waiting { since_ms } = self.phase else { return false };
@@ -75,7 +86,10 @@ impl Keeper {
         }
         self.open(session, vault, None);
         self.phase = if self.storage.is_some() {
-            Phase::Late { begun: Mark::of(session) }
+            Phase::Late {
+                begun: Mark::of(session),
+                since_ms,
+            }
         } else {
             Phase::Ready
         };
@@ -85,24 +99,24 @@ impl Keeper {
     /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
     pub(crate) fn arrived(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) -> bool {
         let nothing = stored.is_none();
+        if let Some(stored) = &stored {
+            self.known.extend(stored.saved.entries.iter().map(|entry| entry.id.clone()));
+        }
         match std::mem::replace(&mut self.phase, Phase::Ready) {
             Phase::Waiting { .. } => {
                 self.open(session, vault, stored);
                 return nothing || !self.link.is_empty();
             }
-            Phase::Late { begun } => {
-                let now = Mark::of(session);
-                if now.library != begun.library {
-                    // The user's files are in the library by now; they stay, are yet to be stored, and what was stored gives way to them.
-                    log::warn!("the stored work came too late");
-                    return false;
+            Phase::Late { begun, .. } => {
+                let Some(stored) = stored else { return false };
+                let content_of = |key: &str| vault.restore(&stored.files, key);
+                if self.link.is_empty() && Mark::of(session) == begun {
+                    session.restore(&stored.saved, content_of, None);
+                    self.mark(session);
+                } else {
+                    // What was opened or touched meanwhile stays as it is, and is yet to be stored.
+                    session.restore_late(&stored.saved, content_of);
                 }
-                if let Some(stored) = stored {
-                    // Parameters that were touched meanwhile stay as they are.
-                    let query = (now.query != begun.query || !self.link.is_empty()).then_some(now.query);
-                    session.restore(&stored.saved, |key| vault.restore(&stored.files, key), query.as_deref());
-                }
-                self.mark(session);
             }
             Phase::Ready => {}
         }
@@ -157,13 +171,13 @@ impl Keeper {
         if now == self.stored {
             return;
         }
-        match serde_json::to_string(&session.saved()) {
-            Ok(record) => storage.save(Work {
-                record,
-                files: files_of(session, vault),
-            }),
-            Err(error) => log::error!("the work cannot be written down: {error}"),
-        }
+        let saved = session.saved();
+        self.known.extend(saved.entries.iter().map(|entry| entry.id.clone()));
+        storage.save(Work {
+            saved,
+            known: self.known.clone(),
+            files: files_of(session, vault),
+        });
         self.stored.clone_from(&now);
         self.seen = now;
     }
@@ -182,7 +196,9 @@ fn files_of(session: &Session, vault: &Vault) -> StoredFiles {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::{Command, Key, Value};
+    use crate::platform::FileBytes;
+    use segue::session::{Command, Key, Slot, Value};
+    use std::sync::Arc;
 
     fn stored(query: &str) -> Stored {
         let saved = Saved {
@@ -255,6 +271,62 @@ mod tests {
         session.apply(Command::OpenLink("lab=make&gait=run".into())).unwrap();
         session.apply(Command::Keep(0)).unwrap();
         keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
+        assert_eq!(keeper.tend(&session, &Vault::default(), 2000.0), Some(QUIET_MS));
+    }
+
+    #[test]
+    fn late_work_joins_what_came_meanwhile() {
+        let bvh =
+            b"HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+        let file = |add: &str| -> Arc<[u8]> { [&bvh[..], add.as_bytes()].concat().into() };
+        let mut before = Session::new();
+        let stored_id = before.load("stored.bvh", file("")).unwrap().ids.remove(0);
+        before.apply(Command::Rename(stored_id.clone(), "mine".into())).unwrap();
+        before.apply(Command::Remove("idle".into())).unwrap();
+        let Origin::File(source) = before.library().get(&stored_id).unwrap().origin.clone() else {
+            panic!()
+        };
+        let late = Stored {
+            saved: before.saved(),
+            files: [(source.sha256, FileBytes::Here(file("")))].into(),
+        };
+        let (mut keeper, mut session) = keeper("");
+        let vault = &mut Vault::default();
+        keeper.wait(&mut session, vault, 1151.0);
+        let dropped = session.load("dropped.bvh", file(" ")).unwrap().ids.remove(0);
+        keeper.save_now(&session, vault);
+        assert_eq!(keeper.known.len(), 0, "nothing is stored over what has not been read yet");
+        keeper.arrived(&mut session, vault, Some(late));
+        let has = |session: &Session, id: &str| session.library().get(id).is_some_and(|entry| entry.motion.is_some());
+        assert!(has(&session, &stored_id) && has(&session, &dropped));
+        assert_eq!(session.library().get(&stored_id).unwrap().name, "mine");
+        assert!(session.library().get("idle").is_none());
+        assert_eq!(session.params().text(Key::A), dropped, "the parameters stay");
+        assert_eq!(keeper.tend(&session, vault, 2000.0), Some(QUIET_MS), "both are yet to be stored");
+        // The way back leads past the drop, and not past what was stored.
+        session.apply(Command::Undo).unwrap();
+        assert!(has(&session, &stored_id) && session.library().get(&dropped).is_none());
+    }
+
+    #[test]
+    fn another_a_is_no_other_library() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.wait(&mut session, &mut Vault::default(), 1151.0);
+        let begun = Mark::of(&session);
+        session.apply(Command::Assign(Slot::A, "idle".into())).unwrap();
+        assert_eq!(Mark::of(&session).library, begun.library);
+        assert_ne!(Mark::of(&session), begun, "it is stored all the same");
+    }
+
+    #[test]
+    fn what_never_comes_is_not_waited_for() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.wait(&mut session, &mut Vault::default(), 1151.0);
+        assert!(keeper.is_late(1200.0) && !keeper.is_late(1000.0 + LATEST_MS));
+        set_window(&mut session, 60.0);
+        // It has failed: from now on what there is is stored.
+        keeper.arrived(&mut session, &mut Vault::default(), None);
+        assert!(!keeper.is_late(1200.0));
         assert_eq!(keeper.tend(&session, &Vault::default(), 2000.0), Some(QUIET_MS));
     }
 

@@ -22,7 +22,7 @@ pub(crate) use vault::Vault;
 
 use segue::session::Saved;
 use segue::session::reading::ReadReport;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The largest file that is read. A motion file of that size holds days; more would only fill the memory.
@@ -61,10 +61,23 @@ pub(crate) struct Stored {
 /// Work to be stored.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Work {
-    /// [`Saved`] as JSON.
-    pub(crate) record: String,
-    /// The bytes of the library's files. Stored files that are not among them are deleted.
+    /// The library and the parameters.
+    pub(crate) saved: Saved,
+    /// The ids of all clips that this window ever read or wrote; see [`Saved::with_others_of`].
+    pub(crate) known: BTreeSet<String>,
+    /// The bytes of the library's files. Stored files that no stored clip comes from are deleted.
     pub(crate) files: StoredFiles,
+}
+
+impl Work {
+    /// What is to be stored where `record` is at present: this work, with what other windows have added. As JSON, and the files that it needs.
+    fn over(&self, record: Option<&str>) -> Result<(String, BTreeSet<String>), serde_json::Error> {
+        let there = record
+            .and_then(|record| serde_json::from_str::<Saved>(record).ok())
+            .unwrap_or_default();
+        let all = self.saved.clone().with_others_of(&there, &self.known);
+        Ok((serde_json::to_string(&all)?, all.files().into_iter().map(str::to_owned).collect()))
+    }
 }
 
 /// What a gamepad says. Sticks from -1 to 1, to the right and up.

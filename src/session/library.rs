@@ -148,6 +148,16 @@ pub struct Library {
     entries: Vec<Arc<Entry>>,
 }
 
+impl FromIterator<Entry> for Library {
+    fn from_iter<I: IntoIterator<Item = Entry>>(entries: I) -> Self {
+        let mut library = Self::default();
+        for entry in entries {
+            library.put(entry);
+        }
+        library
+    }
+}
+
 /// How many hexadecimal digits of the SHA-256 stand in a link.
 const SHA_DIGITS: usize = 8;
 
@@ -161,7 +171,7 @@ impl Library {
     /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name when only one has it.
     #[must_use]
     pub fn find(&self, reference: &str) -> Option<&Arc<Entry>> {
-        if let Some(entry) = self.entries.iter().find(|entry| entry.id == reference) {
+        if let Some(entry) = self.get(reference) {
             return Some(entry);
         }
         let (name, sha, index) = split_reference(reference);
@@ -175,9 +185,19 @@ impl Library {
         if sha.is_empty() && matching.next().is_some() { None } else { found }
     }
 
+    /// The clip of exactly that id.
+    #[must_use]
+    pub fn get(&self, id: &str) -> Option<&Arc<Entry>> {
+        self.entries.iter().find(|entry| entry.id == id)
+    }
+
     /// Adds a clip at the end, or puts it in the place of the one with the same id.
     pub fn put(&mut self, entry: Entry) {
-        let entry = Arc::new(entry);
+        self.put_shared(Arc::new(entry));
+    }
+
+    /// As [`Library::put`], for one that another library holds as well.
+    pub fn put_shared(&mut self, entry: Arc<Entry>) {
         match self.entries.iter_mut().find(|old| old.id == entry.id) {
             Some(old) => *old = entry,
             None => self.entries.push(entry),

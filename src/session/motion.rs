@@ -31,6 +31,18 @@ impl Motion {
         }
     }
 
+    /// The same with roles that were corrected by hand. Such as name joints that the skeleton has not, as those of another version's clip may, are
+    /// left alone.
+    #[must_use]
+    pub fn with_roles(self, by_hand: Option<&Roles>) -> Self {
+        let joints = self.clip.skeleton().len();
+        let fits = |roles: &&Roles| Role::ALL.into_iter().filter_map(|role| roles.get(role)).all(|joint| joint < joints);
+        match by_hand.filter(fits) {
+            Some(roles) if *roles != self.roles => Self::analyze(Arc::unwrap_or_clone(self.clip), Some(roles.clone())),
+            _ => self,
+        }
+    }
+
     /// Where the character stands and what it faces at a time; between two frames in proportion, beyond the ends as at them.
     #[must_use]
     pub fn standing_at(&self, secs: f64) -> Planar {

@@ -38,13 +38,23 @@ pub struct Notice {
 #[derive(Clone, Debug, Default)]
 pub struct Notices {
     list: Vec<Notice>,
+    /// Errors for which there was no room. One of the list sums them up.
+    more: Vec<Notice>,
+    /// The number of that one.
+    sum: Option<u64>,
     next_id: u64,
 }
 
 /// How long an [`Level::Info`] stays, seconds: long enough to read two lines.
 const INFO_SECS: f64 = 6.0;
-/// More than that many at once is no longer read; the oldest give way.
+/// More than that many at once is no longer read.
 const MOST: usize = 6;
+/// Of these so many may stay until they are dismissed: there is always room for an [`Level::Info`].
+const MOST_LASTING: usize = MOST - 1;
+/// And of those so many may be errors, with the one that sums up the rest.
+const MOST_ERRORS: usize = MOST_LASTING - 1;
+/// More of what failed is counted and not named.
+const MOST_NAMED: usize = 24;
 
 impl Notices {
     /// Says something. The same text again moves to the end instead of standing there twice.
@@ -64,14 +74,61 @@ impl Notices {
 
     fn put(&mut self, level: Level, text: String, awaits: Option<String>) {
         self.list.retain(|notice| notice.text != text);
-        if self.list.len() >= MOST {
-            self.list.remove(0);
-        }
-        self.list.push(Notice {
+        self.more.retain(|notice| notice.text != text);
+        let notice = Notice {
             id: self.next_id,
             level,
             text,
             awaits,
+            age_secs: 0.0,
+        };
+        self.next_id += 1;
+        if level == Level::Error && self.count(Level::Error) >= MOST_ERRORS {
+            self.sum_up(notice);
+            return;
+        }
+        self.list.push(notice);
+        self.make_room();
+    }
+
+    fn count(&self, level: Level) -> usize {
+        self.list.iter().filter(|notice| notice.level == level).count()
+    }
+
+    /// Infos give way first, then warnings, the oldest of each; an error never does.
+    fn make_room(&mut self) {
+        let lasting = self.list.len() - self.count(Level::Info);
+        if lasting > MOST_LASTING {
+            self.drop_oldest(Level::Warning);
+        }
+        while self.list.len() > MOST && self.drop_oldest(Level::Info) {}
+    }
+
+    fn drop_oldest(&mut self, level: Level) -> bool {
+        let at = self.list.iter().position(|notice| notice.level == level);
+        at.map(|at| self.list.remove(at)).is_some()
+    }
+
+    /// An error for which there is no room: it and the last one that has a row, or those that are summed up already, are one row from now on.
+    fn sum_up(&mut self, error: Notice) {
+        let last = match self.sum {
+            Some(sum) => self.list.iter().position(|notice| notice.id == sum),
+            None => self.list.iter().rposition(|notice| notice.level == Level::Error),
+        };
+        let last = last.map(|at| self.list.remove(at));
+        self.more.extend(last.filter(|notice| Some(notice.id) != self.sum));
+        self.more.push(error);
+        let mut named: Vec<&str> = self.more.iter().take(MOST_NAMED).map(|notice| head(&notice.text)).collect();
+        if self.more.len() > MOST_NAMED {
+            named.push("…");
+        }
+        let text = format!("{} more did not work: {}.", self.more.len(), named.join(", "));
+        self.sum = Some(self.next_id);
+        self.list.push(Notice {
+            id: self.next_id,
+            level: Level::Error,
+            text,
+            awaits: None,
             age_secs: 0.0,
         });
         self.next_id += 1;
@@ -80,6 +137,20 @@ impl Notices {
     /// Takes a message away.
     pub fn dismiss(&mut self, id: u64) {
         self.list.retain(|notice| notice.id != id);
+        if self.sum == Some(id) {
+            self.sum = None;
+            self.more.clear();
+        }
+    }
+
+    /// Every error since the one of that number, with those for which there was no room, in the order in which they came.
+    #[must_use]
+    pub fn errors_since(&self, id: u64) -> Vec<&Notice> {
+        let of_list = self.list.iter().filter(|notice| Some(notice.id) != self.sum);
+        let errors = of_list.chain(&self.more);
+        let mut errors: Vec<&Notice> = errors.filter(|notice| notice.level == Level::Error && notice.id >= id).collect();
+        errors.sort_by_key(|notice| notice.id);
+        errors
     }
 
     /// Lets time pass; says whether a message went away.
@@ -107,9 +178,72 @@ impl Notices {
     }
 }
 
+/// What an error is about, in most of them a file: what stands before the first colon, and before the words that it does not work.
+fn head(text: &str) -> &str {
+    let end = [":", " could", " cannot"].into_iter().filter_map(|sign| text.find(sign)).min();
+    text.get(..end.unwrap_or(text.len())).unwrap_or(text).trim_end_matches('.')
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn texts(notices: &Notices) -> Vec<&str> {
+        notices.list().iter().map(|notice| notice.text.as_str()).collect()
+    }
+
+    #[test]
+    fn infos_give_way_first_then_warnings() {
+        let mut notices = Notices::default();
+        for (level, text) in [
+            (Level::Error, "e1"),
+            (Level::Warning, "w1"),
+            (Level::Warning, "w2"),
+            (Level::Info, "i1"),
+            (Level::Info, "i2"),
+            (Level::Info, "i3"),
+        ] {
+            notices.say(level, text);
+        }
+        notices.say(Level::Info, "i4");
+        assert_eq!(texts(&notices), ["e1", "w1", "w2", "i2", "i3", "i4"]);
+        for text in ["e2", "e3"] {
+            notices.say(Level::Error, text);
+        }
+        assert_eq!(texts(&notices), ["e1", "w1", "w2", "i4", "e2", "e3"]);
+        notices.say(Level::Info, "i5");
+        assert_eq!(texts(&notices), ["e1", "w1", "w2", "e2", "e3", "i5"]);
+        notices.say(Level::Warning, "w3");
+        assert_eq!(texts(&notices), ["e1", "w2", "e2", "e3", "i5", "w3"]);
+    }
+
+    #[test]
+    fn no_error_is_lost() {
+        let mut notices = Notices::default();
+        let errors: Vec<String> = (0..40).map(|n| format!("f{n}.bvh:1:2: found `x`, expected `y`")).collect();
+        for (n, error) in errors.iter().enumerate() {
+            notices.say(Level::Error, error.clone());
+            notices.say(Level::Info, format!("info {n}"));
+            if n == 5 {
+                assert_eq!(texts(&notices)[..3], errors[..3], "the first ones stand there as they are");
+                assert!(texts(&notices).contains(&"3 more did not work: f3.bvh, f4.bvh, f5.bvh."));
+            }
+        }
+        assert!(notices.list().len() <= MOST);
+        let sum = notices.list().iter().find(|notice| notice.text.starts_with("37 more")).unwrap();
+        assert!(sum.text.ends_with("f26.bvh, …."), "{}", sum.text);
+        // Listeners hear of each, once.
+        let heard: Vec<&str> = notices.errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
+        assert_eq!(heard, errors);
+        let last = notices.errors_since(0).last().unwrap().id;
+        assert_eq!(notices.errors_since(last + 1).len(), 0);
+        let id = sum.id;
+        notices.dismiss(id);
+        notices.say(Level::Error, "x.bvh could not be read: gone.");
+        assert_eq!(notices.errors_since(0).len(), 4);
+        notices.say(Level::Error, "y.bvh: gone.");
+        assert!(texts(&notices).contains(&"2 more did not work: x.bvh, y.bvh."));
+    }
 
     #[test]
     fn what_is_missed_is_said_until_it_comes() {

@@ -5,6 +5,7 @@ use super::reading::Companion;
 use crate::formats::{FileKind, ImportOptions};
 use crate::skeleton::Roles;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The work, without the bytes of its files.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -13,6 +14,26 @@ pub struct Saved {
     pub query: String,
     /// The library in order.
     pub entries: Vec<SavedEntry>,
+}
+
+impl Saved {
+    /// Keeps what `there`, stored at present, has from others: clips that are not among the `known`. Whoever writes this never had them, so it
+    /// was not them who took them away.
+    #[must_use]
+    pub fn with_others_of(mut self, there: &Self, known: &BTreeSet<String>) -> Self {
+        let own: BTreeSet<&str> = self.entries.iter().map(|entry| entry.id.as_str()).collect();
+        let is_of_others = |entry: &&SavedEntry| !own.contains(entry.id.as_str()) && !known.contains(&entry.id);
+        let others: Vec<SavedEntry> = there.entries.iter().filter(is_of_others).cloned().collect();
+        self.entries.extend(others);
+        self
+    }
+
+    /// The SHA-256 of the files that its clips come from.
+    #[must_use]
+    pub fn files(&self) -> BTreeSet<&str> {
+        let files = self.entries.iter().filter_map(|entry| entry.file.as_ref());
+        files.map(|file| file.sha256.as_str()).collect()
+    }
 }
 
 /// One clip of the library.
@@ -75,5 +96,55 @@ impl From<&Entry> for SavedEntry {
             file,
             roles: entry.roles_by_hand.clone(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn saved(query: &str, ids: &[&str]) -> Saved {
+        let entry = |id: &&str| SavedEntry {
+            id: (*id).to_owned(),
+            name: format!("{id} of {query}"),
+            file: id.split_once('~').map(|(name, sha256)| SavedFile {
+                name: name.to_owned(),
+                sha256: sha256.to_owned(),
+                size: 1,
+                kind: FileKind::Bvh,
+                companion: None,
+                index: 0,
+                options: ImportOptions::default(),
+            }),
+            roles: None,
+        };
+        Saved {
+            query: query.to_owned(),
+            entries: ids.iter().map(entry).collect(),
+        }
+    }
+
+    fn names(saved: &Saved) -> Vec<&str> {
+        saved.entries.iter().map(|entry| entry.name.as_str()).collect()
+    }
+
+    #[test]
+    fn what_others_added_stays_and_what_was_removed_here_goes() {
+        let known = ["walk", "x~11", "y~22"].map(str::to_owned).into();
+        let here = saved("t=1", &["walk", "x~11"]);
+        let there = saved("t=2", &["walk", "y~22", "theirs~33", "run(turn_rate:20)"]);
+        let written = here.clone().with_others_of(&there, &known);
+        assert_eq!(written.query, "t=1");
+        assert_eq!(
+            names(&written),
+            ["walk of t=1", "x~11 of t=1", "theirs~33 of t=2", "run(turn_rate:20) of t=2"]
+        );
+        assert_eq!(written.files(), BTreeSet::from(["11", "33"]));
+        // Written once more, with nothing learned of the others: it is the same.
+        assert_eq!(here.clone().with_others_of(&written, &known), written);
+        assert_eq!(here.clone().with_others_of(&Saved::default(), &known), here);
+        // Two windows write in turn: neither loses what the other has.
+        let theirs = there.with_others_of(&here, &["y~22".to_owned()].into());
+        assert!(names(&theirs).contains(&"x~11 of t=1"));
     }
 }

@@ -1,5 +1,6 @@
-use super::library::Library;
+use super::library::{Entry, Library};
 use super::params::{Key, PARAMS, Params};
+use std::sync::Arc;
 
 /// What undo brings back.
 #[derive(Clone, Debug)]
@@ -40,6 +41,20 @@ impl History {
     /// Ends a gesture: the next change is a step of its own.
     pub(super) fn settle(&mut self) {
         self.open = None;
+    }
+
+    /// Adds clips to every state that lacks them: they were there all along, and only came late.
+    pub(super) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
+        for state in self.past.iter_mut().chain(&mut self.future) {
+            for entry in entries
+                .iter()
+                .filter(|entry| state.library.get(&entry.id).is_none())
+                .cloned()
+                .collect::<Vec<_>>()
+            {
+                state.library.put_shared(entry);
+            }
+        }
     }
 
     pub(super) fn can_undo(&self) -> bool {

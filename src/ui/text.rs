@@ -126,6 +126,9 @@ pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";
 
 pub(crate) const READING: &str = "being read…";
+/// Likewise, when reading it failed or was stopped: a notice said why.
+pub(crate) const UNREAD: &str = "not read: drop the file again";
+/// Likewise.
 pub(crate) const AWAITS_SKELETON: &str = "waits for its skeleton: drop the .asf file";
 
 /// What keeps a clip from being played; empty where nothing does.
@@ -133,6 +136,7 @@ pub(crate) fn status(entry: &Entry) -> &'static str {
     match (&entry.motion, &entry.origin) {
         (Some(_), _) | (None, Origin::Preset | Origin::Made) => "",
         (None, Origin::Sample(_)) => LOADING,
+        (None, Origin::File(_)) if entry.unread.is_some() => UNREAD,
         (None, Origin::File(_)) if entry.awaits_skeleton() => AWAITS_SKELETON,
         (None, Origin::File(_)) => READING,
     }
@@ -963,6 +967,31 @@ pub(crate) fn tag_as(word: &str, takes_away: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use segue::formats::{FileKind, ImportOptions};
+    use segue::session::reading::Content;
+
+    #[test]
+    fn a_file_that_was_given_up_is_not_being_read() {
+        let file = segue::session::SourceFile {
+            name: "large.bvh".into(),
+            sha256: String::new(),
+            content: Content::Outside("1".into()),
+            size: 9 << 20,
+            kind: FileKind::Bvh,
+            companion: None,
+            index: 0,
+            options: ImportOptions::default(),
+        };
+        let session = segue::session::Session::new();
+        let mut entry = Entry {
+            origin: Origin::File(file),
+            motion: None,
+            ..(**session.library().get("idle").unwrap()).clone()
+        };
+        assert_eq!(status(&entry), READING);
+        entry.unread = Some("Reading large.bvh was stopped.".into());
+        assert_eq!(status(&entry), UNREAD);
+    }
 
     #[test]
     fn what_was_not_matched_is_named_and_counted() {

@@ -13,7 +13,7 @@ const CHOSEN = {
   warp_curve: "0-0,100-100", warp_also: "0.3:walk", pins: "12-30,50-71", path: "AAUAAADIAfAByAF3yAF3rAI", others: "walk,run",
   clips: "walk,run(turn_rate:20,lean:2)", go_to: "12.5:1,40:0", walk_path: "0:0,1.5:4", jump: "0:52-1:14",
   character: "somebody~0a1b2c3d", match_clips: "walk,run", tags: "walk:0.2-1.5:exclude", ask_tag: "walk", forbid_tag: "turn", drive: "3c.0.s_1o.0.0",
-  compare: "blend_window:60,20", lesson: "slerp", src: "/one.bvh?x=1&y=2 /two.bvh",
+  compare: "blend_window:60,20", lesson: "slerp", src: "https://example.org/one.bvh?x=1&y=2 https://example.org/two.bvh",
 };
 
 /** A value of this row that is not its default, two thirds up its range and on its step. */
@@ -25,21 +25,26 @@ function otherThanDefault({ key, type, min, max, step, choices, default: usual }
   return value === usual ? value + step : value;
 }
 
-const serveFiles = (page) => page.route(({ pathname }) => /^\/(one|two)\.bvh$/.test(pathname), (route) => route.fulfill({ body: striding({ frames: 30 }) }));
+const serveFiles = (page) => page.route(({ hostname }) => hostname === "example.org", (route) => route.fulfill({
+  headers: { "access-control-allow-origin": "*" }, body: striding({ frames: 30 }),
+}));
 
-// Fails for every key that url() leaves out, escapes wrongly, or that a link does not bring back.
+// Fails for every key that url() leaves out, escapes wrongly, or that a link does not bring back, and when a file of the link takes the place of a clip in it.
 onBothBackends("every key survives its link", async ({ open }) => {
   const { segue } = await open("", { ...SMALL, prepare: serveFiles });
   const keys = await segue("keys");
   const wanted = Object.fromEntries(keys.map((row) => [row.key, otherThanDefault(row)]));
   for (const { key, default: usual } of keys) assert.notDeepEqual(wanted[key], usual, `${key} is not left at its default`);
   await segue("set", wanted);
+  const fetched = async ({ segue }) => (await segue("clips")).filter((clip) => clip.sha256).map((clip) => clip.id.split("~")[0]);
+  assert.deepEqual(await fetched({ segue }), ["one", "two"]);
   assert.deepEqual(await segue("params"), wanted);
 
   const url = new URL(await segue("url"));
   assert.deepEqual([...url.searchParams.keys()], keys.map(({ key }) => key), "each key once, in the order of the table");
   const again = await open(url.search.slice(1), { ...SMALL, prepare: serveFiles });
   await again.segue("set", {});
+  assert.deepEqual(await fetched(again), ["one", "two"]);
   assert.deepEqual(await again.segue("params"), wanted);
   assert.equal(new URL(await again.segue("url")).search, url.search);
 });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import process from "node:process";
 import { fileURLToPath } from "node:url";
-import { onBothBackends } from "./harness.mjs";
+import { onBackend, onBothBackends } from "./harness.mjs";
 import { apart, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -97,6 +97,16 @@ onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
   assert.deepEqual(await segue("clips"), before);
 });
 
+/** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
+const stored = (page) => page.evaluate(async () => {
+  const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
+  const all = (name, what) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what]().onsuccess = (event) => resolve(event.target.result); });
+  const [[work], files] = [await all("work", "getAll"), await all("files", "getAllKeys")];
+  database.close();
+  const { query, entries } = work ? JSON.parse(work) : { query: "", entries: [] };
+  return { query, ids: entries.map(({ id }) => id), files };
+});
+
 // Fails when the library, the parameters or the bytes of the files do not come back from where the browser keeps them.
 onBothBackends("a reload brings the work back", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
@@ -104,13 +114,10 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   await segue("set", { lab: "blend", compare: "", a: clips[0].id, blend_window: 17, weight_law: "linear", play: false, t: 0.4 });
   await segue("set", {});
   const [params, library, pose] = [await segue("params"), await segue("clips"), await segue("pose", "result", 0.4)];
-  await until("the work is stored", () => page.evaluate(async () => {
-    const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
-    const all = (name) => new Promise((resolve) => { database.transaction(name).objectStore(name).getAll().onsuccess = (event) => resolve(event.target.result); });
-    const [[work], files] = [await all("work"), await all("files")];
-    database.close();
-    return files.length === 1 && JSON.stringify(work).includes("blend_window=17");
-  }));
+  await until("the work is stored", async () => {
+    const { query, files } = await stored(page);
+    return files.length === 1 && query.includes("blend_window=17");
+  });
   // Without the link, so that all of it comes out of storage.
   await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
   await ready();
@@ -121,4 +128,64 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   assert.deepEqual(await segue("params"), params);
   await until("the result is back", () => segue("pose", "result", 0.4).then(() => true, () => false));
   assert.ok(apart(await segue("pose", "result", 0.4), pose) < 1e-6, "the same result as before");
+});
+
+// Fails when a storage that answers late is given up, or what was dropped meanwhile is stored in its place.
+onBackend("webgl2", "stored work that comes late joins what was dropped meanwhile", async ({ open }) => {
+  const { page, segue, load, dropFile, ready } = await open("", SMALL);
+  const mine = (await load("mine.bvh", striding({ frames: 90 }))).clips[0];
+  await until("the work is stored", async () => (await stored(page)).files.length === 1);
+  await page.addInitScript(holdStorage);
+  await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
+  await ready();
+  assert.deepEqual(await loaded(segue), [], "it is not here yet");
+  await dropFile("new.bvh", striding({ frames: 60 }));
+  const [dropped] = await until("the dropped file is in the library", async () => (await loaded(segue)).length === 1 && loaded(segue));
+  await page.waitForTimeout(1500); // longer than work is quiet before it is stored
+  await page.evaluate(() => window.letIn());
+  await until("both are in the library", async () => (await loaded(segue)).length === 2);
+  assert.deepEqual((await loaded(segue)).map(({ id }) => id).sort(), [mine.id, dropped.id].sort());
+  assert.equal((await segue("params")).a, dropped.id, "what was dropped keeps its place");
+  await until("both are stored", async () => {
+    const { ids, files } = await stored(page);
+    return files.length === 2 && ids.includes(mine.id) && ids.includes(dropped.id);
+  });
+});
+
+/** In the page: the database opens when `letIn()` is called, and not before. */
+function holdStorage() {
+  const { open } = IDBFactory.prototype;
+  const { set } = Object.getOwnPropertyDescriptor(IDBRequest.prototype, "onsuccess");
+  const free = new Promise((resolve) => { window.letIn = resolve; });
+  IDBFactory.prototype.open = function (...args) {
+    const request = open.apply(this, args);
+    Object.defineProperty(request, "onsuccess", { set: (callback) => set.call(request, (event) => { free.then(() => callback?.call(request, event)); }) });
+    return request;
+  };
+}
+
+// Fails when one tab writes its own library over what another has stored, and when it deletes the files of the other.
+onBackend("webgl2", "two tabs lose nothing of each other's", async ({ open }) => {
+  const { page, segue, load, ready } = await open("play=off", SMALL);
+  const other = await page.context().newPage();
+  await other.goto(page.url(), { waitUntil: "commit" });
+  await other.waitForFunction(() => "segueReady" in window);
+  await other.evaluate(async () => (await window.segueReady).set({}));
+
+  await page.bringToFront();
+  const mine = (await load("mine.bvh", striding({ frames: 90 }))).clips[0];
+  await until("the first tab's file is stored", async () => (await stored(page)).ids.includes(mine.id));
+  await other.bringToFront();
+  const theirs = await other.evaluate(async (text) => (await (await window.segueReady).load("theirs.bvh", new TextEncoder().encode(text))).clips[0], striding({ frames: 60 }).toString());
+  await until("the second tab's file is stored", async () => (await stored(page)).ids.includes(theirs.id));
+  assert.deepEqual((await stored(page)).files.sort(), [mine.sha256, theirs.sha256].sort());
+
+  await page.bringToFront();
+  await segue("set", { blend_window: 19 });
+  await until("the first tab has stored again", async () => (await stored(page)).query.includes("blend_window=19"));
+  assert.deepEqual((await stored(page)).files.sort(), [mine.sha256, theirs.sha256].sort());
+  await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
+  await ready();
+  await segue("set", {});
+  assert.deepEqual((await loaded(segue)).map(({ id }) => id).sort(), [mine.id, theirs.id].sort());
 });

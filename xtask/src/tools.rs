@@ -122,6 +122,10 @@ pub fn python(package: &str) -> Result<PathBuf> {
     // Written last, so that half an installation is made again.
     let done = folder.join("installed");
     if !done.exists() {
+        // Debian has the module apart from Python, and without it half of `venv` still seems to work.
+        if output("python3", &["-c", "import ensurepip, venv"]).is_none() {
+            apt(&["python3", "python3-venv"])?;
+        }
         step(format!("installing {package} for Python (seconds)"), || {
             run(command("python3", &["-m", "venv", "--clear"]).arg(&folder))?;
             run(&mut command(

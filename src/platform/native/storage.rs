@@ -126,10 +126,12 @@ fn write(folder: &Path, work: &Work) -> io::Result<()> {
             }
         }
     }
-    write_whole(&folder.join(RECORD), work.record.as_bytes())?;
+    let path = folder.join(RECORD);
+    let (record, needed) = work.over(fs::read_to_string(&path).ok().as_deref())?;
+    write_whole(&path, record.as_bytes())?;
     // Last: until the record is replaced, the old one needs its files.
     for entry in fs::read_dir(&files)?.flatten() {
-        if entry.file_name().to_str().is_none_or(|key| !work.files.contains_key(key)) {
+        if entry.file_name().to_str().is_none_or(|key| !needed.contains(key)) {
             fs::remove_file(entry.path())?;
         }
     }
@@ -146,7 +148,6 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::Saved;
 
     fn stored_of(inbox: &Inbox) -> Option<Stored> {
         match inbox.take().pop_front() {
@@ -155,13 +156,18 @@ mod tests {
         }
     }
 
-    fn work_of(query: &str, files: &[&str]) -> Work {
-        let saved = Saved {
-            query: query.into(),
-            entries: Vec::new(),
-        };
+    /// Work with clips from files of these keys, by somebody who knows of these and `removed` ones.
+    fn work_of(query: &str, files: &[&str], removed: &[&str]) -> Work {
+        let entries: Vec<_> = files
+            .iter()
+            .map(|key| {
+                serde_json::json!({ "id": key, "name": key, "file": { "name": key, "sha256": key, "index": 0,
+            "options": segue::formats::ImportOptions::default() }, "roles": null })
+            })
+            .collect();
         Work {
-            record: serde_json::to_string(&saved).unwrap(),
+            saved: serde_json::from_value(serde_json::json!({ "query": query, "entries": entries })).unwrap(),
+            known: files.iter().chain(removed).map(|&key| key.to_owned()).collect(),
             files: files
                 .iter()
                 .map(|&key| (key.to_owned(), FileBytes::Here(Arc::from(key.as_bytes()))))
@@ -176,8 +182,8 @@ mod tests {
         let inbox = Inbox::default();
         let storage = Storage::open_in(folder.clone(), &inbox);
         assert_eq!(stored_of(&inbox), None);
-        storage.save(work_of("t=1", &["aa", "bb"]));
-        storage.save(work_of("t=2", &["bb", "cc"]));
+        storage.save(work_of("t=1", &["aa", "bb"], &[]));
+        storage.save(work_of("t=2", &["bb", "cc"], &["aa"]));
         drop(storage);
 
         let storage = Storage::open_in(folder.clone(), &inbox);
@@ -186,6 +192,28 @@ mod tests {
         assert_eq!(stored.files.keys().collect::<Vec<_>>(), ["bb", "cc"]);
         assert_eq!(stored.files["cc"], FileBytes::Here(Arc::from(&b"cc"[..])));
         drop(storage);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn what_another_window_added_stays() {
+        let folder = std::env::temp_dir().join(format!("segue-storage-windows-{}", std::process::id()));
+        fs::remove_dir_all(&folder).ok();
+        let inbox = Inbox::default();
+        let windows = [
+            work_of("t=1", &["aa"], &[]),
+            work_of("t=2", &["bb"], &[]),
+            work_of("t=3", &[], &["aa"]),
+        ];
+        for work in windows {
+            let storage = Storage::open_in(folder.clone(), &inbox);
+            inbox.take();
+            storage.save(work);
+        }
+        let stored = read(&folder).unwrap();
+        assert_eq!(stored.saved.query, "t=3");
+        assert_eq!(stored.files.keys().collect::<Vec<_>>(), ["bb"]);
+        assert_eq!(stored.saved.entries[0].id, "bb");
         fs::remove_dir_all(&folder).unwrap();
     }
 }

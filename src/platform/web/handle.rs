@@ -359,9 +359,9 @@ impl SegueHandle {
         }
     }
 
-    /// Waits until what was stored has come back, or is not waited for any longer: it would replace what is changed before.
+    /// Waits until what was stored has come back, or is not to be expected any longer: whoever asks then finds it there.
     async fn opened(&self) -> Result<(), JsValue> {
-        while self.borrow_mut()?.is_waiting() {
+        while self.borrow_mut()?.awaits_work() {
             sleep(5).await;
         }
         Ok(())

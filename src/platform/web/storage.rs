@@ -29,8 +29,6 @@ pub(crate) struct Storage {
 #[derive(Debug, Default)]
 struct State {
     database: Option<Rc<Database>>,
-    /// The keys of the files that are known to be stored.
-    known: BTreeSet<String>,
     /// What is to be written when what is being written is done. Older work is of no interest.
     next: Option<Work>,
     writing: bool,
@@ -70,11 +68,7 @@ impl Storage {
         let files: StoredFiles = (keys.iter().zip(values))
             .filter_map(|(key, value)| Some((key.as_string()?, file_bytes(value)?)))
             .collect();
-        {
-            let mut state = self.state.borrow_mut();
-            state.known = files.keys().cloned().collect();
-            state.database = Some(database);
-        }
+        self.state.borrow_mut().database = Some(database);
         let Some(record) = record else { return Ok(None) };
         match serde_json::from_str(&record) {
             Ok(saved) => Ok(Some(Stored { saved, files })),
@@ -85,7 +79,7 @@ impl Storage {
         }
     }
 
-    /// Writes the work, the newest one last. What it no longer needs is deleted.
+    /// Writes the work, the newest one last. What nobody needs any longer is deleted.
     pub(crate) fn save(&self, work: Work) {
         let mut state = self.state.borrow_mut();
         if state.database.is_none() {
@@ -119,39 +113,34 @@ impl Storage {
         let files = transaction.object_store(FILES).map_err(unclear)?;
         // A second wrapper of the same transaction, for asking what went wrong once the first is used up.
         let watched = files.transaction();
-        let known = std::mem::take(&mut self.state.borrow_mut().known);
         let written = async {
-            // Asked before anything is awaited: when the page is about to go, this much is under way.
-            transaction
-                .object_store(WORK)?
-                .put(&JsValue::from(&work.record), Some(&JsValue::from(LATEST)))?;
-            let put = |key: &String, bytes: &FileBytes| {
+            let works = transaction.object_store(WORK)?;
+            // Another tab of Segue may have written meanwhile: what is there is asked, not remembered. Until this transaction ends, no other begins.
+            let (record, keys) = (works.get(JsValue::from(LATEST))?, files.get_all_keys(None, None)?);
+            let record = record.await?.and_then(|record| record.as_string());
+            let there: BTreeSet<String> = keys.await?.iter().filter_map(JsValue::as_string).collect();
+            let (record, needed) = match work.over(record.as_deref()) {
+                Ok(all) => all,
+                Err(error) => {
+                    log::error!("the work cannot be written down: {error}");
+                    return transaction.abort()?.await;
+                }
+            };
+            works.put(&JsValue::from(record), Some(&JsValue::from(LATEST)))?;
+            for key in there.iter().filter(|key| !needed.contains(*key)) {
+                files.delete(JsValue::from(key))?;
+            }
+            for (key, bytes) in work.files.iter().filter(|(key, _)| !there.contains(*key)) {
                 let value: JsValue = match bytes {
                     FileBytes::Here(bytes) => Uint8Array::from(&bytes[..]).into(),
                     FileBytes::Large(file) => file.blob().into(),
                 };
-                files.put(&value, Some(&JsValue::from(key)))
-            };
-            for (key, bytes) in work.files.iter().filter(|(key, _)| !known.contains(*key)) {
-                put(key, bytes)?;
-            }
-            // Another tab of Segue may have written meanwhile: what is there is asked, not remembered.
-            let there: BTreeSet<String> = (files.get_all_keys(None, None)?.await?.iter())
-                .filter_map(JsValue::as_string)
-                .collect();
-            for key in there.iter().filter(|key| !work.files.contains_key(*key)) {
-                files.delete(JsValue::from(key))?;
-            }
-            for (key, bytes) in work.files.iter().filter(|(key, _)| !there.contains(*key)) {
-                put(key, bytes)?;
+                files.put(&value, Some(&JsValue::from(key)))?;
             }
             transaction.commit()?.await
         };
         match written.await {
-            Ok(TransactionResult::Committed) => {
-                self.state.borrow_mut().known = work.files.keys().cloned().collect();
-                Ok(())
-            }
+            Ok(TransactionResult::Committed) => Ok(()),
             other => {
                 let megabytes = work.files.values().map(FileBytes::len).sum::<u64>() as f64 / 1e6;
                 let name = watched.error().map(|error| error.name()).unwrap_or_default();

@@ -37,7 +37,7 @@ impl Session {
         &self.company
     }
 
-    fn company_ids(&self) -> Vec<String> {
+    pub(super) fn company_ids(&self) -> Vec<String> {
         read_ids(self.params.text(Key::Others)).unwrap_or_default()
     }
 

@@ -1,17 +1,14 @@
-//! Files into the library, and the work back from storage.
+//! Files into the library.
 
+use super::slots::Came;
 use super::{Job, Session};
 use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
 use crate::session::command::{CommandError, Request};
-use crate::session::library::{Entry, Library, Origin, Sample, SourceFile, file_id, file_stem};
-use crate::session::link;
+use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::motion::Motion;
 use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
-use crate::session::reading::{About, Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask, read};
-use crate::session::recipe::{Slot, recipe_params};
-use crate::session::saved::{Saved, SavedEntry, SavedFile};
-use crate::session::undo::History;
+use crate::session::reading::{About, Companion, Content, ReadFile, ReadReport, ReadSetup, ReadTask, read};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -34,6 +31,7 @@ pub(super) struct Reading {
     done: u64,
     /// Whether its clips are in the library already, and only want their motion.
     again: bool,
+    came: Came,
 }
 
 impl Session {
@@ -43,18 +41,37 @@ impl Session {
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+        self.load_that_came(name, bytes, Came::ByHand)
+    }
+
+    /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where the link names a clip for a slot, that one stays,
+    /// and a file that is in the library already takes no slot.
+    ///
+    /// # Errors
+    /// As [`Session::load`].
+    pub fn load_fetched(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+        self.load_that_came(name, bytes, Came::ByLink)
+    }
+
+    fn load_that_came(&mut self, name: &str, bytes: Arc<[u8]>, came: Came) -> Result<Loaded, ImportError> {
         let setup = self.setup_for_new();
         let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
-        self.admit(report, &Content::Here(bytes), &setup)
+        self.admit(report, &Content::Here(bytes), &setup, came)
     }
 
     /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, false)
+        self.begin(name, content, size, setup, false, Came::ByHand)
     }
 
-    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, again: bool) -> u64 {
+    /// As [`Session::begin_reading`], for a file that was fetched; see [`Session::load_fetched`].
+    pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
+        let setup = self.setup_for_new();
+        self.begin(name, content, size, setup, false, Came::ByLink)
+    }
+
+    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, again: bool, came: Came) -> u64 {
         self.tasks += 1;
         let task = ReadTask {
             id: self.tasks,
@@ -64,7 +81,12 @@ impl Session {
             setup,
         };
         self.requests.push(Request::Read(task.clone()));
-        self.reading.push(Reading { task, done: 0, again });
+        self.reading.push(Reading {
+            task,
+            done: 0,
+            again,
+            came,
+        });
         self.revision += 1;
         self.tasks
     }
@@ -76,7 +98,7 @@ impl Session {
             |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
         if !self.reading.iter().any(same) {
             self.mark_unread(&file.sha256, None);
-            self.begin(&file.name, file.content, file.size, setup, true);
+            self.begin(&file.name, file.content, file.size, setup, true, Came::ByHand);
         }
     }
 
@@ -109,7 +131,7 @@ impl Session {
     /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody waits for it any longer.
     pub fn finish_reading(&mut self, task: u64, report: Result<ReadReport, String>) -> Option<Result<Loaded, String>> {
         let at = self.reading.iter().position(|reading| reading.task.id == task)?;
-        let Reading { task, again, .. } = self.reading.remove(at);
+        let Reading { task, again, came, .. } = self.reading.remove(at);
         self.revision += 1;
         let report = match report {
             Ok(report) => report,
@@ -138,7 +160,7 @@ impl Session {
             self.refresh();
             refilled.map_err(|error| error.to_string())
         } else {
-            self.admit(report, &content, &task.setup).map_err(|error| error.to_string())
+            self.admit(report, &content, &task.setup, came).map_err(|error| error.to_string())
         })
     }
 
@@ -177,7 +199,7 @@ impl Session {
     }
 
     /// Brings the clips of a report into the library.
-    fn admit(&mut self, report: ReadReport, content: &Content, setup: &ReadSetup) -> Result<Loaded, ImportError> {
+    fn admit(&mut self, report: ReadReport, content: &Content, setup: &ReadSetup, came: Came) -> Result<Loaded, ImportError> {
         // Of several files some may be good; one alone fails as a whole.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
@@ -198,12 +220,13 @@ impl Session {
                     let has_t_pose = |entry: &Entry| entry.about.as_ref().is_some_and(|about| about.t_pose_first_row);
                     t_poses += usize::from(entries.iter().any(has_t_pose));
                     loaded.warnings.extend(warnings);
-                    if let Some(first) = entries.iter().find(|entry| entry.mesh.is_some()) {
+                    let first = entries.iter().find(|entry| entry.mesh.is_some());
+                    if let Some(first) = first.filter(|entry| self.takes_character(entry, came)) {
                         self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
                     }
                     for entry in entries {
                         loaded.ids.push(entry.id.clone());
-                        self.join(entry);
+                        self.join(entry, came);
                     }
                 }
                 Err(error) => {
@@ -214,7 +237,7 @@ impl Session {
         }
         loaded.warnings.extend(report.notes);
         if skeleton_came {
-            self.read_waiting();
+            self.read_waiting(came);
             self.drop_used_skeletons();
         }
         self.history.settle();
@@ -230,22 +253,59 @@ impl Session {
         Ok(loaded)
     }
 
-    /// Adds a clip, or puts it in the place of the one that is the same.
-    fn join(&mut self, entry: Entry) {
+    /// Adds a clip. What the library has of the same one stays as it was said by hand.
+    fn join(&mut self, entry: Entry, came: Came) {
         let id = entry.id.clone();
-        let awaited = [Slot::A, Slot::B].into_iter().any(|slot| self.slot(slot).is_none());
-        self.library.put(entry);
-        let holds = |session: &Self, slot| session.slot(slot).is_some_and(|entry| entry.id == id);
+        let known = self.library.get(&id).cloned();
+        match &known {
+            Some(known) => self.join_again(known, entry),
+            None => self.library.put(entry),
+        }
         // A skeleton alone plays nothing, nor does a character that comes without a motion of its own; a motion that waits for one may come into its place when it can be read.
-        let plays = self.library.find(&id).is_some_and(|entry| {
+        let plays = self.library.get(&id).is_some_and(|entry| {
             entry
                 .motion
                 .as_ref()
                 .is_some_and(|motion| motion.clip.frames() > usize::from(entry.mesh.is_some()))
         });
-        if plays && !(awaited && [Slot::A, Slot::B].into_iter().any(|slot| holds(self, slot))) {
-            self.offer(&id);
+        // What the link fetches once more, after a reload, has the place that it was given then, or none.
+        if plays && (known.is_none() || came == Came::ByHand) {
+            self.offer(&id, came);
         }
+    }
+
+    /// The same clip has come once more.
+    fn join_again(&mut self, known: &Entry, entry: Entry) {
+        let (Origin::File(had), Origin::File(has)) = (&known.origin, &entry.origin) else {
+            return;
+        };
+        if known.motion.is_some() && (has.companion.is_none() || has.companion == had.companion) {
+            return;
+        }
+        let is_read_as_said = had.options == has.options && known.roles_by_hand.is_none();
+        let file = SourceFile {
+            options: had.options,
+            ..has.clone()
+        };
+        self.library.put(Entry {
+            name: known.name.clone(),
+            roles_by_hand: known.roles_by_hand.clone(),
+            origin: Origin::File(file.clone()),
+            ..entry
+        });
+        if is_read_as_said {
+            return;
+        }
+        if file.is_large() {
+            self.read_again(file);
+        } else if let Err(error) = self.read_at_once(&file) {
+            self.say(Level::Error, error.to_string());
+        }
+    }
+
+    /// Whether a file with a skin becomes the character. One that the link fetches does not when it was here before, or the link names another.
+    fn takes_character(&self, entry: &Entry, came: Came) -> bool {
+        came == Came::ByHand || (self.library.get(&entry.id).is_none() && self.params.text(Key::Character).is_empty())
     }
 
     /// Gives the clips that are in the library what was read anew.
@@ -326,7 +386,7 @@ impl Session {
     }
 
     /// A skeleton has come: motions that waited for it are read.
-    fn read_waiting(&mut self) {
+    fn read_waiting(&mut self, came: Came) {
         let entries = self.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.awaits_skeleton()) {
             let Origin::File(file) = &entry.origin else { continue };
@@ -335,7 +395,7 @@ impl Session {
             } else if let Err(error) = self.read_at_once(file) {
                 self.say(Level::Error, error.to_string());
             } else if self.library.find(&entry.id).is_some_and(|entry| entry.motion.is_some()) {
-                self.offer(&entry.id);
+                self.offer(&entry.id, came);
             }
         }
     }
@@ -376,31 +436,6 @@ impl Session {
         Ok(())
     }
 
-    /// Puts a clip that just came into the slot where a user expects it: what is looked at in View; else A, then B, as long as
-    /// they hold clips that nobody brought.
-    fn offer(&mut self, id: &str) {
-        let brought = |session: &Self, slot| {
-            session
-                .slot(slot)
-                .is_some_and(|entry| matches!(entry.origin, Origin::File(_)) && entry.id != id)
-        };
-        let slot = if self.params.text(Key::Lab) == "view" || !brought(self, Slot::A) {
-            Slot::A
-        } else if !brought(self, Slot::B) {
-            Slot::B
-        } else {
-            return;
-        };
-        if self.slot(Slot::A).is_some_and(|entry| entry.id == id) || self.slot(Slot::B).is_some_and(|entry| entry.id == id) {
-            return;
-        }
-        self.set_unchecked(slot.key(), Value::Text(id.to_owned()));
-        // Times of the clip that was there mean nothing in this one.
-        for key in [Key::LeaveA, Key::EnterB, Key::In, Key::Out] {
-            self.set_unchecked(key, Value::Auto);
-        }
-    }
-
     /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file.
     ///
     /// # Errors
@@ -411,114 +446,15 @@ impl Session {
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         if let Some(clip) = imported.clips.into_iter().next() {
             let about = About::from(&clip);
-            let motion = Arc::new(Motion::analyze(clip.clip, None));
+            let motion = Motion::analyze(clip.clip, None);
             self.library.change(sample.id, |entry| {
-                entry.motion = Some(motion);
+                entry.motion = Some(Arc::new(motion.with_roles(entry.roles_by_hand.as_ref())));
                 entry.about = Some(about);
                 entry.warnings = warnings;
             });
         }
         self.refresh();
         Ok(())
-    }
-
-    /// What is stored of the work.
-    #[must_use]
-    pub fn saved(&self) -> Saved {
-        Saved {
-            query: self.query(),
-            entries: self.library.entries().iter().map(|entry| SavedEntry::from(&**entry)).collect(),
-        }
-    }
-
-    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are gone or no longer read are named in a notice, large
-    /// ones are asked for with [`Request::Read`]. The parameters come from `query` when there is one (a link was opened), else from what was stored.
-    pub fn restore(&mut self, saved: &Saved, mut content_of: impl FnMut(&str) -> Option<Content>, query: Option<&str>) {
-        let mut lost = Vec::new();
-        let mut library = Library::default();
-        for stored in &saved.entries {
-            let entry = match &stored.file {
-                None => match self.library.find(&stored.id) {
-                    Some(entry) => (**entry).clone(),
-                    None if recipe_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
-                    None => continue,
-                },
-                Some(file) => {
-                    let Some(content) = content_of(&file.sha256) else {
-                        lost.push(file.name.clone());
-                        continue;
-                    };
-                    Entry {
-                        roles_by_hand: stored.roles.clone(),
-                        ..Entry::new(&stored.id, &stored.name, Origin::File(file.with(content)))
-                    }
-                }
-            };
-            library.put(Entry {
-                name: stored.name.clone(),
-                ..entry
-            });
-        }
-        if !library.entries().is_empty() {
-            self.library = library;
-        }
-        lost.extend(self.read_stored());
-        if !lost.is_empty() {
-            self.say(
-                Level::Warning,
-                format!(
-                    "Not found in this browser's storage any more: {}. Drop them again.",
-                    lost.join(", ")
-                ),
-            );
-        }
-        // A language that was chosen by hand stays, whatever link the page is opened with, unless the link names another.
-        if let Some((key, chosen)) = link::read(&saved.query).values.into_iter().find(|(key, _)| *key == Key::Lang) {
-            let result = self.params.set(key, chosen);
-            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
-        }
-        self.open_link(query.unwrap_or(&saved.query));
-        self.history = History::default();
-        self.refresh();
-    }
-
-    /// Reads the files of the library that have no motion yet. Returns the names of those that cannot be read any more; their clips are gone.
-    fn read_stored(&mut self) -> Vec<String> {
-        let mut lost = Vec::new();
-        let entries = self.library.entries().to_vec();
-        for entry in entries {
-            let Origin::File(file) = &entry.origin else { continue };
-            let read_by_now = self.library.find(&entry.id).is_none_or(|entry| entry.motion.is_some());
-            if read_by_now {
-                continue;
-            }
-            if file.is_large() {
-                self.read_again(file.clone());
-            } else if self.read_at_once(file).is_err() {
-                self.library.remove(&entry.id);
-                lost.push(file.name.clone());
-            }
-        }
-        lost
-    }
-}
-
-impl SavedFile {
-    fn with(&self, content: Content) -> SourceFile {
-        let size = match &content {
-            Content::Here(bytes) => bytes.len() as u64,
-            Content::Outside(_) => self.size.max(LARGE_BYTES + 1),
-        };
-        SourceFile {
-            name: self.name.clone(),
-            sha256: self.sha256.clone(),
-            content,
-            size,
-            kind: self.kind,
-            companion: self.companion.clone(),
-            index: self.index,
-            options: self.options,
-        }
     }
 }
 

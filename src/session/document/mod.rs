@@ -6,6 +6,8 @@ mod going_round;
 mod graphing;
 mod loading;
 mod panes;
+mod slots;
+mod storing;
 mod teaching;
 
 pub use company::Companion;
@@ -13,16 +15,17 @@ pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
 pub use panes::{Pane, Shown};
+use slots::forget_places;
 pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
 use super::lesson::Shelf;
-use super::library::{Entry, Library, Origin, Sample, split_reference};
+use super::library::{Entry, Library, Origin, Sample};
 use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
-use super::params::{Key, Kind, Params, Value};
+use super::params::{Key, Params, Value};
 use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
@@ -111,6 +114,8 @@ pub struct Session {
     requests: Vec<Request>,
     reading: Vec<Reading>,
     tasks: u64,
+    /// Whether A and B were named with the addresses of the link, or since.
+    named: [bool; 2],
     library_revision: u64,
     revision: u64,
     /// The parameters that the opened link names.
@@ -129,7 +134,7 @@ impl Session {
     pub fn new() -> Self {
         let mut session = Self {
             params: Params::default(),
-            library: built_in_library(),
+            library: built_in_entries().collect(),
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
@@ -149,6 +154,7 @@ impl Session {
             requests: Vec::new(),
             reading: Vec::new(),
             tasks: 0,
+            named: [false; 2],
             library_revision: 0,
             revision: 0,
             named_by_link: Vec::new(),
@@ -335,11 +341,7 @@ impl Session {
                 self.open_link(&query);
                 held = None;
             }
-            Command::Assign(slot, id) => {
-                let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
-                self.set(vec![(slot.key(), Value::Text(id))])?;
-                self.history.settle();
-            }
+            Command::Assign(slot, id) => self.assign(slot, id)?,
             Command::Remove(id) => self.remove(&id)?,
             Command::Rename(id, name) => {
                 let name = name.trim().to_owned();
@@ -478,6 +480,15 @@ impl Session {
                 changed.push(key);
             }
         }
+        let chosen = [Slot::A, Slot::B].map(|slot| changed.contains(&slot.key()).then_some(slot));
+        for slot in chosen.into_iter().flatten() {
+            let before = self.slot(slot).map(|entry| &entry.id);
+            let now = self.library.find(params.text(slot.key())).map(|entry| &entry.id);
+            // Another name of the same clip changes nothing.
+            if before.is_none() || before != now {
+                changed.extend(forget_places(&mut params, slot, &named));
+            }
+        }
         let mut undoable = changed.iter().copied().filter(|key| key.param().is_undoable());
         if let Some(first) = undoable.next() {
             // A slider that is dragged changes one parameter again and again: one step.
@@ -485,14 +496,22 @@ impl Session {
             self.remember(alone.then_some(first));
         }
         self.params = params;
+        self.note_named(&named, changed.contains(&Key::Src));
+        for slot in chosen.into_iter().flatten() {
+            let id = self.params.text(slot.key()).to_owned();
+            self.bring_back(&id);
+        }
+        if changed
+            .iter()
+            .any(|key| matches!(key, Key::Lab | Key::Clips | Key::MatchClips | Key::Others))
+        {
+            self.bring_back_listed();
+        }
         if changed.contains(&Key::Src) {
             self.fetch_sources();
         }
         if changed.iter().any(|key| key.param().group.is_of_lab()) {
             self.grapher.stop(false);
-        }
-        if changed.iter().any(|key| matches!(key, Key::A | Key::B)) {
-            self.library_revision += 1;
         }
         if changed.contains(&Key::Lesson) {
             self.lesson_was_set(named);
@@ -510,7 +529,8 @@ impl Session {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
-        self.take_over(params, &link.problems);
+        self.named = [false; 2];
+        self.take_over(params, &link.problems, &named);
         self.named_by_link.clone_from(&named);
         self.lesson_was_set(named);
     }
@@ -525,31 +545,6 @@ impl Session {
     #[must_use]
     pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
         range_of(&self.params, key)
-    }
-
-    /// Looks for every clip that the parameters name.
-    fn look_for_clips(&mut self) {
-        for slot in [Slot::A, Slot::B] {
-            let reference = self.params.text(slot.key()).to_owned();
-            self.look_for(slot.label(), &reference);
-        }
-        for reference in self.compared_clips() {
-            self.look_for("A clip to compare", &reference);
-        }
-        for (reference, _) in self.also_blended() {
-            self.look_for("A clip of the blend", &reference);
-        }
-    }
-
-    /// The clips that stand side by side.
-    fn compared_clips(&self) -> Vec<String> {
-        let compare = self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
-        let values = compare.map(|compare| compare.values).unwrap_or_default();
-        let clips = values.into_iter().filter_map(|value| match value {
-            Value::Text(id) => Some(id),
-            _ => None,
-        });
-        clips.collect()
     }
 
     fn fetch_sources(&mut self) {
@@ -570,41 +565,6 @@ impl Session {
                 );
             }
         }
-    }
-
-    /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
-    fn look_for(&mut self, what: &str, reference: &str) {
-        if reference.is_empty() || self.bring(reference) {
-            return;
-        }
-        let (name, sha, _) = split_reference(reference);
-        let text = if sha.is_empty() {
-            format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
-        } else {
-            format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
-        };
-        self.notices.miss(reference, text);
-    }
-
-    /// Forgets what was said of clips that have come since, or that nothing names any more.
-    fn forget_found(&mut self) {
-        let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
-        let others = self.also_blended().into_iter().map(|(reference, _)| reference);
-        let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
-        let library = &self.library;
-        self.notices
-            .keep_missing(|reference| library.find(reference).is_none() && named.iter().any(|name| name == reference));
-    }
-
-    /// Whether the clip is in the library, or can be made from its id.
-    fn bring(&mut self, reference: &str) -> bool {
-        if self.library.find(reference).is_some() {
-            return true;
-        }
-        let Some(params) = recipe_params(reference) else { return false };
-        self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
-        self.library_revision += 1;
-        true
     }
 
     fn change_entry(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> Result<(), CommandError> {
@@ -641,6 +601,7 @@ impl Session {
                 .or_else(|| entries.first());
             let next = next.map(|e| e.id.clone()).unwrap_or_default();
             self.set_unchecked(key, Value::Text(next));
+            forget_places(&mut self.params, slot, &[]);
         }
         self.say(Level::Info, format!("{} was removed; undo brings it back.", entry.name));
         Ok(())
@@ -733,18 +694,15 @@ impl Session {
     }
 }
 
-fn built_in_library() -> Library {
-    let mut library = Library::default();
+/// What the library holds at first.
+fn built_in_entries() -> impl Iterator<Item = Entry> {
     let presets = synth::presets()
         .into_iter()
         .map(|preset| (preset.id.to_owned(), preset.title.to_owned(), Origin::Preset));
     let samples = SAMPLES
         .iter()
         .map(|sample| (sample.id.to_owned(), sample.label.to_owned(), Origin::Sample(sample)));
-    for (id, name, origin) in presets.chain(samples) {
-        library.put(Entry::new(id, name, origin));
-    }
-    library
+    presets.chain(samples).map(|(id, name, origin)| Entry::new(id, name, origin))
 }
 
 fn clip_info(entry: &Entry) -> ClipInfo {
@@ -775,6 +733,10 @@ mod loading_tests;
 mod path_tests;
 #[cfg(test)]
 mod registering_tests;
+#[cfg(test)]
+mod slots_tests;
+#[cfg(test)]
+mod storing_tests;
 #[cfg(test)]
 mod teaching_tests;
 #[cfg(test)]

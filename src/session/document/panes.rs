@@ -248,6 +248,12 @@ impl Session {
                 return Err(text);
             }
         };
+        let by_hand = self.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
+        let motion = if by_hand.is_some() {
+            Arc::new(Arc::unwrap_or_clone(motion).with_roles(by_hand.as_ref()))
+        } else {
+            motion
+        };
         self.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
         self.revision += 1;
         Ok(motion)
@@ -257,7 +263,7 @@ impl Session {
     fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, String> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
-            self.bring(&reference);
+            let _was_gone = self.bring_back(&reference) || self.bring(&reference);
         }
         let mut pane = Pane::default();
         self.grapher.guide_by(None);

@@ -173,7 +173,8 @@ impl Session {
         self.shelf.to_set_up = None;
         let Some(state) = state else { return false };
         let params = self.laid_over(std::slice::from_ref(&state), true);
-        self.take_over(params, &state.problems);
+        let named: Vec<Key> = state.values.iter().map(|(key, _)| *key).collect();
+        self.take_over(params, &state.problems, &named);
         true
     }
 
@@ -193,9 +194,11 @@ impl Session {
         let page = self.lesson_page().ok_or(CommandError::NotPossible("no lesson is open"))?;
         let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));
         let problems = link.problems.clone();
-        let params = self.laid_over(&[state, link], false);
+        let links = [state, link];
+        let named: Vec<Key> = links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect();
+        let params = self.laid_over(&links, false);
         self.remember(None);
-        self.take_over(params, &problems);
+        self.take_over(params, &problems, &named);
         Ok(())
     }
 
@@ -219,10 +222,11 @@ impl Session {
         params
     }
 
-    /// Takes over all parameters, as those of a link: says what is wrong with it and what is missing.
-    pub(super) fn take_over(&mut self, params: Params, problems: &[String]) {
+    /// Takes over all parameters, as those of a link that names some of them: says what is wrong with it and what is missing.
+    pub(super) fn take_over(&mut self, params: Params, problems: &[String], named: &[Key]) {
         let sources_changed = params.text(Key::Src) != self.params.text(Key::Src);
         self.params = params;
+        self.note_named(named, sources_changed);
         if !problems.is_empty() {
             self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; ")));
         }

@@ -10,7 +10,7 @@ fn blend_window(session: &mut Session, frames: f64) {
         .unwrap();
 }
 
-fn settle(session: &mut Session) {
+pub(super) fn settle(session: &mut Session) {
     while session.work() {}
 }
 
@@ -159,7 +159,7 @@ fn the_playhead_goes_round_in_the_span_between_the_marks() {
     assert!((session.now_secs() - now - 1.0 / 60.0).abs() < 0.02);
 }
 
-fn made_bvh(seed: f64) -> Arc<[u8]> {
+pub(super) fn made_bvh(seed: f64) -> Arc<[u8]> {
     let mut session = Session::new();
     session
         .apply(Command::Set(vec![
