@@ -105,7 +105,7 @@ pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
 pub use follow::{Followed, GroundPath, PathSearch, follow};
-pub use frames::{FrameSet, Place};
+pub use frames::{FrameSet, JoltSearch, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};
 pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
