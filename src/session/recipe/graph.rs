@@ -4,6 +4,7 @@ mod built;
 mod cast;
 mod grapher;
 mod maker;
+mod plan;
 mod walk;
 mod wanted;
 

@@ -232,19 +232,30 @@ impl Grapher {
 
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
-        if let Some(guide) = &wanted.guide
-            && let Some(Ok(maker)) = self.maker(guide)
-            && maker.is_short(self.now_secs)
-        {
-            return self.step(guide);
+        if let Some(guide) = &wanted.guide {
+            // Without it a walk would go by chance. One that cannot be made has told so: then there is nothing to go like.
+            let is_to_be_made = match self.maker(guide) {
+                Some(Ok(maker)) => maker.is_short(self.now_secs),
+                Some(Err(_)) => false,
+                None => true,
+            };
+            if is_to_be_made {
+                if let Err(problem) = self.step(guide) {
+                    self.settle(guide, Err(problem));
+                }
+                return Ok(());
+            }
         }
         if let Some(at) = self.makers.iter().position(|(known, _)| known == wanted) {
-            let guide = wanted.guide.as_ref().and_then(|guide| self.maker(guide)?.as_ref().ok()?.walk());
-            let guide = guide.map(|walk| (Arc::clone(&walk.passed), guide_window(wanted)));
             let entry = self.makers.remove(at);
             self.makers.push(entry);
             self.stepped = true;
-            if let Some((_, Ok(maker))) = self.makers.last_mut() {
+            if let Some(((_, Ok(maker)), others)) = self.makers.split_last_mut() {
+                let guide = wanted
+                    .guide
+                    .as_deref()
+                    .and_then(|guide| others.iter_mut().find(|(known, _)| known == guide));
+                let guide = guide.and_then(|(_, guide)| Some(guide.as_mut().ok()?.plan()));
                 self.is_ready |= maker.step(self.now_secs, guide)?;
             }
             return Ok(());
@@ -387,13 +398,10 @@ impl Grapher {
         self.is_ready |= maker.is_err();
         self.makers.retain(|(known, _)| known != wanted);
         if self.makers.len() >= 2 * MAX_PANES {
-            drop(self.makers.remove(0));
+            // The one that waits longest, and not what a pane shows, or goes like.
+            let unwanted = self.makers.iter().position(|(known, _)| !self.wanted.contains(known));
+            drop(self.makers.remove(unwanted.unwrap_or(0)));
         }
         self.makers.push((wanted.clone(), maker));
     }
-}
-
-/// The blend window of the walk that another goes like.
-fn guide_window(wanted: &Wanted) -> usize {
-    wanted.guide.as_ref().map_or(0, |guide| guide.graph.options.blend_window)
 }

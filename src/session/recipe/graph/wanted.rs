@@ -100,12 +100,12 @@ impl Wanted {
         })
     }
 
-    /// Likewise, like the walk of other parameters if it goes through another graph.
+    /// Likewise, like the walk of other parameters if it goes through another graph. One that follows a line has its own way to go.
     pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
         let guide = guide
-            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none())
+            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none() && wanted.path.is_empty())
             .map(Box::new);
         Ok(Self { guide, ..wanted })
     }
