@@ -33,6 +33,8 @@ pub struct Candidates {
     pub(super) nearest_cm: Option<f64>,
     /// How many were below the threshold and are not held.
     pub(super) left_out: usize,
+    /// The threshold, centimetres.
+    pub(super) threshold_cm: f64,
 }
 
 impl Candidates {
@@ -66,6 +68,19 @@ impl Candidates {
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
+    }
+
+    /// The threshold by which they were found, centimetres: they serve all lower ones as well.
+    #[must_use]
+    pub fn threshold_cm(&self) -> f64 {
+        self.threshold_cm
+    }
+
+    /// Whether all places that are no farther than this are held.
+    #[must_use]
+    pub fn are_all_within(&self, cm: f64) -> bool {
+        let farthest = self.found.last().map_or(0.0, |last| last.distance_cm);
+        cm <= self.threshold_cm && (self.left_out == 0 || cm < farthest)
     }
 }
 
@@ -318,7 +333,8 @@ impl Picker {
 
     fn thin_out(&mut self) {
         if self.found.len() > MOST_CANDIDATES {
-            self.found.sort_unstable_by(closest_first);
+            // Which they are is enough, they are sorted in the end.
+            self.found.select_nth_unstable_by(MOST_CANDIDATES, closest_first);
             self.left_out += self.found.len() - MOST_CANDIDATES;
             self.found.truncate(MOST_CANDIDATES);
         }
@@ -332,6 +348,7 @@ impl Picker {
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
         }
+            threshold_cm: self.options.edge_threshold_cm,
     }
 }
 
