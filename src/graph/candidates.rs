@@ -226,7 +226,7 @@ pub(super) struct Picker {
 impl Picker {
     pub(super) fn new(set: Arc<FrameSet>, options: GraphOptions) -> Self {
         Self {
-            min_jump: (options.min_jump_secs * set.fps()).round().max(1.0) as usize,
+            min_jump: options.min_jump(&set),
             // A little more than the threshold; what is above it is told by the rounded distance.
             threshold_m: ((options.edge_threshold_cm + 0.001) / set.cm_per_m()) as f32,
             nearest_m: f32::INFINITY,
@@ -275,7 +275,7 @@ impl Picker {
         is_minimum: impl Fn() -> bool,
         alignment: impl Fn(Place, Place) -> Result<Planar, GraphError>,
     ) -> Result<(), GraphError> {
-        if a.clip == b.clip && a.frame.abs_diff(b.frame) < self.min_jump.max(2) {
+        if a.clip == b.clip && a.frame.abs_diff(b.frame) < self.min_jump {
             return Ok(());
         }
         let (there, back) = (self.can_go(a, b), self.can_go(b, a));
