@@ -195,7 +195,8 @@ fn following(a: usize, b: usize, clips: usize) -> (usize, usize, usize) {
     if b + 1 < clips { (a, b + 1, 0) } else { (a + 1, a + 1, 0) }
 }
 
-/// No larger than its eight neighbours; of a plateau the first.
+/// No larger than its eight neighbours; of a plateau the first. It compares the distances as they were summed: products and sums in an order that is the same on every
+/// machine.
 pub(super) fn is_minimum(at: impl Fn(usize, usize) -> Option<f32>, row: usize, column: usize) -> bool {
     let Some(here) = at(row, column) else { return false };
     for r in row.saturating_sub(1)..=row + 1 {
@@ -347,8 +348,8 @@ impl Picker {
             found: self.found,
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
-        }
             threshold_cm: self.options.edge_threshold_cm,
+        }
     }
 }
 
