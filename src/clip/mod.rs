@@ -78,7 +78,7 @@ mod velocity;
 pub(crate) use contacts::stillest_step;
 pub use contacts::{ContactOptions, Contacts, ground_height};
 pub use curves::{CurveKind, joint_curve};
-pub(crate) use jolts::{jolts, turn_change};
+pub(crate) use jolts::{Jolting, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget};

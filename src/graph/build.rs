@@ -1,3 +1,4 @@
+use super::error::above;
 use super::{Candidates, FrameSet, GraphError, Place};
 use crate::math::Planar;
 use petgraph::Direction;
@@ -46,6 +47,35 @@ impl Default for GraphOptions {
 }
 
 impl GraphOptions {
+    /// Windows that are farther apart than this, centimetres, are not alike in any sense: nobody is told to raise a threshold beyond it.
+    pub const MOST_THRESHOLD_CM: f64 = 60.0;
+
+    /// Frames of the shortest jump. From a frame to the next is none.
+    pub(super) fn min_jump(&self, set: &FrameSet) -> usize {
+        ((self.min_jump_secs * set.fps()).round() as usize).max(2)
+    }
+
+    /// Why one cannot go from anywhere to anywhere, where that is so.
+    fn nowhere(&self, set: &FrameSet) -> GraphError {
+        let window = self.blend_window;
+        let least = match self.construction {
+            Construction::Segments { segment_size } => segment_size,
+            Construction::Minima => window + 1,
+        };
+        let long_enough = (0..set.clips().len()).filter(|&clip| set.frames_of(clip) >= least);
+        // From the last window of a clip to its beginning.
+        let farthest = set.longest().saturating_sub(window);
+        if long_enough.count() > 1 || self.min_jump(set) <= farthest {
+            return GraphError::NoMinimum { window };
+        }
+        GraphError::NowhereToGo {
+            window,
+            lower_window: set.longest().checked_sub(self.min_jump(set)).filter(|&window| window > 0),
+            min_jump_secs: self.min_jump_secs,
+            farthest_secs: farthest as f64 / set.fps(),
+        }
+    }
+
     /// Whether a graph of these clips can be made so, for all that can be said before distances are known.
     ///
     /// # Errors
@@ -194,11 +224,15 @@ impl MotionGraph {
             .collect();
         if chosen.is_empty() {
             return Err(match candidates.nearest_cm {
+                Some(nearest_cm) if above(nearest_cm) > GraphOptions::MOST_THRESHOLD_CM => GraphError::TooFar {
+                    window: options.blend_window,
+                    nearest_cm,
+                },
                 Some(nearest_cm) => GraphError::NoTransition {
                     threshold_cm: options.edge_threshold_cm,
                     nearest_cm,
                 },
-                None => GraphError::NowhereToGo,
+                None => options.nowhere(set),
             });
         }
         let mut made = Self {

@@ -33,6 +33,8 @@ pub struct Candidates {
     pub(super) nearest_cm: Option<f64>,
     /// How many were below the threshold and are not held.
     pub(super) left_out: usize,
+    /// The threshold, centimetres.
+    pub(super) threshold_cm: f64,
 }
 
 impl Candidates {
@@ -66,6 +68,19 @@ impl Candidates {
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
+    }
+
+    /// The threshold by which they were found, centimetres: they serve all lower ones as well.
+    #[must_use]
+    pub fn threshold_cm(&self) -> f64 {
+        self.threshold_cm
+    }
+
+    /// Whether all places that are no farther than this are held.
+    #[must_use]
+    pub fn are_all_within(&self, cm: f64) -> bool {
+        let farthest = self.found.last().map_or(0.0, |last| last.distance_cm);
+        cm <= self.threshold_cm && (self.left_out == 0 || cm < farthest)
     }
 }
 
@@ -180,7 +195,8 @@ fn following(a: usize, b: usize, clips: usize) -> (usize, usize, usize) {
     if b + 1 < clips { (a, b + 1, 0) } else { (a + 1, a + 1, 0) }
 }
 
-/// No larger than its eight neighbours; of a plateau the first.
+/// No larger than its eight neighbours; of a plateau the first. It compares the distances as they were summed: products and sums in an order that is the same on every
+/// machine.
 pub(super) fn is_minimum(at: impl Fn(usize, usize) -> Option<f32>, row: usize, column: usize) -> bool {
     let Some(here) = at(row, column) else { return false };
     for r in row.saturating_sub(1)..=row + 1 {
@@ -211,7 +227,7 @@ pub(super) struct Picker {
 impl Picker {
     pub(super) fn new(set: Arc<FrameSet>, options: GraphOptions) -> Self {
         Self {
-            min_jump: (options.min_jump_secs * set.fps()).round().max(1.0) as usize,
+            min_jump: options.min_jump(&set),
             // A little more than the threshold; what is above it is told by the rounded distance.
             threshold_m: ((options.edge_threshold_cm + 0.001) / set.cm_per_m()) as f32,
             nearest_m: f32::INFINITY,
@@ -260,7 +276,7 @@ impl Picker {
         is_minimum: impl Fn() -> bool,
         alignment: impl Fn(Place, Place) -> Result<Planar, GraphError>,
     ) -> Result<(), GraphError> {
-        if a.clip == b.clip && a.frame.abs_diff(b.frame) < self.min_jump.max(2) {
+        if a.clip == b.clip && a.frame.abs_diff(b.frame) < self.min_jump {
             return Ok(());
         }
         let (there, back) = (self.can_go(a, b), self.can_go(b, a));
@@ -318,7 +334,8 @@ impl Picker {
 
     fn thin_out(&mut self) {
         if self.found.len() > MOST_CANDIDATES {
-            self.found.sort_unstable_by(closest_first);
+            // Which they are is enough, they are sorted in the end.
+            self.found.select_nth_unstable_by(MOST_CANDIDATES, closest_first);
             self.left_out += self.found.len() - MOST_CANDIDATES;
             self.found.truncate(MOST_CANDIDATES);
         }
@@ -331,6 +348,7 @@ impl Picker {
             found: self.found,
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
+            threshold_cm: self.options.edge_threshold_cm,
         }
     }
 }

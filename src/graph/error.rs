@@ -1,3 +1,4 @@
+use super::GraphOptions;
 use crate::blend::BlendError;
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
@@ -53,8 +54,8 @@ pub enum GraphError {
     },
     /// No clip has room for a window, with a frame before and one behind it.
     #[error(
-        "a blend window of {window} frames does not fit into the longest clip ({longest} frames) with a frame to either side: lower it to {}, or add a longer clip",
-        longest.saturating_sub(2).max(1)
+        "a blend window of {window} frames does not fit into the longest clip ({longest} frames) with a frame to either side: {}add a longer clip",
+        if *longest > 2 { format!("lower it to {}, or ", longest - 2) } else { String::new() }
     )]
     WindowTooLong {
         /// Frames of the blend window.
@@ -72,7 +73,8 @@ pub enum GraphError {
     },
     /// No transition is good enough.
     #[error(
-        "no two windows are closer than {threshold_cm} cm: raise the threshold above {nearest_cm:.2} cm, where the best transition lies"
+        "no two windows are closer than {threshold_cm} cm: raise the threshold to {:.1} cm, the best transition lies at {nearest_cm:.2} cm",
+        above(*nearest_cm)
     )]
     NoTransition {
         /// The threshold, centimetres.
@@ -80,14 +82,48 @@ pub enum GraphError {
         /// The distance of the best transition there could be, centimetres.
         nearest_cm: f64,
     },
-    /// There is nowhere to go.
+    /// No transition is good enough, and no sensible threshold would do.
     #[error(
-        "there are no two windows far enough from each other to go between: use shorter segments, a shorter minimum jump, or more clips"
+        "the closest two windows are {nearest_cm:.2} cm apart, which is no transition any more: {}add clips that move alike",
+        if *window > 1 { format!("lower the blend window of {window} frames, or ") } else { String::new() }
     )]
-    NowhereToGo,
+    TooFar {
+        /// Frames of the blend window.
+        window: usize,
+        /// The distance of the best transition there could be, centimetres.
+        nearest_cm: f64,
+    },
+    /// There is one clip, and nowhere in it to go.
+    #[error(
+        "with a blend window of {window} frames one can go {:.2} s away at most in the only clip that is long enough, less than the minimum jump of {min_jump_secs} s: lower the jump to {:.2} s, {}or add a clip",
+        floored(*farthest_secs),
+        floored(*farthest_secs),
+        lower_window.map_or_else(String::new, |window| format!("the window to {window}, "))
+    )]
+    NowhereToGo {
+        /// Frames of the blend window.
+        window: usize,
+        /// A window with which one could go somewhere; none where there is none.
+        lower_window: Option<usize>,
+        /// The shortest jump, seconds.
+        min_jump_secs: f64,
+        /// How far one can go, seconds.
+        farthest_secs: f64,
+    },
+    /// There are places to go to, and none of them is better than its neighbours.
+    #[error("no distance of windows of {window} frames has a local minimum where one could go: cut the clips into segments, or add clips")]
+    NoMinimum {
+        /// Frames of the blend window.
+        window: usize,
+    },
     /// The transitions lead to an end, each of them.
     #[error(
-        "every way through the graph of {transitions} transitions comes to an end: raise the threshold above {threshold_cm} cm, or add clips"
+        "every way through the graph of {transitions} transitions comes to an end: {}more clips may lead back",
+        if *threshold_cm < GraphOptions::MOST_THRESHOLD_CM {
+            format!("a threshold above {threshold_cm} cm, or ")
+        } else {
+            String::new()
+        }
     )]
     NoCycle {
         /// Transitions in the graph.
@@ -95,4 +131,14 @@ pub enum GraphError {
         /// The threshold, centimetres.
         threshold_cm: f64,
     },
+}
+
+/// The next tenth of a centimetre, which is what a threshold is set in.
+pub(super) fn above(nearest_cm: f64) -> f64 {
+    (nearest_cm * 10.0 - 1e-6).ceil() / 10.0
+}
+
+/// Hundredths of a second, which a jump is set in.
+fn floored(secs: f64) -> f64 {
+    (secs * 100.0 + 1e-6).floor() / 100.0
 }

@@ -1,6 +1,6 @@
 use super::GraphError;
 use crate::blend::{Source, check};
-use crate::clip::jolts;
+use crate::clip::{Jolting, jolts};
 use crate::registration::{DistanceMatrix, limb_weights};
 use std::sync::{Arc, OnceLock};
 
@@ -21,7 +21,7 @@ pub struct FrameSet {
     starts: Vec<usize>,
     weights: Vec<f64>,
     body_height: f64,
-    /// Per clip and frame, how much the joints jolt; found when it is asked for.
+    /// Per clip and frame, how much the joints jolt; found when it is asked for, if not ahead ([`JoltSearch`]).
     jolts: Vec<OnceLock<Vec<f32>>>,
 }
 
@@ -136,8 +136,9 @@ impl FrameSet {
         self.frames() + self.clips.len()
     }
 
-    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded to 0.001 cm: what is decided by it does not
-    /// hang on a last digit.
+    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded to 0.001 cm: so it is told, ordered, and held
+    /// against a threshold. What lies within a last digit of the middle between two such numbers may still be rounded either way, where the clips
+    /// themselves differ by a last digit.
     #[must_use]
     pub fn rounded_cm(&self, rms_m: f32) -> f64 {
         (f64::from(rms_m) * self.cm_per_m() * 1_000.0).round() / 1_000.0
@@ -146,5 +147,34 @@ impl FrameSet {
     /// Centimetres on the reference body per metre of the clips' own.
     pub(super) fn cm_per_m(&self) -> f64 {
         DistanceMatrix::cm_scale(self.body_height)
+    }
+}
+
+/// Finds how much the joints of a set's clips jolt, which a search for minima asks for, in slices. Without it a search finds it itself, a whole clip at a time: 0.1 s
+/// for 30,000 frames of 31 joints.
+#[derive(Clone, Debug, Default)]
+pub struct JoltSearch {
+    /// The clip that comes next.
+    clip: usize,
+    begun: Option<Jolting>,
+}
+
+impl JoltSearch {
+    /// Looks at about so many more frames of single joints, at least at one joint of one clip; `true` when nothing is left to do. Every call is given the same set.
+    pub fn advance(&mut self, set: &FrameSet, joint_frames: usize) -> bool {
+        let (Some(source), Some(found)) = (set.clips.get(self.clip), set.jolts.get(self.clip)) else {
+            return true;
+        };
+        let clip = source.clip();
+        let joints = (joint_frames / clip.frames().max(1)).max(1);
+        let mut begun = self.begun.take().unwrap_or_else(|| Jolting::new(clip));
+        if begun.advance(clip, joints) {
+            // Who was asked meanwhile has found the same.
+            found.get_or_init(|| begun.finish());
+            self.clip += 1;
+        } else {
+            self.begun = Some(begun);
+        }
+        self.clip >= set.clips.len()
     }
 }

@@ -5,6 +5,7 @@ use crate::math::{Planar, quat, stats, wrap_angle};
 use crate::metrics::{Better, Metric};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Quat, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A spin is more yaw than this, degrees, in [`SPIN_SECS`].
@@ -252,6 +253,8 @@ pub struct WalkMeter {
     first: Option<usize>,
     /// Where each transition begins, and which it is.
     seams: Vec<(usize, PieceSeam)>,
+    /// Frames of a piece that is not measured to its end.
+    within: usize,
     /// Per frame of the set.
     seen: Vec<bool>,
     feet: [Vec<Vec3>; 2],
@@ -271,6 +274,7 @@ impl WalkMeter {
             walked: Walked::default(),
             first: None,
             seams: Vec::new(),
+            within: 0,
             seen: vec![false; set.frames()],
             feet: Default::default(),
             stances: [None; 2],
@@ -282,6 +286,23 @@ impl WalkMeter {
 
     /// The next piece. O(frames × joints).
     pub fn add(&mut self, piece: &WalkPiece, profile: &WalkProfile) {
+        while !self.advance(piece, profile, usize::MAX) {}
+    }
+
+    /// Up to so many frames more of a piece, at least one; `true` when all of it is measured. Until then the next call is given the same piece.
+    pub fn advance(&mut self, piece: &WalkPiece, profile: &WalkProfile, frames: usize) -> bool {
+        if self.within == 0 {
+            self.begin(piece, profile);
+        }
+        let from = self.within;
+        let to = from.saturating_add(frames.max(1)).min(piece.clip.frames());
+        self.measure(piece, from..to, profile);
+        let is_whole = to == piece.clip.frames();
+        self.within = if is_whole { 0 } else { to };
+        is_whole
+    }
+
+    fn begin(&mut self, piece: &WalkPiece, profile: &WalkProfile) {
         self.first.get_or_insert(piece.start);
         self.seams.extend(piece.seam.map(|seam| (piece.start, seam)));
         for frame in piece.stay.from..piece.stay.to {
@@ -295,9 +316,12 @@ impl WalkMeter {
         }
         self.bring_over(&piece.world_from_piece.inverse().after(&self.world_from_last));
         self.world_from_last = piece.world_from_piece;
+    }
+
+    fn measure(&mut self, piece: &WalkPiece, frames: Range<usize>, profile: &WalkProfile) {
         let points = Side::BOTH.map(|side| profile.roles.foot_points(piece.clip.skeleton(), side));
         let mut world = WorldPose::default();
-        for frame in 0..piece.clip.frames() {
+        for frame in frames {
             let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
             let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
             let sources = Sources::of(piece, frame, &profile.set);

@@ -70,9 +70,16 @@
 //! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and
 //! leaves a picture of their distances from afar.
 //!
-//! *The same walk everywhere.* What is chosen depends on sums, products, quotients and square roots of the clips' numbers alone, which are
-//! the same on every machine; distances are rounded to 0.001 cm, probabilities are whole numbers, and chance is a generator (PCG) of whole
-//! numbers. Trigonometry, which differs in its last digit from machine to machine, places bodies but decides nothing.
+//! *The same walk everywhere.* From clips that are equal to the last digit, every machine goes the same way: what is chosen depends on sums,
+//! products, quotients and square roots in one order, which are the same everywhere, and on an arc tangent, an exponential and a power of
+//! [`libm`], which is made of these. Distances are rounded to 0.001 cm before they are ordered or held against the threshold, probabilities are
+//! whole numbers, and chance is a generator (PCG) of whole numbers. The trigonometry of the platform, whose last digit is its own, places bodies
+//! along a walk and decides nothing.
+//!
+//! *As far as the clips are equal.* Clips that are made, or read from angles, went through that trigonometry, and may differ by a last digit
+//! between two machines. Rounding hides nearly all of that; where two neighbours of a minimum are as good as equal, or a distance lies in the
+//! middle between two roundings, a transition may come to lie a frame beside. The walk of the built-in clips is held against one that was
+//! written down (`tests/golden/walk.json`), natively and in the browser.
 //!
 //! # What it does not do
 //!
@@ -105,7 +112,7 @@ pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
 pub use follow::{Followed, GroundPath, PathSearch, follow};
-pub use frames::{FrameSet, Place};
+pub use frames::{FrameSet, JoltSearch, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};
 pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};

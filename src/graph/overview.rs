@@ -19,6 +19,7 @@ pub struct DistanceOverview {
     side: usize,
     /// Of blocks (row, column) with row ≤ column, row by row, metres; infinity where no window starts.
     nearest_m: Vec<f32>,
+    /// They do not go beyond what fits: 93,000 frames have more pairs than that.
     counts: Vec<u32>,
 }
 
@@ -56,7 +57,7 @@ impl DistanceOverview {
             let mut cells = cells.get(..b.numbers().end - first).unwrap_or(cells);
             for &cell in cells.get(usize::from(first == row)..).unwrap_or_default() {
                 if let Some(count) = self.counts.get_mut(((cell * bins_per_m) as usize).min(last)) {
-                    *count += 1;
+                    *count = count.saturating_add(1);
                 }
             }
             let mut column = first;

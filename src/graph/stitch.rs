@@ -17,7 +17,8 @@ pub enum WalkMistake {
     /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the right place, and goes on in the direction in which it
     /// was recorded.
     FirstFrameOnly,
-    /// `atan` in place of `atan2`: half of all clips are laid on with their back to the front.
+    /// `atan` in place of `atan2`: a turn of more than 90° is off by half a turn. So that it shows at every transition, each clip is taken to face the other way in
+    /// its file, and is laid on with its back to the front.
     AtanForAtan2,
 }
 

@@ -280,6 +280,47 @@ fn long_clips_are_tiled_without_a_gap() {
     assert!(same * 100 >= held.found().len() * 98 && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len());
 }
 
+/// What a sentence tells one to do, as options.
+fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, GraphOptions)> {
+    let segments = |segment_size| GraphOptions {
+        construction: Construction::Segments { segment_size },
+        ..*options
+    };
+    let window = |blend_window| GraphOptions { blend_window, ..*options };
+    let threshold = |edge_threshold_cm| GraphOptions {
+        edge_threshold_cm,
+        ..*options
+    };
+    match *error {
+        GraphError::SegmentTooShort { segment, window: found } => {
+            let lowered = (segment > 1).then(|| ("lower the window", window(segment - 1)));
+            [("raise the segment", segments(found + 1))].into_iter().chain(lowered).collect()
+        }
+        GraphError::SegmentTooLong { longest, .. } => vec![("lower the segment", segments(longest))],
+        GraphError::WindowTooLong { longest, .. } if longest > 2 => vec![("lower the window", window(longest - 2))],
+        GraphError::NoTransition { nearest_cm, .. } => {
+            let raised = error::above(nearest_cm);
+            assert!(raised <= GraphOptions::MOST_THRESHOLD_CM && error.to_string().contains(&format!("to {raised:.1} cm")));
+            vec![("raise the threshold", threshold(raised))]
+        }
+        GraphError::NowhereToGo {
+            lower_window,
+            farthest_secs,
+            ..
+        } => {
+            let jump = (farthest_secs * 100.0 + 1e-6).floor() / 100.0;
+            let lowered = GraphOptions {
+                min_jump_secs: jump,
+                ..*options
+            };
+            let window = lower_window.map(|found| ("lower the window", window(found)));
+            [("lower the jump", lowered)].into_iter().chain(window).collect()
+        }
+        GraphError::NoMinimum { window } => vec![("cut", segments(window + 1))],
+        _ => Vec::new(),
+    }
+}
+
 /// For every segment size and blend window there is a graph that can be walked, or a sentence; and what the sentence says does it.
 #[test]
 fn any_setting_answers() {
@@ -291,16 +332,17 @@ fn any_setting_answers() {
         MotionGraph::new(&set, &candidates, options)?.pruned()
     };
     let (mut graphs, mut sentences) = (0, 0);
+    let mut kinds: std::collections::BTreeMap<String, usize> = std::collections::BTreeMap::new();
     for segment_size in 0..=36 {
-        for blend_window in 0..=36 {
-            for threshold in [0.0, 6.0, 1e5] {
+        for blend_window in 1..=36 {
+            for (threshold, min_jump_secs) in [(0.0, 0.05), (6.0, 0.05), (60.0, 0.05), (6.0, 0.6)] {
                 // 0 stands for the other construction.
                 let construction = match segment_size {
                     0 => Construction::Minima,
                     segment_size => Construction::Segments { segment_size },
                 };
                 let options = GraphOptions {
-                    min_jump_secs: 0.05,
+                    min_jump_secs,
                     ..options(construction, blend_window, threshold)
                 };
                 match attempt(&options) {
@@ -318,45 +360,137 @@ fn any_setting_answers() {
                         sentences += 1;
                         let sentence = error.to_string();
                         assert!(sentence.contains(':'), "{sentence}");
-                        let mended = match error {
-                            GraphError::SegmentTooShort { segment, window } if segment_size < 34 => {
-                                let construction = Construction::Segments { segment_size: window + 1 };
-                                let raised = GraphOptions { construction, ..options };
-                                let lowered = GraphOptions {
-                                    blend_window: segment - 1,
-                                    ..options
-                                };
-                                assert!(segment == 1 || !matches!(attempt(&lowered), Err(GraphError::SegmentTooShort { .. })));
-                                raised.check(&set)
-                            }
-                            GraphError::SegmentTooLong { longest, .. } => {
-                                let construction = Construction::Segments { segment_size: longest };
-                                GraphOptions { construction, ..options }.check(&set)
-                            }
-                            GraphError::WindowTooLong { longest, .. } => GraphOptions {
-                                construction: Construction::Minima,
-                                blend_window: longest - 2,
-                                ..options
-                            }
-                            .check(&set),
-                            GraphError::NoTransition { nearest_cm, .. } => {
-                                let raised = GraphOptions {
-                                    edge_threshold_cm: nearest_cm + 0.01,
-                                    ..options
-                                };
-                                let again = attempt(&raised);
-                                assert!(!matches!(again, Err(GraphError::NoTransition { .. })), "{options:?} {again:?}");
-                                Ok(())
-                            }
-                            _ => Ok(()),
-                        };
-                        assert_eq!(mended, Ok(()), "{sentence}");
+                        let mended = remedies(&error, &options);
+                        for (remedy, mended) in &mended {
+                            let again = attempt(mended);
+                            let is_same = again
+                                .as_ref()
+                                .is_err_and(|again| std::mem::discriminant(again) == std::mem::discriminant(&error));
+                            assert!(!is_same, "{sentence}: {remedy} {mended:?} {again:?}");
+                        }
+                        // Each of them is named, and nothing is named that was not tried.
+                        for word in ["lower", "raise", "cut"] {
+                            let tried = mended.iter().filter(|(remedy, _)| remedy.starts_with(word)).count();
+                            // "lower the jump to … s, the window to …"
+                            let named =
+                                sentence.matches(word).count() + usize::from(word == "lower" && sentence.contains(" s, the window to"));
+                            assert_eq!(tried, named, "{sentence} {mended:?}");
+                        }
+                        *kinds
+                            .entry(
+                                sentence
+                                    .split([':', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9'])
+                                    .next()
+                                    .unwrap()
+                                    .to_owned(),
+                            )
+                            .or_insert(0) += 1;
                     }
                 }
             }
         }
     }
     assert!(graphs > 300 && sentences > 300, "{graphs} {sentences}");
+    assert!(kinds.len() >= 5, "{kinds:?}");
+}
+
+/// One short clip: the window leaves no room for the jump.
+#[test]
+fn one_short_clip_is_told_what_would_do() {
+    let set = set_of(&[Walk {
+        frames: 60,
+        ..Walk::default()
+    }]);
+    let mut told = 0;
+    for construction in [
+        Construction::Minima,
+        Construction::Segments { segment_size: 57 },
+        Construction::Segments { segment_size: 20 },
+    ] {
+        for blend_window in [5, 19, 40, 50, 56] {
+            for min_jump_secs in [0.0, 0.2, 0.5, 2.0] {
+                let options = GraphOptions {
+                    min_jump_secs,
+                    ..options(construction, blend_window, 60.0)
+                };
+                let Err(error) = built(&set, &options) else { continue };
+                let is_told = matches!(error, GraphError::NowhereToGo { .. } | GraphError::NoMinimum { .. });
+                told += usize::from(is_told);
+                for (remedy, mended) in remedies(&error, &options) {
+                    let again = built(&set, &mended);
+                    let is_same = again
+                        .as_ref()
+                        .is_err_and(|again| std::mem::discriminant(again) == std::mem::discriminant(&error));
+                    assert!(!is_same, "{error}: {remedy} {mended:?} {again:?}");
+                }
+            }
+        }
+    }
+    assert!(told > 10, "{told}");
+    let short = set_of(&[Walk {
+        frames: 2,
+        ..Walk::default()
+    }]);
+    let sentence = options(Construction::Minima, 1, 6.0).check(&short).unwrap_err().to_string();
+    assert!(!sentence.contains("lower") && sentence.ends_with("add a longer clip"), "{sentence}");
+    let far = |window| GraphError::TooFar { window, nearest_cm: 71.5 }.to_string();
+    assert!(far(30).contains("lower the blend window of 30") && !far(1).contains("lower"));
+}
+
+#[test]
+fn a_long_walk_is_as_curious_as_a_short_one() {
+    let graph = minima_graph();
+    let most_seen = |factor: f64, before: usize| {
+        let mut walker = self::walker(
+            &graph,
+            &WeightOptions {
+                continuity: 0.5,
+                ..WeightOptions::default()
+            },
+            4,
+        );
+        walker = walker.with_visited_discount(factor).unwrap();
+        assert!((0..before).all(|_| walker.next_edge().is_some()));
+        let seen = walker.visits().to_vec();
+        assert!((0..2_000).all(|_| walker.next_edge().is_some()));
+        walker.visits().iter().zip(seen).map(|(now, seen)| now - seen).max().unwrap()
+    };
+    let (plain, early, late) = (most_seen(1.0, 30_000), most_seen(0.7, 0), most_seen(0.7, 30_000));
+    // By chance alone some place is seen again and again.
+    assert!(late <= early && 10 * late < 7 * plain, "{plain} {early} {late}");
+}
+
+fn nodes(graph: &MotionGraph) -> Vec<(usize, usize, usize)> {
+    graph.graph().node_weights().map(|s| (s.clip, s.start, s.end)).collect()
+}
+
+#[test]
+fn what_is_found_for_a_threshold_serves_all_lower_ones() {
+    let set = three([300, 260, 240]);
+    let all = compared(&set);
+    for construction in [Construction::Minima, Construction::Segments { segment_size: 30 }] {
+        let high = options(construction, 12, 20.0);
+        let found = Candidates::find(&all, &all.distances(12).unwrap(), &high).unwrap();
+        assert!(found.are_all_within(20.0) && !found.are_all_within(20.1) && found.threshold_cm() == 20.0);
+        for threshold in [3.0, 8.0, 19.9, 20.0] {
+            let low = options(construction, 12, threshold);
+            match (MotionGraph::new(&set, &found, &low), built(&set, &low)) {
+                (Ok(one), Ok(other)) => assert_eq!((one.jumps(), nodes(&one)), (other.jumps(), nodes(&other))),
+                (one, other) => assert_eq!(one.err(), other.err()),
+            }
+        }
+    }
+}
+
+#[test]
+fn jolts_that_are_found_ahead_are_those_that_a_search_finds() {
+    let (ahead, plain) = (three([60, 50, 40]), three([60, 50, 40]));
+    let mut search = JoltSearch::default();
+    let slices = (0..).take_while(|_| !search.advance(&ahead, 100)).count();
+    assert!(slices > 5 && search.advance(&ahead, 100), "{slices}");
+    for clip in 0..4 {
+        assert_eq!(ahead.jolts(clip), plain.jolts(clip));
+    }
 }
 
 #[test]
@@ -577,6 +711,11 @@ fn pieces_follow_each_other_without_a_jump() {
         assert_eq!(assembling.finish().unwrap(), (clip.crop(0..most).unwrap(), frames[..most].to_vec()));
         assert_eq!((clip.frames(), frames.len()), (start, start));
         let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
+        let mut meter = WalkMeter::new(set);
+        for piece in &pieces {
+            while !meter.advance(piece, &profile, 17) {}
+        }
+        assert_eq!(meter.metrics(&profile), metrics);
         assert_eq!(metrics.seams.len(), pieces.len() - 1);
         assert_eq!((metrics.spins(), metrics.flashes()), (0, 0), "{:?}", metrics.seams);
         assert!(metrics.variety > 0.3 && metrics.variety <= 1.0);
@@ -755,7 +894,6 @@ fn graph_and_walk_are_those_of_numpy() {
         assert!((jump.distance_cm - wanted.0).abs() < 0.0021, "{jump:?} {wanted:?}");
         assert_eq!((pair(jump.leave), pair(jump.enter)), (wanted.1, wanted.2));
     }
-    let nodes = |graph: &MotionGraph| graph.graph().node_weights().map(|s| (s.clip, s.start, s.end)).collect::<Vec<_>>();
     assert_eq!(nodes(&graph), golden.nodes);
     let graph = Arc::new(graph.pruned().unwrap());
     assert_eq!(nodes(&graph), golden.kept);

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// The stream of the generator: any odd number would do, this one is what its author gives.
 const STREAM: u64 = 0x0a02_bdbf_7bb3_c0a7;
-/// The discount is a multiple of 1 / 65,536.
+/// Shares are counted so much finer where they are discounted.
 const DISCOUNT_BITS: u32 = 16;
 
 /// One clip from where it is entered to where it is left.
@@ -36,8 +36,8 @@ pub struct Walker {
     since: (usize, Option<usize>),
     ended: bool,
     visits: Vec<u32>,
-    /// What a way into a node is worth after every visit of it, in 1 / 65,536.
-    discount: u64,
+    /// What a way into a node is worth after every visit of it.
+    discount: f64,
     ahead: VecDeque<EdgeIndex>,
 }
 
@@ -53,7 +53,7 @@ impl Walker {
             since: (since, None),
             ended: graph.graph.node_count() == 0,
             visits: vec![0; graph.graph.node_count()],
-            discount: 1 << DISCOUNT_BITS,
+            discount: 1.0,
             ahead: VecDeque::new(),
             graph,
             choices,
@@ -68,7 +68,8 @@ impl Walker {
         Some(self)
     }
 
-    /// Every visit of a node makes the ways into it less probable: by this factor, 0 to 1, for each. 1 changes nothing, and is what a walk starts with.
+    /// Every visit of a node makes the ways into it less probable: by this factor, 0 to 1, for each. 1 changes nothing, and is what a walk starts with; 0 goes
+    /// where one has been least. Visits count beyond those of the least visited of the ways out, so that a long walk is as curious as a short one.
     ///
     /// # Errors
     /// [`GraphError::Setting`] outside 0 to 1.
@@ -81,7 +82,7 @@ impl Walker {
                 most: 1.0,
             });
         }
-        self.discount = (factor * f64::from(1 << DISCOUNT_BITS)).round() as u64;
+        self.discount = factor;
         Ok(self)
     }
 
@@ -122,19 +123,42 @@ impl Walker {
 
     /// The next edge; `None` in a dead end.
     pub fn next_edge(&mut self) -> Option<EdgeIndex> {
-        let leads_from_here = |edge: &EdgeIndex| self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at);
-        let edge = if let Some(edge) = self.ahead.pop_front().filter(leads_from_here) {
-            edge
-        } else {
-            self.ahead.clear();
-            self.chosen()?
-        };
+        let edge = self.decided()?;
+        self.ahead.pop_front();
         let (_, to) = self.graph.graph.edge_endpoints(edge)?;
         if let Some(visits) = self.visits.get_mut(self.at.index()) {
             *visits = visits.saturating_add(1);
         }
         self.at = to;
+        // Whoever goes edge by edge and then asks for a stay gets the one that he is in.
+        if let Some(super::Way::Jump(index)) = self.graph.graph.edge_weight(edge) {
+            let enter = self.graph.jumps.get(*index)?.enter;
+            self.since = (enter.frame, Some(*index));
+        }
         Some(edge)
+    }
+
+    /// The edge that comes next, in front of those ahead: chance is asked once, and what it said holds.
+    fn decided(&mut self) -> Option<EdgeIndex> {
+        let leads_from_here = |edge: &EdgeIndex| self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at);
+        if let Some(edge) = self.ahead.front().copied().filter(leads_from_here) {
+            return Some(edge);
+        }
+        self.ahead.clear();
+        let edge = self.chosen()?;
+        self.ahead.push_front(edge);
+        Some(edge)
+    }
+
+    /// Goes on in its clip to the first node that begins at `frame` of the clip or behind it: whatever is decided there, what plays before that frame stays. It stops
+    /// where chance has chosen a transition; that one leaves the clip behind `frame` if the stay does that [`Self::next_stay`] would give now.
+    pub fn go_on_to(&mut self, frame: usize) {
+        while self.graph.graph.node_weight(self.at).is_some_and(|stretch| stretch.start < frame) {
+            let way = self.decided().and_then(|edge| self.graph.graph.edge_weight(edge));
+            if !matches!(way, Some(super::Way::Continue)) || self.next_edge().is_none() {
+                break;
+            }
+        }
     }
 
     /// Up to the next transition; the last stay, before a dead end, goes to where its node ends, and `None` comes behind it.
@@ -144,6 +168,7 @@ impl Walker {
         }
         loop {
             let stretch = *self.graph.graph.node_weight(self.at)?;
+            // Before the edge is gone: behind a transition begins the next stay.
             let (from, jump) = self.since;
             let stay = |to: usize| Stay {
                 clip: stretch.clip,
@@ -156,28 +181,19 @@ impl Walker {
                 return Some(stay(stretch.end));
             };
             if let Some(super::Way::Jump(index)) = self.graph.graph.edge_weight(edge) {
-                let jump = self.graph.jumps.get(*index)?;
-                self.since = (jump.enter.frame, Some(*index));
-                return Some(stay(jump.leave.frame));
+                return Some(stay(self.graph.jumps.get(*index)?.leave.frame));
             }
         }
     }
 
-    /// Whole numbers alone: shares of 2³², discounted by multiplications and shifts, and one draw of 64 bits.
+    /// Shares of 2³² as whole numbers, and one draw of 64 bits.
     fn chosen(&mut self) -> Option<EdgeIndex> {
         let ways = self.choices.ways(self.at);
-        let discounted = |&(edge, share): &(EdgeIndex, u64)| {
+        let visits = |edge: EdgeIndex| {
             let to = self.graph.graph.edge_endpoints(edge).map_or(0, |(_, to)| to.index());
-            let mut worth = share << DISCOUNT_BITS;
-            if self.discount < 1 << DISCOUNT_BITS {
-                for _ in 0..self.visits.get(to).copied().unwrap_or(0).min(64) {
-                    worth = ((u128::from(worth) * u128::from(self.discount)) >> DISCOUNT_BITS) as u64;
-                }
-            }
-            // What could be chosen stays choosable, so that a walk does not end where all is known.
-            if share > 0 { worth.max(1) } else { 0 }
+            self.visits.get(to).copied().unwrap_or(0)
         };
-        let worths: Vec<u64> = ways.iter().map(discounted).collect();
+        let worths = discounted(ways.iter().map(|&(edge, share)| (share, visits(edge))), self.discount);
         let whole: u64 = worths.iter().sum();
         let drawn = u128::from(self.rng.next_u64());
         let mut ticket = ((drawn * u128::from(whole)) >> 64) as u64;
@@ -188,5 +204,60 @@ impl Walker {
             ticket -= worth;
         }
         None
+    }
+}
+
+/// What ways are worth, by their shares and how often their ends were visited. Only how much more often one was visited than another counts: however long a walk
+/// is, the least visited way keeps all of its share, and ratios stay what they are until they are too small for the whole numbers.
+///
+/// The power is `libm`'s, which is the same on every machine.
+fn discounted(ways: impl Iterator<Item = (u64, u32)> + Clone, factor: f64) -> Vec<u64> {
+    let finer = |share: u64| share << DISCOUNT_BITS;
+    if factor >= 1.0 {
+        return ways.map(|(share, _)| finer(share)).collect();
+    }
+    // Where one never goes, nobody has been.
+    let open = ways.clone().filter(|(share, _)| *share > 0);
+    let least = open.map(|(_, visits)| visits).min().unwrap_or(0);
+    let worth = |(share, visits): (u64, u32)| match visits.saturating_sub(least) {
+        0 => finer(share),
+        more => (finer(share) as f64 * libm::pow(factor, f64::from(more))) as u64,
+    };
+    ways.map(worth).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_seen_often_is_worth_less_than_what_was_seen_seldom_however_long_a_walk_is() {
+        let shares = [(1_u64 << 32) - 3, 2, 1, 0];
+        for before in [0, 10, 5_000, 3_000_000_000] {
+            for factor in [0.5, 0.9] {
+                let ways = shares
+                    .iter()
+                    .zip([before + 1, before + 21, before, 0])
+                    .map(|(&share, visits)| (share, visits));
+                let worths = discounted(ways, factor);
+                let wanted = [1, 21, 0].map(|more| factor.powi(more)).into_iter().zip(shares);
+                for (worth, (power, share)) in worths.iter().zip(wanted) {
+                    let wanted = (share << DISCOUNT_BITS) as f64 * power;
+                    assert!(
+                        (*worth as f64 - wanted).abs() <= 1.0 + 1e-9 * wanted,
+                        "{before} {factor}: {worth} {wanted}"
+                    );
+                }
+                assert_eq!(worths[3], 0, "what cannot be chosen stays so");
+            }
+        }
+        // Nothing is left of a place but where all others were seen as often.
+        let all_seen = |visits: [u32; 3]| discounted([5, 6, 7].into_iter().zip(visits), 0.0);
+        assert_eq!(all_seen([9, 9, 9]), [5, 6, 7].map(|share: u64| share << DISCOUNT_BITS));
+        assert_eq!(all_seen([9, 8, 9]), [0, 6 << DISCOUNT_BITS, 0]);
+        assert_eq!(
+            discounted([(5, 900), (6, 0)].into_iter(), 1.0),
+            [5 << DISCOUNT_BITS, 6 << DISCOUNT_BITS]
+        );
     }
 }

@@ -144,7 +144,10 @@ impl RunLength {
     #[must_use]
     pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
         let nodes = graph.graph.node_count();
-        let from_nodes = graph.graph.node_indices().flat_map(|node| choices.ways(node).iter().map(move |way| (node, way)));
+        let from_nodes = graph
+            .graph
+            .node_indices()
+            .flat_map(|node| choices.ways(node).iter().map(move |way| (node, way)));
         let edges = graph.graph.raw_edges();
         let targets = choices.ways.iter().map(|(edge, _)| edges[edge.index()].target());
         let (ends, order) = grouped(nodes, targets);

@@ -26,7 +26,7 @@ pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
 pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_of, read_tags, recording_of};
 pub use driving::{DriveMoment, Driven, HandTag, own_words, write_tags};
-pub use graph::{At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, write_jump, write_path, write_visits};
+pub use graph::{At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, graph_of, write_jump, write_path, write_visits};
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub use kept::write_ids;
 pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};

@@ -656,7 +656,7 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "atan for atan2",
-        help: "Half of all clips are laid on with their back to the front: spins.",
+        help: "Every clip is laid on with its back to the front, as if it faced the other way in its file: spins.",
         query: "transform=whole&compare=atan:atan2,atan",
     },
     Experiment {

@@ -1,5 +1,5 @@
 // Measures, and judges nothing: the distances of all windows of 6,000 frames and 31 joints by a compute shader, where Chromium has WebGPU, beside
-// the Graph lab's own way (gemm and running sums on one core). Segue takes its own: what a shader adds up differs from machine to machine in the
+// the Graph lab's own way (a kernel of its own for the products of all pairs of frames, and running sums of them, on one core). Segue takes its own: what a shader adds up differs from machine to machine in the
 // last bits, and a walk must be the same everywhere; so the shader would have to be much faster to be worth a second way for pictures alone.
 //   node tests/browser/compute.mjs [--frames 6000] [--window 30]
 

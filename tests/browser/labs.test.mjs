@@ -1,6 +1,7 @@
 // The labs: each opens with something to see, its numbers are those of its motion, and what it makes can be kept and used in another.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { onBothBackends } from "./harness.mjs";
 import { apart, until } from "./help.mjs";
 
@@ -84,6 +85,50 @@ onBothBackends("the graph lab walks by its seed, and the mistake spins", async (
   await segue("set", { seed: 7, t: 45 });
   assert.ok(apart(await segue("pose", "result", 15), before) < 1e-6, "the same seed, the same walk");
   await until("the walk is longer than what is measured", async () => (await segue("time")) === 45);
+});
+
+/** How every joint but the root is turned against its parent: what a clip keeps wherever it is laid. */
+function bends({ parents, rotations }) {
+  const of = (joint) => rotations.slice(4 * joint, 4 * joint + 4);
+  return parents.map((parent, joint) => {
+    if (parent < 0) return [0, 0, 0, 1];
+    const [[px, py, pz, pw], [x, y, z, w]] = [of(parent), of(joint)];
+    return [
+      pw * x - px * w - py * z + pz * y,
+      pw * y - py * w - pz * x + px * z,
+      pw * z - pz * w - px * y + py * x,
+      pw * w + px * x + py * y + pz * z,
+    ];
+  });
+}
+
+/** How far the joints of two poses are bent apart where they are most, as a difference of quaternions. */
+function bentApart(one, other) {
+  const [a, b] = [bends(one), bends(other)];
+  const dots = a.map((q, joint) => Math.abs(q.reduce((sum, value, axis) => sum + value * b[joint][axis], 0)));
+  return Math.sqrt(Math.max(0, 2 - 2 * Math.min(...dots)));
+}
+
+// Fails when a walk leaves or enters a clip at another frame than the one that is written down, and natively walked: a last digit has then decided.
+onBothBackends("the built-in walk is the same in every browser as it is natively", async ({ open }) => {
+  const golden = JSON.parse(readFileSync(new URL("../golden/walk.json", import.meta.url), "utf8"));
+  const { segue } = await open(golden.link, DESK);
+  await segue("set", {});
+  let [looked, told] = [0, 0];
+  for (const { clip, from, to, start } of golden.stays) {
+    // Behind its transition and before the next one a stay is its clip, frame by frame; a short one has no such frame.
+    const frames = [golden.window, to - from - 1].filter((frame) => frame >= golden.window && frame < to - from && (start + frame) / golden.fps < 60);
+    for (const frame of frames) {
+      const shown = await segue("pose", "result", (start + frame) / golden.fps);
+      const off = bentApart(shown, await segue("pose", clip, (from + frame) / golden.fps));
+      assert.ok(off < 2e-3, `${clip} ${from} to ${to}, at ${start}: ${off} off in frame ${frame}`);
+      looked += 1;
+      // Would it show if it were the next frame? Who stands still looks alike for long.
+      if (bentApart(shown, await segue("pose", clip, (from + frame + 1) / golden.fps)) > 4e-3) told += 1;
+    }
+  }
+  assert.ok(looked > golden.stays.length, `${looked} frames looked at`);
+  assert.ok(2 * told > looked, `of ${looked} frames ${told} can be told from the next one`);
 });
 
 // Fails when a scenario does not turn the character, when weights need a reload, and when what was driven is not in the link.

@@ -1,8 +1,8 @@
 //! What panels and pictures ask about the Graph lab.
 
 use super::Session;
-use crate::session::params::{Key, Value};
-use crate::session::recipe::{Built, Cast, Field, Walk, clips_of, read_path, read_visits};
+use crate::session::params::Key;
+use crate::session::recipe::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -77,7 +77,9 @@ impl Session {
         let before = ids.len();
         ids.retain(|known| known != id);
         if !ids.is_empty() && ids.len() < before {
-            self.set_unchecked(Key::Clips, Value::Text(ids.join(",")));
+            for (key, value) in graph_of(&ids) {
+                self.set_unchecked(key, value);
+            }
         }
     }
 }

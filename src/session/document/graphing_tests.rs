@@ -397,3 +397,276 @@ fn a_walk_is_kept_and_made_again_from_its_link() {
     assert!(matches!(compared.apply(Command::Keep(1)), Err(CommandError::NotPossible(_))));
     assert!(compared.apply(Command::Keep(0)).is_ok());
 }
+
+/// What plays begins where a transition leads to, and goes on to where the next one leaves; the way is one through the graph.
+fn hangs_together(walk: &Walk) {
+    let jumps = walk.built.graph().jumps();
+    for pair in walk.passed.windows(2) {
+        let (stay, next) = (&pair[0].stay, &pair[1].stay);
+        let jump = &jumps[next.jump.unwrap()];
+        assert_eq!((stay.clip, stay.to), (jump.leave.clip, jump.leave.frame));
+        assert_eq!((next.clip, next.from), (jump.enter.clip, jump.enter.frame));
+        assert!(stay.from < stay.to && pair[0].end == pair[1].start);
+        assert_eq!(pair[1].seam.map(|seam| [seam.leave, seam.enter]), Some([jump.leave, jump.enter]));
+    }
+}
+
+#[test]
+fn a_walk_can_set_off_at_any_time() {
+    let segments =
+        "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=15&construction=segments&segment_size=40&edge_threshold=10";
+    for link in [SMALL, segments] {
+        let mut session = opened(link);
+        let before = Arc::clone(walk(&session));
+        let (mut first, mut off_the_way) = (0, 0);
+        let mut known = std::collections::BTreeMap::new();
+        for tenth in (0..180).step_by(4) {
+            let (secs, clip) = (f64::from(tenth) * 0.1, tenth as usize / 4 % 3);
+            set(&mut session, Key::GoTo, Value::Text(format!("{secs}:{clip}")));
+            let now = &Arc::clone(walk(&session));
+            assert_eq!(now.missed, []);
+            hangs_together(now);
+            let due = (secs * 60.0).round() as usize;
+            for frame in 0..due {
+                let same = now.motion.clip.rotations(frame) == before.motion.clip.rotations(frame)
+                    && now.motion.clip.root_translations()[frame] == before.motion.clip.root_translations()[frame]
+                    && now.motion.ground_frames[frame] == before.motion.ground_frames[frame];
+                assert!(same, "{link}: set off at {due}, frame {frame} is another one");
+            }
+            // As soon as there is a way, and not by chance some day.
+            let there = now
+                .passed
+                .iter()
+                .find(|passed| passed.stay.clip == clip && passed.end > due)
+                .unwrap();
+            assert!(there.start < due + 9 * 60, "{link}: {due} {there:?}");
+            assert_eq!(number(&session, 0, "spins"), 0.0, "{link}: {secs}");
+            // What a transition does wherever one comes to it is none of the visit's.
+            let flashes = number(&session, 0, "flashes");
+            let mut alone = 0.0;
+            for seam in now.passed.iter().filter_map(|passed| passed.seam) {
+                let text = write_jump(seam.leave, seam.enter);
+                if !known.contains_key(&text) {
+                    set(&mut session, Key::Jump, Value::Text(text.clone()));
+                    known.insert(text.clone(), number(&session, 0, "flashes"));
+                }
+                alone += known[&text];
+            }
+            session.apply(Command::Reset(Key::Jump)).unwrap();
+            assert!(flashes <= alone, "{link}: {secs}: {flashes}, {alone} of them by themselves");
+            off_the_way += usize::from(way(now) != way(&before));
+            first += usize::from(now.passed[0].stay == before.passed[0].stay);
+        }
+        assert!(off_the_way > 20 && first > 20, "{off_the_way} {first}");
+    }
+    // One visit behind the other, and a second one before the first has come to anything.
+    let mut session = opened(SMALL);
+    for visits in ["3:2,9:0,14:1", "6:2,6.1:0,6.2:1"] {
+        set(&mut session, Key::GoTo, Value::Text(visits.into()));
+        hangs_together(walk(&session));
+    }
+    let reached = (62..150).any(|k| walk(&session).at(f64::from(k) * 0.1).unwrap().place.clip == 1);
+    assert!(reached, "{:?}", way(walk(&session)));
+}
+
+#[test]
+fn where_no_way_leads_is_told() {
+    // Without clips that start and stop nobody comes to rest.
+    let mut session = opened("lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20");
+    let built = Arc::clone(&walk(&session).built);
+    let walked: Vec<bool> = (0..5).map(|clip| built.is_walked(clip)).collect();
+    assert_eq!(walked, [true, true, true, false, false]);
+    assert_eq!(built.clips_from(Place { clip: 0, frame: 50 }), walked[..4]);
+    let before = way(walk(&session));
+    set(&mut session, Key::GoTo, Value::Text("5:3,8:1".into()));
+    assert_eq!(walk(&session).missed, [(5.0, 3)]);
+    assert_ne!(way(walk(&session)), before, "the other visit is made");
+    set(&mut session, Key::GoTo, Value::Text(String::new()));
+    assert_eq!(walk(&session).missed, []);
+    // All of the graph: its parts do not reach each other, or one way only.
+    set(&mut session, Key::Prune, Value::Switch(false));
+    let built = &walk(&session).built;
+    for clip in 0..4 {
+        for frame in (0..built.cast().set().frames_of(clip)).step_by(37) {
+            let place = Place { clip, frame };
+            let reached = built.clips_from(place);
+            let graph = built.graph();
+            let start = graph.node_at(place).unwrap();
+            for (other, reached) in reached.iter().enumerate() {
+                let mut nodes = graph.graph().node_indices();
+                let wanted = nodes
+                    .any(|node| graph.graph()[node].clip == other && petgraph::algo::has_path_connecting(graph.graph(), start, node, None));
+                assert_eq!(*reached, wanted, "{place:?} {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
+    let small = format!("{SMALL}&edge_threshold=10&play=off");
+    let compare = "blend_window:24,12,8";
+    let fresh = opened(&format!("{small}&compare={compare}"));
+    // The first walk is there already, and much more of it.
+    let mut late = opened(&format!("{small}&blend_window=24&t=90"));
+    assert!(walk(&late).motion.clip.duration_secs() > 100.0);
+    late.apply(Command::Set(vec![
+        (Key::Compare, Value::Text(compare.into())),
+        (Key::Time, Value::Number(0.0)),
+    ]))
+    .unwrap();
+    while late.work() {}
+    // Or the walk that goes like it gets long.
+    let mut long = opened(&format!("{small}&compare={compare}"));
+    long.apply(Command::Seek(70.0)).unwrap();
+    while long.work() {}
+    for pane in 1..3 {
+        let wanted = way(walk_of(&fresh, pane));
+        let wanted = &wanted[..wanted.len() - 1];
+        assert!(walk_of(&fresh, pane).is_guided && wanted.len() > 5);
+        for other in [&late, &long] {
+            assert_eq!(way(walk_of(other, pane))[..wanted.len()], *wanted, "pane {pane}");
+        }
+        hangs_together(walk_of(&long, pane));
+    }
+    // One that follows a line goes there, whatever the first one does.
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    let path = write_path(&line);
+    let both = opened(&format!("{small}&walk_path={path}&compare={compare}"));
+    let alone = opened(&format!("{small}&walk_path={path}&blend_window=12"));
+    assert!(!walk_of(&both, 1).is_guided);
+    assert_eq!(walk_of(&both, 1).followed, walk(&alone).followed);
+    let (found, wanted) = (way(walk_of(&both, 1)), way(walk(&alone)));
+    assert_eq!(found[..found.len() - 1], wanted[..found.len() - 1]);
+}
+
+#[test]
+fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
+    let mut session = opened(&format!("{SMALL}&go_to=6:2&jump=0:1-2:3"));
+    session.apply(Command::Remove("walk".into())).unwrap();
+    while session.work() {}
+    assert_eq!(session.graph_clip_ids(), ["walk_left", "walk_right"]);
+    let text = |session: &Session, key| session.params().text(key).to_owned();
+    assert_eq!(
+        (text(&session, Key::GoTo), text(&session, Key::Jump)),
+        (String::new(), String::new())
+    );
+    assert_eq!(session.panes()[0].problem, None);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(
+        (text(&session, Key::GoTo), text(&session, Key::Jump)),
+        ("6:2".into(), "0:1-2:3".into())
+    );
+}
+
+#[test]
+fn clips_may_be_called_anything() {
+    let mut session = opened(SMALL);
+    let motion = session.library().find("walk_left").unwrap().motion.clone().unwrap();
+    let bytes: Arc<[u8]> = crate::formats::bvh::write(&motion.clip, &crate::formats::bvh::WriteOptions::default())
+        .into_bytes()
+        .into();
+    let mut ids = vec!["walk".to_owned()];
+    for name in ["slow, then fast.bvh", "turn (left.bvh", "a) b.bvh", "100 %.bvh"] {
+        session.load(name, Arc::clone(&bytes)).unwrap();
+        ids.push(session.library().entries().last().unwrap().id.clone());
+    }
+    session.apply(Command::Set(crate::session::graph_of(&ids))).unwrap();
+    while session.work() {}
+    assert_eq!(session.graph_clip_ids(), ids);
+    assert_eq!(walk(&session).built.cast().names().len(), 5);
+    session.apply(Command::Remove(ids[1].clone())).unwrap();
+    while session.work() {}
+    ids.remove(1);
+    assert_eq!((session.graph_clip_ids(), walk(&session).built.cast().names().len()), (ids, 4));
+}
+
+#[test]
+fn a_threshold_is_dragged_without_looking_at_the_distances_again() {
+    // More frames than distances are held of.
+    let clips = "walk(make_seconds:30),walk(turn_rate:20,make_seconds:30),run(make_seconds:30),walk(turn_rate:-20,make_seconds:20)";
+    let base = format!("lab=graph&clips={clips}&walk_seconds=10&blend_window=12&edge_threshold=6");
+    let mut session = opened(&base);
+    let field = Arc::clone(session.graph_field().unwrap());
+    assert!(matches!(field.distances(), crate::session::Distances::FromAfar(_)));
+    // How far one is at once.
+    let starts_at = |session: &mut Session, key: Key, value: Value| {
+        session.apply(Command::Set(vec![(key, value)])).unwrap();
+        let before = Arc::clone(walk(session));
+        let (mut first, mut progress) = (None, 0.0);
+        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") {
+            assert!(job.progress >= progress, "{key:?}: {} after {progress}", job.progress);
+            assert!(
+                Arc::ptr_eq(&before, walk(session)) && session.graph_built().is_some(),
+                "the last one stays"
+            );
+            progress = job.progress;
+            first.get_or_insert(progress);
+            assert!(session.work());
+        }
+        while session.work() {}
+        first.unwrap()
+    };
+    let streamed = starts_at(&mut session, Key::MinJump, Value::Number(0.8));
+    assert!(streamed < 0.2, "{streamed}");
+    for threshold in [4.0, 9.0, 12.0, 5.0] {
+        let known = starts_at(&mut session, Key::EdgeThreshold, Value::Number(threshold));
+        assert!(known >= 0.85, "{threshold}: {known}");
+        let alone = crate::graph::GraphOptions {
+            edge_threshold_cm: threshold,
+            ..*walk(&session).built.options()
+        };
+        assert_eq!(*walk(&session).built.options(), alone);
+    }
+    let known = starts_at(&mut session, Key::Prune, Value::Switch(false));
+    assert!(known >= 0.85, "{known}");
+    assert!(Arc::ptr_eq(session.graph_field().unwrap(), &field) && !walk(&session).built.lacks_some());
+    // The graph is the one that is made when nothing else was asked before.
+    let direct = opened(&base.replace("edge_threshold=6", "edge_threshold=5&min_jump=0.8&prune=off"));
+    assert_eq!(direct_jumps(&session), direct_jumps(&direct));
+    assert!(direct_jumps(&session).len() > 10);
+}
+
+fn direct_jumps(session: &Session) -> Vec<crate::graph::Jump> {
+    walk(session).built.whole().jumps().to_vec()
+}
+
+/// A stay of the walk that is written down: the clip's id, the frames that play, and the walk's frame at which it begins.
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct GoldenStay {
+    clip: String,
+    from: usize,
+    to: usize,
+    start: usize,
+}
+
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct GoldenWalk {
+    link: String,
+    fps: f64,
+    window: usize,
+    stays: Vec<GoldenStay>,
+}
+
+/// A minute of the walk that everybody sees who opens this link, here and in the browser (`labs.test.mjs`). Where a change makes another walk on purpose, write down
+/// what the test found.
+#[test]
+fn the_walk_is_the_one_that_is_written_down() {
+    let text = include_str!("../../../tests/golden/walk.json");
+    let golden: GoldenWalk = serde_json::from_str(text).unwrap();
+    let session = opened(&golden.link);
+    let (walk, ids) = (walk(&session), session.graph_clip_ids());
+    let stays = walk.passed.iter().filter(|passed| passed.start < 60 * 60).map(|passed| GoldenStay {
+        clip: ids[passed.stay.clip].clone(),
+        from: passed.stay.from,
+        to: passed.stay.to,
+        start: passed.start,
+    });
+    let found = GoldenWalk {
+        stays: stays.collect(),
+        fps: walk.motion.clip.fps(),
+        window: walk.built.options().blend_window,
+        link: golden.link.clone(),
+    };
+    assert!(found == golden, "another walk: {}", serde_json::to_string_pretty(&found).unwrap());
+}

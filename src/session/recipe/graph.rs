@@ -4,6 +4,7 @@ mod built;
 mod cast;
 mod grapher;
 mod maker;
+mod plan;
 mod walk;
 mod wanted;
 
@@ -12,7 +13,7 @@ pub use cast::Cast;
 pub(in crate::session) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub(in crate::session) use wanted::{clips_of, read_path, read_visits};
-pub use wanted::{write_jump, write_path, write_visits};
+pub use wanted::{graph_of, write_jump, write_path, write_visits};
 
 use super::{Outcome, Slot, Source, Transition};
 use std::sync::Arc;

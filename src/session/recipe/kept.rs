@@ -188,7 +188,7 @@ fn written(param: &Param, value: &Value) -> String {
 }
 
 /// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
-pub(super) fn parts(list: &str) -> Option<Vec<&str>> {
+fn parts(list: &str) -> Option<Vec<&str>> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
     for (at, letter) in list.char_indices() {
         match letter {

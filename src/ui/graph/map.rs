@@ -95,7 +95,7 @@ impl Drawn {
             })?;
             let fate = match built.ring_of(node.index()) {
                 Some(0) => Fate::Main,
-                Some(_) => Fate::Apart,
+                Some(ring) => Fate::Apart(ring - 1),
                 None if dead.contains(&node) => Fate::End,
                 None => Fate::Astray,
             };

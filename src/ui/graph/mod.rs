@@ -23,13 +23,14 @@ fn shows_jump(session: &Session) -> bool {
     !session.params().text(Key::Jump).is_empty()
 }
 
-/// Plays one transition; the walk is kept where it is.
+/// Plays one transition, also where all stands still: whoever asks for it wants to see it. The walk is kept where it is.
 fn open_jump([leave, enter]: [Place; 2], session: &Session, state: &mut UiState, out: &mut Out) {
     if !shows_jump(session) {
         state.walk_secs = session.now_secs();
     }
     out.set_once(Key::Jump, Value::Text(write_jump(leave, enter)));
     out.commands.push(Command::Seek(0.0));
+    out.set(Key::Play, Value::Switch(true));
 }
 
 /// Goes back to the walk, where it was.
@@ -63,6 +64,12 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
         jump.distance_cm,
         probability,
     ))
+}
+
+/// Why a visit came to nothing.
+fn no_way(built: &Built, (secs, clip): (f64, usize)) -> String {
+    let name = built.cast().names().get(clip).map_or("", String::as_str);
+    format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")
 }
 
 /// A sentence in small type.

@@ -1,6 +1,6 @@
 //! What is set of graph and walk.
 
-use super::{close_jump, map, note_ui, shows_jump, table};
+use super::{close_jump, map, no_way, note_ui, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
@@ -9,8 +9,9 @@ use crate::ui::param_row::{Detail, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align, Layout as Flow, RichText, Ui};
-use segue::session::{Command, Key, Session, Value, link, write_visits};
+use eframe::egui::{Align, Id, Layout as Flow, RichText, Ui};
+use segue::session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
+use std::sync::Arc;
 
 /// All rows of the lab.
 pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -79,8 +80,8 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                     ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
                         let leave_out = format!("{} {name}", text::LEAVE_OUT);
                         if ids.len() > 1 && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
-                            let rest: Vec<&str> = ids.iter().filter(|other| *other != id).map(String::as_str).collect();
-                            set_clips(&rest.join(","), out);
+                            let rest: Vec<String> = ids.iter().filter(|other| *other != id).cloned().collect();
+                            set_clips(&rest, out);
                         }
                         if let Some(secs) = secs {
                             ui.label(
@@ -99,21 +100,18 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         .map(|(index, entry)| (index, entry.name.as_str()))
         .collect();
     if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui).and_then(|index| entries.get(index)) {
-        set_clips(&format!("{},{}", ids.join(","), entry.id), out);
+        let mut all = ids.clone();
+        all.push(entry.id.clone());
+        set_clips(&all, out);
     }
     if let Some(words) = session.graph_cast().and_then(|cast| text::moved_onto_first(cast)) {
         note_ui(&words, palette.muted, ui);
     }
 }
 
-/// Another set of clips: places in the old ones mean nothing any more.
-fn set_clips(ids: &str, out: &mut Out) {
-    let none = || Value::Text(String::new());
-    out.commands.push(Command::Set(vec![
-        (Key::Clips, Value::Text(ids.to_owned())),
-        (Key::GoTo, none()),
-        (Key::Jump, none()),
-    ]));
+/// Another set of clips.
+fn set_clips(ids: &[String], out: &mut Out) {
+    out.commands.push(Command::Set(graph_of(ids)));
     out.commands.push(Command::Settle);
 }
 
@@ -166,8 +164,15 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
     }
     if let Some(built) = session.graph_built() {
-        let walk = session.graph_walk().filter(|walk| std::sync::Arc::ptr_eq(&walk.built, built));
+        let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
         note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
+        if built.lacks_some() {
+            note_ui(
+                "More transitions lie below the threshold than can be held: the closest are.",
+                palette.warning,
+                ui,
+            );
+        }
     }
     param_row_ui(Key::Prune, &Detail::default(), session, out, ui);
     param_row_ui(Key::MinJump, &Detail::default(), session, out, ui);
@@ -204,9 +209,17 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let visits = session.graph_visits();
     if let Some(cast) = session.graph_cast() {
-        let options: Vec<(usize, &str)> = cast.names().iter().map(String::as_str).enumerate().collect();
+        let reached = reached(session, ui);
+        let options: Vec<(usize, &str)> = (cast.names().iter().map(String::as_str).enumerate())
+            .filter(|(clip, _)| reached.get(*clip).copied().unwrap_or(true))
+            .collect();
         if let Some(clip) = kit::choice_row_ui(text::GO_TO_CLIP, usize::MAX, &options, ui) {
             go_to(clip, session, out);
+        }
+    }
+    if let Some(walk) = session.graph_walk() {
+        for &missed in &walk.missed {
+            note_ui(&no_way(&walk.built, missed), palette.warning, ui);
         }
     }
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
@@ -237,6 +250,39 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
         note_ui(&text::dead_end(walk.motion.clip.duration_secs()), palette.warning, ui);
     }
+}
+
+/// The clips that the walk can go to from where it is; none before there is a walk.
+fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
+    let at = session
+        .graph_walk()
+        .and_then(|walk| Some((walk, walk.at(session.now_secs())?.place)));
+    let Some((walk, place)) = at.filter(|(walk, _)| !walk.is_jump) else {
+        return Arc::default();
+    };
+    // All that can be reached from a stretch can be reached from all of it, and to find it takes a while in a large graph.
+    let node = walk.built.graph().node_at(place).map(|node| node.index());
+    let id = Id::unique("graph reached");
+    let known: Option<Reached> = ui.data(|data| data.get_temp(id));
+    if let Some(known) = known.filter(|known| Arc::ptr_eq(&known.built, &walk.built) && known.node == node) {
+        return known.clips;
+    }
+    let clips = Arc::new(walk.built.clips_from(place));
+    let found = Reached {
+        built: Arc::clone(&walk.built),
+        node,
+        clips: Arc::clone(&clips),
+    };
+    ui.data_mut(|data| data.insert_temp(id, found));
+    clips
+}
+
+/// The clips that can be reached from a node.
+#[derive(Clone)]
+struct Reached {
+    built: Arc<Built>,
+    node: Option<usize>,
+    clips: Arc<Vec<bool>>,
 }
 
 /// The walk sets off for a clip where it is now; what was to come later is given up.

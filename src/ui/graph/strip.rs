@@ -1,7 +1,7 @@
 //! Below the stage: the walk in time, and the graph as bars and arcs.
 
 use super::map::Drawn;
-use super::{jump_words, named, open_jump, rows};
+use super::{jump_words, named, no_way, open_jump, rows};
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
@@ -15,6 +15,9 @@ use std::sync::Arc;
 
 /// More seams than these are no marks any more.
 const MOST_SEAMS: usize = 160;
+
+/// How long one is told that there is no way, seconds of the walk.
+const TOLD_SECS: f64 = 5.0;
 
 /// The whole panel of a walk.
 pub(in crate::ui) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -110,14 +113,19 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     }
 }
 
-/// The transition under the pointer, else the one that plays, else where the walk is.
+/// The transition under the pointer, else why it does not go to the clip that was pressed, else the transition that plays, else where the walk is.
 fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
     let built = session.graph_built();
     let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends));
     if let Some(words) = pointed {
         return words;
     }
-    let Some(at) = walk.at(session.now_secs()) else {
+    let now = session.now_secs();
+    let told = |(secs, _): &&(f64, usize)| (0.0..TOLD_SECS).contains(&(now + 0.05 - secs));
+    if let Some(&missed) = walk.missed.iter().rev().find(told) {
+        return no_way(&walk.built, missed);
+    }
+    let Some(at) = walk.at(now) else {
         return String::new();
     };
     let seam = walk

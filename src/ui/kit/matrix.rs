@@ -12,7 +12,7 @@ use eframe::egui::{
 pub(crate) const TILE: usize = 256;
 /// A mark is reached within this distance, points.
 const REACH: f32 = 9.0;
-/// More marks than these are points that nobody can tell apart.
+/// Of what is in view, more marks than these are points that nobody can tell apart.
 const MOST_MARKS: usize = 2_500;
 
 /// A part of the picture: values are squares of `factor` cells.
@@ -157,19 +157,17 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         painter.vline(at.x, field.y_range(), line);
         painter.hline(field.x_range(), at.y, line);
     }
+    let seen = seen_marks(matrix, &window, side);
     let hovered = response.hover_pos().and_then(|pos| {
         let off = |mark: &MatrixMark| place(mark.at[0] + 0.5, mark.at[1] + 0.5).distance(pos);
-        let marks = matrix.marks.iter().take(MOST_MARKS).enumerate();
-        let nearest = marks.map(|(index, mark)| (index, off(mark))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let marks = seen.iter().map(|&(index, mark)| (index, off(mark)));
+        let nearest = marks.min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
     });
     // Small where there are many, larger the nearer one comes.
     let radius_of_mark = ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4)).min(6.5);
-    for (index, mark) in matrix.marks.iter().take(MOST_MARKS).enumerate().rev() {
+    for &(index, mark) in seen.iter().rev() {
         let at = place(mark.at[0] + 0.5, mark.at[1] + 0.5);
-        if !field.expand(4.0).contains(at) {
-            continue;
-        }
         let color = if mark.faint {
             palette.muted.gamma_multiply(0.6)
         } else {
@@ -210,6 +208,28 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         at,
         clicked: hovered.filter(|_| response.clicked()),
     }
+}
+
+/// The marks in view with their indices: the most important first, and the one that is lit. The nearer one comes, the more of the others are among them.
+fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize, &'a MatrixMark)> {
+    // A ring at the edge is seen, too.
+    let (margin, cells) = (4.0 * window.cells, window.cells * side);
+    let within = |at: f32, corner: f32| (corner - margin..=corner + cells + margin).contains(&(at + 0.5));
+    let is_seen = |mark: &MatrixMark| within(mark.at[0], window.corner.y) && within(mark.at[1], window.corner.x);
+    let mut seen: Vec<_> = matrix
+        .marks
+        .iter()
+        .enumerate()
+        .filter(|(_, mark)| is_seen(mark))
+        .take(MOST_MARKS)
+        .collect();
+    let lit = matrix
+        .lit
+        .filter(|lit| seen.binary_search_by_key(lit, |(index, _)| *index).is_err());
+    let lit = lit.and_then(|lit| Some((lit, matrix.marks.get(lit)?)));
+    // Drawn last, it would lie under all others: the last one is drawn first.
+    seen.splice(0..0, lit.filter(|(_, mark)| is_seen(mark)));
+    seen
 }
 
 /// Cells per texel, a power of two, so that a texel is about as large as a pixel.
@@ -297,6 +317,44 @@ pub(crate) fn tiles_id() -> Id {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whoever_comes_nearer_sees_the_marks_that_there_was_no_room_for() {
+        // A hundred to a side, ever less important from the top to the bottom.
+        let marks: Vec<MatrixMark> = (0..10_000)
+            .map(|index| MatrixMark {
+                at: [(index / 100) as f32 * 10.0, (index % 100) as f32 * 10.0],
+                faint: false,
+            })
+            .collect();
+        let matrix = Matrix {
+            label: "",
+            size: 1000,
+            known: 1,
+            parts: &[],
+            marks: &marks,
+            lit: Some(9_999),
+            now: None,
+        };
+        let whole = Window::whole(1000.0, 500.0);
+        let seen = seen_marks(&matrix, &whole, 500.0);
+        assert_eq!(
+            (seen.len(), seen[0].0, seen[1].0, seen[MOST_MARKS].0),
+            (MOST_MARKS + 1, 9_999, 0, MOST_MARKS - 1)
+        );
+        // The lower right corner, where none was marked but the one that is lit.
+        let near = whole.zoomed(4.0, vec2(500.0, 500.0));
+        let seen: Vec<usize> = seen_marks(&matrix, &near, 500.0).iter().map(|(index, _)| *index).collect();
+        let wanted = (0..10_000).filter(|index| index / 100 >= 75 && index % 100 >= 75);
+        assert_eq!(seen, wanted.collect::<Vec<_>>());
+        // Where it does not lie in view it is not drawn.
+        let away = whole.zoomed(4.0, vec2(0.0, 0.0));
+        assert!(
+            seen_marks(&matrix, &away, 500.0)
+                .iter()
+                .all(|(index, _)| index / 100 < 26 && index % 100 < 26)
+        );
+    }
 
     #[test]
     fn what_is_under_the_pointer_stays_there_and_nothing_lies_outside() {

@@ -10,8 +10,8 @@ use eframe::egui::{Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense,
 pub(crate) enum Fate {
     /// One can go on for ever, and come back.
     Main,
-    /// Likewise, apart from the main part.
-    Apart,
+    /// Likewise, apart from the main part: in which of the other parts.
+    Apart(usize),
     /// One comes to an end, or cannot come here.
     Astray,
     /// Here it ends.
@@ -150,11 +150,15 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     for stretch in strip.stretches {
         let color = match stretch.fate {
             Fate::Main => palette.b,
-            Fate::Apart => palette.a,
+            Fate::Apart(part) => palette.others[part % palette.others.len()],
             Fate::Astray | Fate::End => palette.line_strong,
         };
         // The end of one bar is not the beginning of the next.
-        let rect = bar_of(stretch.from as f32, stretch.to as f32 - 0.01);
+        let mut rect = bar_of(stretch.from as f32, stretch.to as f32 - 0.01);
+        // A hairline tells it from the next one, where that does not take most of it away.
+        if rect.width() >= 4.0 * theme.hairline() {
+            rect.max.x -= theme.hairline();
+        }
         painter.rect_filled(rect, 0.0, color.gamma_multiply(if stretch.fate == Fate::Main { 0.75 } else { 1.0 }));
         if stretch.fate == Fate::End {
             let end = Rect::from_min_max(pos2((rect.right() - 3.0).max(rect.left()), rect.top()), rect.max);

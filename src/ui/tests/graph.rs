@@ -62,6 +62,8 @@ fn the_graph_lab_does_what_is_pressed() {
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Jump), segue::session::write_jump(ends[0], ends[1]));
     assert!(outcome(harness.state()).transition.is_some());
+    let plays = harness.state().session.params().is_on(Key::Play);
+    assert!(plays, "a transition that is asked for is seen, also where all stood still");
     picture("graph-transition-dark", &mut harness);
     press(text::BACK_TO_WALK, &mut harness);
     done(&mut harness);
@@ -125,6 +127,37 @@ fn the_graph_lab_does_what_is_pressed() {
     press("First frame only", &mut harness);
     done(&mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
+}
+
+#[test]
+fn whoever_sends_the_walk_where_no_way_leads_is_told() {
+    let link = "lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20&play=off";
+    for theme in [DARK, LIGHT] {
+        let mut harness = harness(DESK, theme, page(link));
+        let strip = harness.get_by_label(text::GRAPH_STRIP).rect();
+        let bar = strip.left_bottom() + vec2(0.9 * strip.width(), -20.0);
+        harness.drag_at(bar);
+        harness.drop_at(bar);
+        harness.run();
+        while harness.state_mut().session.work() {}
+        harness.run();
+        let walk = harness.state().session.graph_walk().unwrap();
+        assert_eq!(walk.missed, [(0.0, 3)]);
+        let sentence = "No way leads to Idle from where the walk is at 0.0 s: a higher threshold may make one.";
+        assert!(harness.query_all_by_label(sentence).count() > 0);
+        picture(if theme == DARK { "graph-no-way-dark" } else { "graph-no-way-light" }, &mut harness);
+    }
+}
+
+#[test]
+fn parts_that_do_not_reach_each_other_are_told_apart() {
+    let link = "lab=graph&clips=walk,run,idle,jump,walk_left&walk_seconds=20&edge_threshold=5&prune=off&play=off";
+    for (name, theme) in [("graph-parts-dark", DARK), ("graph-parts-light", LIGHT)] {
+        let mut harness = harness(DESK, theme, page(link));
+        let rings = harness.state().session.graph_built().unwrap().rings().len();
+        assert!(rings > 1, "{rings}");
+        picture(name, &mut harness);
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@ use super::Cast;
 use super::wanted::GraphKey;
 use crate::graph::{Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
 use petgraph::graph::NodeIndex;
+use petgraph::visit::Dfs;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -116,29 +117,39 @@ pub struct Built {
     /// Their components, in the same order.
     ring_components: Vec<usize>,
     dead_ends: usize,
+    lacks_some: bool,
+    /// Per clip, whether anything of it is walked in.
+    is_walked: Vec<bool>,
 }
 
 /// A [`Built`] on its way: of very many transitions each slice takes milliseconds.
 #[derive(Debug)]
 pub(super) enum Building {
     /// Where one may go over.
-    Found(Candidates),
-    /// Stretches and transitions.
-    Linked(MotionGraph),
+    Found(Arc<Candidates>),
+    /// Stretches and transitions, and whether there are more than are held.
+    Linked(MotionGraph, bool),
     /// Which of them hang together.
-    Parted(Arc<MotionGraph>, Vec<Vec<NodeIndex>>),
+    Parted(Arc<MotionGraph>, bool, Vec<Vec<NodeIndex>>),
 }
 
 impl Building {
     /// The next slice: what is left, or the graph.
     pub(super) fn advance(self, cast: &Arc<Cast>, key: GraphKey) -> Result<ControlFlow<Built, Self>, GraphError> {
         Ok(match self {
-            Self::Found(candidates) => ControlFlow::Continue(Self::Linked(MotionGraph::new(cast.set(), &candidates, &key.options)?)),
-            Self::Linked(whole) => {
-                let components = whole.components();
-                ControlFlow::Continue(Self::Parted(Arc::new(whole), components))
+            Self::Found(candidates) => {
+                let lacks_some = !candidates.are_all_within(key.options.edge_threshold_cm);
+                let whole = MotionGraph::new(cast.set(), &candidates, &key.options)?;
+                ControlFlow::Continue(Self::Linked(whole, lacks_some))
             }
-            Self::Parted(whole, components) => ControlFlow::Break(Built::new(cast, whole, &components, key)?),
+            Self::Linked(whole, lacks_some) => {
+                let components = whole.components();
+                ControlFlow::Continue(Self::Parted(Arc::new(whole), lacks_some, components))
+            }
+            Self::Parted(whole, lacks_some, components) => {
+                let built = Built::new(cast, whole, &components, key)?;
+                ControlFlow::Break(Built { lacks_some, ..built })
+            }
         })
     }
 }
@@ -169,7 +180,13 @@ impl Built {
                 rings.push(stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64 / all);
             }
         }
+        let mut is_walked = vec![false; cast.set().clips().len()];
+        for stretch in graph.graph().node_weights() {
+            is_walked[stretch.clip] = true;
+        }
         Ok(Self {
+            lacks_some: false,
+            is_walked,
             cast: Arc::clone(cast),
             key,
             dead_ends: whole.dead_ends().len(),
@@ -228,6 +245,36 @@ impl Built {
     #[must_use]
     pub fn dead_ends(&self) -> usize {
         self.dead_ends
+    }
+
+    /// Whether there are more transitions below the threshold than can be held: the closest are.
+    #[must_use]
+    pub fn lacks_some(&self) -> bool {
+        self.lacks_some
+    }
+
+    /// Whether anything of a clip is walked in: from everywhere, where the graph is pruned.
+    #[must_use]
+    pub fn is_walked(&self, clip: usize) -> bool {
+        self.is_walked.get(clip).copied().unwrap_or(false)
+    }
+
+    /// The clips that ways lead to from a place, that one's included; of a graph that is pruned, all that are walked in.
+    #[must_use]
+    pub fn clips_from(&self, place: Place) -> Vec<bool> {
+        let start = self.graph.node_at(place);
+        let Some(start) = start.filter(|_| !self.key.pruned) else {
+            return self.is_walked.clone();
+        };
+        let graph = self.graph.graph();
+        let mut reached = vec![false; self.is_walked.len()];
+        let mut search = Dfs::new(graph, start);
+        while let Some(node) = search.next(graph) {
+            if let Some(slot) = graph.node_weight(node).and_then(|stretch| reached.get_mut(stretch.clip)) {
+                *slot = true;
+            }
+        }
+        reached
     }
 
     /// The index of a transition in the whole graph.

@@ -1,4 +1,4 @@
-use crate::graph::{FrameSet, WalkProfile};
+use crate::graph::{FrameSet, JoltSearch, WalkProfile};
 use crate::session::motion::Motion;
 use crate::session::recipe::Retargeted;
 use crate::session::recipe::pair::source_of;
@@ -12,6 +12,7 @@ pub struct Cast {
     retargeted: Vec<Option<Arc<Retargeted>>>,
     set: Arc<FrameSet>,
     profile: WalkProfile,
+    jolts: JoltSearch,
 }
 
 /// So many frames of single joints are measured in one slice.
@@ -36,13 +37,14 @@ impl Cast {
             retargeted,
             set,
             profile,
+            jolts: JoltSearch::default(),
         })
     }
 
     /// A slice of that; `true` when nothing is left.
     pub(super) fn advance(&mut self) -> bool {
         let joints = (JOINT_FRAMES / self.set.frames().max(1)).max(1);
-        self.profile.advance(joints)
+        self.profile.advance(joints) && self.jolts.advance(&self.set, JOINT_FRAMES)
     }
 
     /// What the clips are called.

@@ -3,7 +3,7 @@ use super::cast::Fitted;
 use super::maker::Maker;
 use super::wanted::{GraphKey, Wanted, sentence};
 use super::{Built, Cast, Field, GraphInputs};
-use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, PausedAllSweep};
+use crate::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions, PausedAllSweep};
 use crate::registration::Progress;
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -20,8 +20,10 @@ const CELLS: usize = 250_000;
 const MOST_FRAMES: usize = 6_000;
 /// Cells of all fields that are kept: 160 MB.
 const MOST_CELLS: usize = 40_000_000;
+/// Places to go over that are kept for other thresholds: 50 MB.
+const MOST_FOUND: usize = 800_000;
 
-/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of frames for a new window, distances for a new threshold, the
+/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of frames for a new window, places to go over for a new threshold, the
 /// graph for another walk.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Grapher {
@@ -37,7 +39,10 @@ pub(in crate::session) struct Grapher {
     counting: Option<(Field, CountedTo)>,
     /// One for each window that was asked for last.
     fields: Vec<Arc<Field>>,
-    search: Option<(GraphKey, Search)>,
+    /// By the options whose threshold they look as far as.
+    search: Option<(GraphOptions, Search)>,
+    /// What was found last, by these options.
+    found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
     built: Vec<(GraphKey, Result<Arc<Built>, String>)>,
     makers: Vec<(Wanted, Result<Maker, String>)>,
@@ -54,6 +59,25 @@ pub(in crate::session) struct Grapher {
     worked_for: Option<GraphKey>,
     /// The last slice was one of the last maker's.
     stepped: bool,
+}
+
+/// The options by which places to go over are looked for: so far beyond the threshold that is asked for that it can be dragged up a good deal, too, and
+/// nobody looks again. Those that lie beyond are left aside when a graph is made, and there are as many as are held at most.
+fn reaching(options: &GraphOptions) -> GraphOptions {
+    let most = GraphOptions::MOST_THRESHOLD_CM.max(options.edge_threshold_cm);
+    GraphOptions {
+        edge_threshold_cm: (1.5 * options.edge_threshold_cm + 4.0).min(most),
+        ..*options
+    }
+}
+
+/// Whether what is found by some options serves others.
+fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
+    let alike = GraphOptions {
+        edge_threshold_cm: known.edge_threshold_cm,
+        ..*options
+    };
+    alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
 }
 
 /// Where one may go over, on the way.
@@ -207,12 +231,15 @@ impl Grapher {
                 _ => 0.0,
             }
         };
+        let is_found = self.places(&wanted.graph.options).is_some();
         let searched = match &self.search {
-            Some((key, search)) if *key == wanted.graph => match search {
+            _ if is_found => return Some(0.85),
+            Some((known, search)) if serves(known, &wanted.graph.options) => match search {
                 Search::Held(search) => share(search.progress()),
                 Search::Streamed(stream) => return Some(0.1 * fitted + 0.75 * share(stream.progress())),
             },
-            _ if self.building.as_ref().is_some_and(|(key, _)| *key == wanted.graph) => 1.0,
+            // There the distances are seen when one looks for places to go over, and not before.
+            _ if self.is_streamed() => return Some(0.1 * fitted),
             _ => 0.0,
         };
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
@@ -232,19 +259,30 @@ impl Grapher {
 
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
-        if let Some(guide) = &wanted.guide
-            && let Some(Ok(maker)) = self.maker(guide)
-            && maker.is_short(self.now_secs)
-        {
-            return self.step(guide);
+        if let Some(guide) = &wanted.guide {
+            // Without it a walk would go by chance. One that cannot be made has told so: then there is nothing to go like.
+            let is_to_be_made = match self.maker(guide) {
+                Some(Ok(maker)) => maker.is_short(self.now_secs),
+                Some(Err(_)) => false,
+                None => true,
+            };
+            if is_to_be_made {
+                if let Err(problem) = self.step(guide) {
+                    self.settle(guide, Err(problem));
+                }
+                return Ok(());
+            }
         }
         if let Some(at) = self.makers.iter().position(|(known, _)| known == wanted) {
-            let guide = wanted.guide.as_ref().and_then(|guide| self.maker(guide)?.as_ref().ok()?.walk());
-            let guide = guide.map(|walk| (Arc::clone(&walk.passed), guide_window(wanted)));
             let entry = self.makers.remove(at);
             self.makers.push(entry);
             self.stepped = true;
-            if let Some((_, Ok(maker))) = self.makers.last_mut() {
+            if let Some(((_, Ok(maker)), others)) = self.makers.split_last_mut() {
+                let guide = wanted
+                    .guide
+                    .as_deref()
+                    .and_then(|guide| others.iter_mut().find(|(known, _)| known == guide));
+                let guide = guide.and_then(|(_, guide)| Some(guide.as_mut().ok()?.plan()));
                 self.is_ready |= maker.step(self.now_secs, guide)?;
             }
             return Ok(());
@@ -310,11 +348,17 @@ impl Grapher {
     }
 
     /// A slice of the way to the places where one may go over; these where they are found.
-    fn search_slice(&mut self, cast: &Arc<Cast>, key: GraphKey) -> Result<Option<Candidates>, GraphError> {
-        if cast.set().frames() > MOST_FRAMES {
-            let mut stream = match self.search.take() {
-                Some((known, Search::Streamed(stream))) if known == key => stream,
-                _ => Box::new(CandidateStream::new(cast.set(), &key.options)?),
+    fn search_slice(&mut self, cast: &Arc<Cast>, key: GraphKey) -> Result<Option<Arc<Candidates>>, GraphError> {
+        if let Some(found) = self.places(&key.options) {
+            return Ok(Some(Arc::clone(found)));
+        }
+        if self.is_streamed() {
+            let (options, mut stream) = match self.search.take() {
+                Some((known, Search::Streamed(stream))) if serves(&known, &key.options) => (known, stream),
+                _ => {
+                    let options = reaching(&key.options);
+                    (options, Box::new(CandidateStream::new(cast.set(), &options)?))
+                }
             };
             if stream.advance(1)?.is_complete() {
                 let (found, overview) = stream.finish()?;
@@ -322,9 +366,9 @@ impl Grapher {
                 if self.fields.iter().all(|field| field.window() != overview.window()) {
                     self.keep_field(Arc::new(Field::from_afar(overview)));
                 }
-                return Ok(Some(found));
+                return Ok(Some(self.keep_found(options, found)));
             }
-            self.search = Some((key, Search::Streamed(stream)));
+            self.search = Some((options, Search::Streamed(stream)));
             return Ok(None);
         }
         let Some(all) = &mut self.all else {
@@ -361,17 +405,44 @@ impl Grapher {
             }
             return Ok(None);
         };
-        let mut search = match self.search.take() {
-            Some((known, Search::Held(search))) if known == key => search,
-            _ => Box::new(CandidateSearch::new(distances, &key.options)?),
+        let (options, mut search) = match self.search.take() {
+            Some((known, Search::Held(search))) if serves(&known, &key.options) => (known, search),
+            _ => {
+                let options = reaching(&key.options);
+                (options, Box::new(CandidateSearch::new(distances, &options)?))
+            }
         };
         // What was found is sorted in a slice of its own.
         if search.progress().is_complete() {
-            return Ok(Some(search.finish()));
+            return Ok(Some(self.keep_found(options, search.finish())));
         }
         search.advance(all, distances, CELLS)?;
-        self.search = Some((key, Search::Held(search)));
+        self.search = Some((options, Search::Held(search)));
         Ok(None)
+    }
+
+    /// Whether the distances are not held.
+    fn is_streamed(&self) -> bool {
+        self.cast().is_some_and(|cast| cast.set().frames() > MOST_FRAMES)
+    }
+
+    /// The places to go over that are known and serve a graph, if the distances that are shown with it are there, too.
+    fn places(&self, options: &GraphOptions) -> Option<&Arc<Candidates>> {
+        let is_shown = self.fields.iter().any(|field| field.window() == options.blend_window);
+        let mut known = self.found.iter().filter(|(known, _)| is_shown && serves(known, options));
+        known.next().map(|(_, found)| found)
+    }
+
+    fn keep_found(&mut self, options: GraphOptions, found: Candidates) -> Arc<Candidates> {
+        let found = Arc::new(found);
+        // One that reaches farther serves for all that this one did.
+        self.found.retain(|(known, _)| !serves(&options, known));
+        self.found.push((options, Arc::clone(&found)));
+        let count = |found: &[(GraphOptions, Arc<Candidates>)]| found.iter().map(|(_, found)| found.found().len()).sum::<usize>();
+        while self.found.len() > 1 && (self.found.len() > MAX_PANES || count(&self.found) > MOST_FOUND) {
+            self.found.remove(0);
+        }
+        found
     }
 
     fn keep_field(&mut self, field: Arc<Field>) {
@@ -387,13 +458,10 @@ impl Grapher {
         self.is_ready |= maker.is_err();
         self.makers.retain(|(known, _)| known != wanted);
         if self.makers.len() >= 2 * MAX_PANES {
-            drop(self.makers.remove(0));
+            // The one that waits longest, and not what a pane shows, or goes like.
+            let unwanted = self.makers.iter().position(|(known, _)| !self.wanted.contains(known));
+            drop(self.makers.remove(unwanted.unwrap_or(0)));
         }
         self.makers.push((wanted.clone(), maker));
     }
-}
-
-/// The blend window of the walk that another goes like.
-fn guide_window(wanted: &Wanted) -> usize {
-    wanted.guide.as_ref().map_or(0, |guide| guide.graph.options.blend_window)
 }

@@ -1,18 +1,17 @@
+use super::plan::Plan;
 use super::walk::Trace;
 use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
 use crate::clip::{Clip, Contacts};
 use crate::graph::{
     Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
-    Walker,
 };
 use crate::metrics::{Metric, SlideMeter};
 use crate::session::motion::Motion;
 use crate::session::recipe::feet::{slide, slide_before};
 use crate::skeleton::Side;
 use crate::transition::{FootLockOptions, FootLocking};
-use petgraph::graph::{EdgeIndex, NodeIndex};
-use petgraph::visit::EdgeRef;
+use petgraph::graph::NodeIndex;
 use std::sync::Arc;
 
 /// A walk is made so far ahead of the playhead, seconds.
@@ -28,10 +27,6 @@ const PATH_NODES: usize = 2_000;
 /// How long one waits for a search, seconds of work: then the best so far is walked, while the search goes on to its end, and so again and again. How long that takes
 /// changes nothing of the walk in the end.
 const PATH_WAIT_SECS: f64 = 1.0;
-/// How far from another walk's transition one counts as the same, seconds at each end.
-const GUIDE_SECS: f64 = 0.3;
-/// Stays of that walk among which it is looked for.
-const GUIDE_STAYS: usize = 12;
 /// Frames that one slice puts together to be shown, about three milliseconds.
 const PUBLISHED_FRAMES: usize = 10_000;
 /// Edges that one slice goes over for the expected run.
@@ -41,9 +36,8 @@ const RUN_EDGES: usize = 200_000;
 const LOCKED_FRAMES: usize = 2_000;
 /// Frames that one slice measures the feet of, held and free, about four milliseconds.
 const MEASURED_FRAMES: usize = 2_000;
-
-/// The stays of a walk that another goes like, and its blend window.
-pub(super) type Guide = (Arc<Vec<Passed>>, usize);
+/// Frames that one slice measures the artefacts of, about two milliseconds.
+const METERED_FRAMES: usize = 500;
 
 /// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it moves around it are a matter of a second, and a walk ends
 /// far ahead of the playhead. What has played stays but for the plane in which a leg usually bends, which is a mean over the whole walk and counts where a leg is
@@ -86,17 +80,16 @@ pub(super) struct Maker {
     /// Makes the walk that follows the path as far as it is known.
     preview: Option<Box<Self>>,
     trace: Option<Trace>,
-    walker: Walker,
+    plan: Plan,
     stitcher: Stitcher,
     meter: WalkMeter,
     metrics: Option<Vec<Metric>>,
     pieces: Vec<WalkPiece>,
+    /// Pieces that are measured, in so far as they are to be.
+    metered: usize,
     /// When left and right foot stand.
     planted: [Vec<bool>; 2],
     frames: usize,
-    visited: usize,
-    /// Which stay of the walk that this one goes like plays now.
-    guided: usize,
     ends: bool,
     /// How long it is to be next.
     goal: usize,
@@ -141,13 +134,10 @@ impl Maker {
     }
 
     fn idle(built: &Arc<Built>, wanted: &Wanted, choices: Arc<Choices>, run: RunLength) -> Result<Self, String> {
-        let graph = built.graph();
-        let walker = Walker::new(Arc::clone(graph), Arc::clone(&choices), wanted.seed);
-        let walker = walker.with_visited_discount(wanted.discount).map_err(|error| sentence(&error))?;
         Ok(Self {
+            plan: Plan::new(built.graph(), &choices, wanted).map_err(|error| sentence(&error))?,
             run,
             run_is_known: false,
-            walker,
             search: None,
             searched_secs: 0.0,
             preview: None,
@@ -156,10 +146,9 @@ impl Maker {
             meter: WalkMeter::new(built.cast.set()),
             metrics: None,
             pieces: Vec::new(),
+            metered: 0,
             planted: Default::default(),
             frames: 0,
-            visited: 0,
-            guided: 0,
             ends: false,
             goal: 0,
             publishing: None,
@@ -174,6 +163,11 @@ impl Maker {
     /// As far as it was given out.
     pub(super) fn walk(&self) -> Option<&Arc<Walk>> {
         self.walk.as_ref()
+    }
+
+    /// Its stays, for a walk that goes like it.
+    pub(super) fn plan(&mut self) -> &mut Plan {
+        &mut self.plan
     }
 
     fn fps(&self) -> f64 {
@@ -195,8 +189,8 @@ impl Maker {
         0.4 * searched + 0.6 * (self.frames as f64 / self.goal.max(1) as f64).min(1.0)
     }
 
-    /// One slice. `true` when there is a new walk to give out. `guide` is what the walk that this one goes like is made of, and its blend window.
-    pub(super) fn step(&mut self, now_secs: f64, guide: Option<Guide>) -> Result<bool, String> {
+    /// One slice. `true` when there is a new walk to give out. `guide` is the walk that this one goes like.
+    pub(super) fn step(&mut self, now_secs: f64, guide: Option<&mut Plan>) -> Result<bool, String> {
         let told = |error: GraphError| sentence(&error);
         if let Some([leave, enter]) = self.wanted.jump {
             self.walk = Some(Arc::new(self.jump(leave, enter)?));
@@ -210,23 +204,21 @@ impl Maker {
         if self.search.is_some() {
             return self.seek(now_secs);
         }
+        if self.meter() {
+            return Ok(false);
+        }
         if self.publishing.is_none() && (self.goal <= self.frames || self.goal == 0) {
             self.goal = self.next_goal(now_secs);
         }
         if self.frames < self.goal && !self.ends {
-            if let Some((passed, window)) = guide {
-                self.go_like(&passed, window);
-            }
-            self.stay().map_err(told)?;
-        }
-        if self.frames < self.goal && !self.ends {
+            self.stay(guide).map_err(told)?;
             return Ok(false);
         }
         let found = if let Some(publishing) = self.publishing.take() {
             publishing
         } else {
             let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
-            Publishing::Assembling(assembling.ok_or(GraphError::NowhereToGo).map_err(told)?)
+            Publishing::Assembling(assembling.ok_or(GraphError::NoClips).map_err(told)?)
         };
         match self.published(found)? {
             Ok(motion) => {
@@ -346,113 +338,37 @@ impl Maker {
             looked_at: found.looked_at,
             is_searching,
         });
-        self.walker.take(found.edges);
+        self.plan.take(found.edges);
         self.stitcher.start_at(found.world_from_first);
     }
 
-    /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
-    /// same clip.
-    fn go_like(&mut self, passed: &[Passed], window: usize) {
-        let graph = Arc::clone(self.built.graph());
-        let Some(here) = graph.graph().node_weight(self.walker.node()).copied() else {
-            return;
-        };
-        let middle = |place: Place, window: usize| place.frame + window / 2;
-        let is_ahead = |pair: &[Passed]| {
-            let seam = pair[1].seam.filter(|seam| seam.leave.clip == here.clip);
-            seam.is_some_and(|seam| middle(seam.leave, window) > here.start)
-        };
-        let next = passed
-            .get(self.guided..)
-            .unwrap_or_default()
-            .windows(2)
-            .take(GUIDE_STAYS)
-            .position(is_ahead);
-        let Some(skipped) = next else { return };
-        let Some(wanted) = passed.get(self.guided + skipped + 1).and_then(|passed| passed.seam) else {
-            return;
-        };
-        let near = (GUIDE_SECS * self.fps()).round() as usize;
-        let mut on = Vec::new();
-        let mut best: Option<(usize, Vec<EdgeIndex>)> = None;
-        let mut node = self.walker.node();
-        loop {
-            let mut onward = None;
-            for edge in graph.graph().edges(node) {
-                let Some(jump) = graph.jump(edge.id()) else {
-                    onward = Some((edge.id(), edge.target()));
-                    continue;
-                };
-                let apart = |a: Place, b: Place| (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)));
-                let off = apart(jump.leave, wanted.leave).zip(apart(jump.enter, wanted.enter));
-                let Some((leave, enter)) = off.filter(|off| off.0 <= near && off.1 <= near) else {
-                    continue;
-                };
-                if best.as_ref().is_none_or(|(least, _)| leave + enter < *least) {
-                    let mut way: Vec<EdgeIndex> = on.clone();
-                    way.push(edge.id());
-                    best = Some((leave + enter, way));
-                }
-            }
-            let Some((edge, target)) = onward else { break };
-            on.push(edge);
-            node = target;
-        }
-        if let Some((_, way)) = best {
-            self.walker.take(way);
-            self.guided += skipped + 1;
-        }
-    }
-
     /// One stay more.
-    fn stay(&mut self) -> Result<(), GraphError> {
-        let graph = Arc::clone(self.built.graph());
-        let mut next = self.walker.clone();
-        let mut stay = next.next_stay();
-        if let (Some(&(secs, clip)), Some(made)) = (self.wanted.visits.get(self.visited), stay) {
-            let due = (secs * self.fps()).round() as usize;
-            if self.frames + (made.to - made.from) > due {
-                self.visited += 1;
-                self.set_off(due, clip);
-                next = self.walker.clone();
-                stay = next.next_stay();
-            }
-        }
-        self.walker = next;
-        let Some(stay) = stay else {
+    fn stay(&mut self, guide: Option<&mut Plan>) -> Result<(), GraphError> {
+        let Some(stay) = self.plan.stay(self.pieces.len(), guide) else {
             self.ends = true;
             return Ok(());
         };
+        let graph = Arc::clone(self.built.graph());
         let piece = self.stitcher.stitch(&graph, &stay)?;
         self.take(piece);
-        if self.metrics.is_none() && (self.meter.frames() as f64) >= self.wanted.measured_secs * self.fps() {
-            self.metrics = Some(self.measured());
-        }
         Ok(())
     }
 
-    /// Goes on to where the playhead is `due`, and from there to a clip. Nothing changes where no way leads there.
-    fn set_off(&mut self, due: usize, clip: usize) {
-        let mut there = self.walker.clone();
-        let mut frame = self.frames;
-        while frame < due {
-            let Some(edge) = there.next_edge() else { break };
-            let graph = self.built.graph();
-            if graph.jump(edge).is_some() {
-                break;
+    /// Measures a slice of what is made, as much as is asked for. `false` when nothing is left to do.
+    fn meter(&mut self) -> bool {
+        let Some(piece) = self.pieces.get(self.metered).filter(|_| self.metrics.is_none()) else {
+            return false;
+        };
+        if self.meter.advance(piece, self.built.cast.profile(), METERED_FRAMES) {
+            self.metered += 1;
+            if (self.meter.frames() as f64) >= self.wanted.measured_secs * self.fps() {
+                self.metrics = Some(self.measured());
             }
-            frame += graph.frames_of(edge);
         }
-        if there.go_to_clip(clip) {
-            self.walker = there;
-        }
+        true
     }
 
     fn take(&mut self, piece: WalkPiece) {
-        let profile = self.built.cast.profile();
-        if self.metrics.is_none() {
-            self.meter.add(&piece, profile);
-        }
         for frame in 0..piece.clip.frames() {
             let place = piece.shown_at(frame);
             let motion = self.built.cast.motions().get(place.clip);
@@ -503,6 +419,7 @@ impl Maker {
             choices: Arc::clone(&self.choices),
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
             passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
+            missed: self.plan.missed().to_vec(),
             metrics,
             ends: self.ends && motion.clip.frames() == self.frames,
             is_jump: self.wanted.jump.is_some(),
@@ -544,7 +461,8 @@ impl Maker {
             let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
             self.take(piece);
         }
-        let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NowhereToGo))?;
+        while self.meter() {}
+        let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NoClips))?;
         let mut publishing = Publishing::Assembling(assembling);
         // A few seconds of motion.
         let motion = loop {

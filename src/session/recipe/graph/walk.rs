@@ -59,6 +59,8 @@ pub struct Walk {
     pub motion: Arc<Motion>,
     /// What it is made of.
     pub passed: Arc<Vec<Passed>>,
+    /// Visits of clips that no way leads to from where the walk is at that time: when, seconds, and the clip.
+    pub missed: Vec<(f64, usize)>,
     /// Its artefacts.
     pub metrics: Vec<Metric>,
     /// It has come to a dead end.

@@ -1,6 +1,6 @@
 use crate::graph::{Construction, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions};
-use crate::session::params::{Key, Params};
-use crate::session::recipe::kept::parts;
+use crate::session::params::{Key, Params, Value};
+use crate::session::recipe::kept::{read_ids, write_ids};
 use glam::DVec2;
 use std::fmt::Write as _;
 
@@ -100,12 +100,12 @@ impl Wanted {
         })
     }
 
-    /// Likewise, like the walk of other parameters if it goes through another graph.
+    /// Likewise, like the walk of other parameters if it goes through another graph. One that follows a line has its own way to go.
     pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
         let guide = guide
-            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none())
+            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none() && wanted.path.is_empty())
             .map(Box::new);
         Ok(Self { guide, ..wanted })
     }
@@ -120,11 +120,12 @@ pub(super) fn sentence(error: &GraphError) -> String {
         .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-/// The ids of a list of clips: at the commas outside of brackets. An id may stand there several times, and counts once.
+/// The ids of a list of clips. An id may stand there several times, and counts once.
 pub(in crate::session) fn clips_of(text: &str) -> Result<Vec<String>, String> {
-    let listed = parts(text).ok_or_else(|| format!("Clips: found `{text}`, expected clips with commas between them, as in walk,run."))?;
+    let listed =
+        read_ids(text).ok_or_else(|| format!("Clips: found `{text}`, expected clips with commas between them, as in walk,run."))?;
     let mut ids: Vec<String> = Vec::new();
-    for id in listed.into_iter().map(str::trim).filter(|id| !id.is_empty()) {
+    for id in listed.iter().map(|id| id.trim()).filter(|id| !id.is_empty()) {
         if !ids.iter().any(|known| known == id) {
             ids.push(id.to_owned());
         }
@@ -134,6 +135,13 @@ pub(in crate::session) fn clips_of(text: &str) -> Result<Vec<String>, String> {
         count if count > MOST_CLIPS => Err(format!("These are {count} clips: take {MOST_CLIPS} at most.")),
         _ => Ok(ids),
     }
+}
+
+/// What is to be set for other clips. What tells clips by their place in the list means nothing any more.
+#[must_use]
+pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
+    let none = || Value::Text(String::new());
+    vec![(Key::Clips, Value::Text(write_ids(ids))), (Key::GoTo, none()), (Key::Jump, none())]
 }
 
 /// Pairs of two numbers with a colon between them and commas between the pairs.
@@ -238,6 +246,18 @@ mod tests {
             clips_of("walk,run(turn_rate:20,lean:2),walk").unwrap(),
             ["walk", "run(turn_rate:20,lean:2)"]
         );
+        let ids = [
+            "walk",
+            "slow, then fast.bvh",
+            "turn (left",
+            "100 %",
+            "walk(turn_rate:20,make_seconds:2)",
+        ]
+        .map(str::to_owned);
+        let Some((Key::Clips, Value::Text(text))) = graph_of(&ids).into_iter().next() else {
+            panic!("the clips come first");
+        };
+        assert_eq!(clips_of(&text).unwrap(), ids);
     }
 
     proptest! {
