@@ -167,7 +167,11 @@ impl Segue {
     fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
         let now_ms = platform::now_ms();
         Self {
-            session: Session::new(),
+            session: if platform::READS_ELSEWHERE {
+                Session::that_has_files_read()
+            } else {
+                Session::new()
+            },
             keeper: Keeper::new(storage, link, now_ms),
             reader: Reader::new(&inbox),
             vault: Vault::default(),
@@ -288,7 +292,12 @@ impl Segue {
     /// Whether something is under way that soon changes what is shown. A large file that is read elsewhere takes its time.
     pub(crate) fn is_busy(&self) -> bool {
         let soon = self.session.jobs().iter().any(|job| job.task.is_none()) || matches!(self.session.lesson(), Some(Lesson::Waiting));
-        self.keeper.is_waiting() || !self.downloads.is_empty() || !self.samples.is_empty() || self.picture.is_at_work() || soon
+        self.keeper.is_waiting()
+            || !self.downloads.is_empty()
+            || !self.samples.is_empty()
+            || self.session.is_reading_sample()
+            || self.picture.is_at_work()
+            || soon
     }
 
     /// Whether what is stored is still waited for.

@@ -3,13 +3,14 @@
 use super::Segue;
 use super::frames::FrameTimes;
 use super::link_query;
-use crate::platform::{self, LargeFile};
+use crate::platform::{self, FileBytes};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
 use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
 use segue::session::export::{ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue::session::reading::Content;
 use segue::session::{
     ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, Outcome, PARAMS, Pane, Param, ReportFacts, Value, frame_at, report,
 };
@@ -194,8 +195,9 @@ impl Segue {
         Ok((key, value))
     }
 
-    /// Reads a file, exactly as if it were dropped on the page.
-    pub(crate) fn load_file(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedClips, String> {
+    /// Reads a file, exactly as if it were dropped on the window.
+    #[cfg(test)]
+    fn load_file(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedClips, String> {
         self.pump();
         let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
         Ok(self.loaded_clips(loaded))
@@ -209,9 +211,16 @@ impl Segue {
         }
     }
 
-    /// Has a large file read elsewhere and keeps what comes of it. Returns the task's number.
-    pub(crate) fn load_large(&mut self, name: &str, file: LargeFile) -> u64 {
-        let task = self.begin_reading(name, file);
+    /// Has a file read elsewhere, exactly as if it were dropped on the page, and keeps what comes of it. Returns the task's number.
+    pub(crate) fn load_elsewhere(&mut self, name: &str, file: FileBytes) -> u64 {
+        self.pump();
+        let task = match file {
+            FileBytes::Large(file) => self.begin_reading(name, file),
+            FileBytes::Here(bytes) => {
+                let size = bytes.len() as u64;
+                self.session.begin_reading(name, Content::Here(bytes), size)
+            }
+        };
         self.read.insert(task, None);
         task
     }
@@ -234,7 +243,7 @@ impl Segue {
         Ok(())
     }
 
-    /// What [`Self::load_large`] gave; `None` when it was stopped.
+    /// What [`Self::load_elsewhere`] gave; `None` when it was stopped.
     pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, String>> {
         self.read.remove(&task).flatten()
     }

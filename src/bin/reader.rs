@@ -7,7 +7,6 @@ mod worker {
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
-
     /// The worker's part: reads a file, whose SHA-256 the browser may know, and hands its report out, first the head, then the pieces.
     #[wasm_bindgen(js_name = readFile)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]

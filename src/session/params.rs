@@ -714,7 +714,10 @@ impl Param {
     #[must_use]
     pub const fn is_undoable(&self) -> bool {
         use Key::{CameraDistance, CameraPitch, CameraYaw, PanX, PanY, PanZ, Play, Time};
-        !matches!(self.key, CameraYaw | CameraPitch | CameraDistance | PanX | PanY | PanZ | Play | Time)
+        !matches!(
+            self.key,
+            CameraYaw | CameraPitch | CameraDistance | PanX | PanY | PanZ | Play | Time
+        )
     }
 
     /// Whether compare can make panes of it: a clip, a number or choice that changes the result, and the two ways of skinning.

@@ -338,7 +338,9 @@ fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     PARAMS.iter().map(|param| param.key).filter(move |&key| {
         let (group, named) = (key.param().group, session.names(key));
         let changed = group.is_of_lab() && session.params().get(key) != &key.param().default_value();
-        changed || compared == Some(key) || (named && (group.is_of_lab() || matches!(group, Group::Stage) || matches!(key, Key::A | Key::B)))
+        changed
+            || compared == Some(key)
+            || (named && (group.is_of_lab() || matches!(group, Group::Stage) || matches!(key, Key::A | Key::B)))
     })
 }
 

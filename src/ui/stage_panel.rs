@@ -487,7 +487,11 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
     let mut nearer = 1.0;
     if !session.is_driven() {
         let keys = camera_keys(ui);
-        (drag, panning) = if keys.drag == Vec2::ZERO { (drag, panning) } else { (keys.drag, keys.panning) };
+        (drag, panning) = if keys.drag == Vec2::ZERO {
+            (drag, panning)
+        } else {
+            (keys.drag, keys.panning)
+        };
         nearer = keys.nearer;
     }
     let from_above = params.text(Key::Camera) == "top";
@@ -546,7 +550,8 @@ fn camera_keys(ui: &Ui) -> CameraKeys {
                 keys.panning |= panning && times > 0.0;
             }
         }
-        let [nearer, farther] = [egui::Key::PageUp, egui::Key::PageDown].map(|key| input.count_and_consume_key(egui::Modifiers::NONE, key) as i32);
+        let [nearer, farther] =
+            [egui::Key::PageUp, egui::Key::PageDown].map(|key| input.count_and_consume_key(egui::Modifiers::NONE, key) as i32);
         keys.nearer = 1.1_f64.powi(nearer - farther);
     });
     keys

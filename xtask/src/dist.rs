@@ -46,7 +46,14 @@ pub fn build(profile: Profile) -> Result<()> {
 
 /// The compilation that Trunk will ask for, with the same words, so that Trunk finds it done.
 fn compile(profile: Profile) -> Result<()> {
-    let mut build = cargo(&["build", "--quiet", "--locked", "--target=wasm32-unknown-unknown", "--bin=segue", "--bin=reader"]);
+    let mut build = cargo(&[
+        "build",
+        "--quiet",
+        "--locked",
+        "--target=wasm32-unknown-unknown",
+        "--bin=segue",
+        "--bin=reader",
+    ]);
     if profile == Profile::Release {
         build.arg("--release");
     }

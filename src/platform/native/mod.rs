@@ -43,6 +43,9 @@ pub(crate) fn announce(_words: &str) {}
 /// Whether [`between_frames`] does anything.
 pub(crate) const WORKS_BETWEEN_FRAMES: bool = false;
 
+/// Small files are read at once, large ones on threads.
+pub(crate) const READS_ELSEWHERE: bool = false;
+
 /// A window's frames come at a steady pace: what they leave over waits for the next.
 pub(crate) fn between_frames(_work: impl FnMut() -> bool + 'static) {}
 

@@ -5,7 +5,7 @@ use super::page::{listen, next_frame, sleep, turn, wanted_backend, watch_hiding}
 use super::reader::{LargeFile, workers_are_made_by};
 use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
-use crate::platform::Inbox;
+use crate::platform::{FileBytes, Inbox};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
@@ -45,7 +45,7 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 
 #[wasm_bindgen]
 impl SegueHandle {
-    /// Starts the app on a canvas. `new_reader` makes the worker that reads large files.
+    /// Starts the app on a canvas. `new_reader` makes the worker that reads files.
     pub async fn start(canvas: HtmlCanvasElement, new_reader: Function) -> Result<SegueHandle, JsValue> {
         workers_are_made_by(new_reader);
         let inbox = Inbox::default();
@@ -112,27 +112,25 @@ impl SegueHandle {
     /// Reads a file, as if it were dropped on the page.
     pub async fn load(&self, name: String, bytes: Uint8Array) -> Result<JsValue, JsValue> {
         self.opened().await?;
-        if u64::from(bytes.length()) > LARGE_BYTES {
-            let file = LargeFile::of_bytes(&bytes).ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
-            let task = self.borrow_mut()?.load_large(&name, file);
-            self.changed();
-            while self.borrow()?.is_reading(task) {
-                sleep(10).await;
-                // While the page is hidden no frame comes to do it.
-                self.borrow_mut()?.pump();
-            }
-            self.settled().await?;
-            return match self.borrow_mut()?.read_result(task) {
-                Some(Ok(loaded)) => to_js(&loaded),
-                Some(Err(reason)) => Err(error(reason)),
-                None => Err(error(format!("{name}: reading it was stopped"))),
-            };
-        }
-        let loaded = self.borrow_mut()?.load_file(&name, Arc::from(bytes.to_vec()));
+        let file = if u64::from(bytes.length()) > LARGE_BYTES {
+            let large = LargeFile::of_bytes(&bytes).ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
+            FileBytes::Large(large)
+        } else {
+            FileBytes::Here(Arc::from(bytes.to_vec()))
+        };
+        let task = self.borrow_mut()?.load_elsewhere(&name, file);
         self.changed();
-        let loaded = loaded.map_err(error)?;
+        while self.borrow()?.is_reading(task) {
+            sleep(10).await;
+            // While the page is hidden no frame comes to do it.
+            self.borrow_mut()?.pump();
+        }
         self.settled().await?;
-        to_js(&loaded)
+        match self.borrow_mut()?.read_result(task) {
+            Some(Ok(loaded)) => to_js(&loaded),
+            Some(Err(reason)) => Err(error(reason)),
+            None => Err(error(format!("{name}: reading it was stopped"))),
+        }
     }
 
     /// Every clip of the library.

@@ -207,6 +207,9 @@ impl Turns {
 /// Whether [`between_frames`] does anything.
 pub(crate) const WORKS_BETWEEN_FRAMES: bool = true;
 
+/// All files are read by a worker, which has the code for it.
+pub(crate) const READS_ELSEWHERE: bool = true;
+
 /// Calls `work` again and again, between the browser's frames and whether there are any or not, until it says that nothing is left.
 pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     spawn_local(async move {

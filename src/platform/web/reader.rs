@@ -1,4 +1,4 @@
-//! Large files are read by a worker: the same WebAssembly once more, without the app. `web/js/reader.js` is its other half.
+//! Files are read by a worker, which has a WebAssembly of its own: `src/bin/reader.rs`. `web/js/reader.js` starts it.
 
 use super::page::listen;
 use super::words_of;

@@ -2,13 +2,12 @@
 
 use super::slots::Came;
 use super::{Job, Session};
-use crate::formats::{self, FileKind, ImportError, ImportOptions, import};
+use crate::formats::{FileKind, ImportError, ImportOptions};
 use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
-use crate::session::motion::Motion;
 use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
-use crate::session::reading::{About, Companion, Content, ReadFile, ReadReport, ReadSetup, ReadTask, read};
+use crate::session::reading::{Companion, Content, ReadFile, ReadReport, ReadSetup, ReadTask};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -29,9 +28,18 @@ pub struct Loaded {
 pub(super) struct Reading {
     task: ReadTask,
     done: u64,
-    /// Whether its clips are in the library already, and only want their motion.
-    again: bool,
-    came: Came,
+    purpose: Purpose,
+}
+
+/// What becomes of what a file gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Purpose {
+    /// Its clips join the library.
+    New(Came),
+    /// Its clips are there already, and only want their motion.
+    Again,
+    /// It is the motion of a bundled take.
+    Sample(&'static Sample),
 }
 
 impl Session {
@@ -55,6 +63,11 @@ impl Session {
 
     fn load_that_came(&mut self, name: &str, bytes: Arc<[u8]>, came: Came) -> Result<Loaded, ImportError> {
         let setup = self.setup_for_new();
+        let Some(read) = self.reads else {
+            let size = bytes.len() as u64;
+            self.begin(name, Content::Here(bytes), size, setup, Purpose::New(came));
+            return Ok(Loaded::default());
+        };
         let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
         self.admit(report, &Content::Here(bytes), &setup, came)
     }
@@ -62,16 +75,16 @@ impl Session {
     /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, false, Came::ByHand)
+        self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
     }
 
     /// As [`Session::begin_reading`], for a file that was fetched; see [`Session::load_fetched`].
     pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, false, Came::ByLink)
+        self.begin(name, content, size, setup, Purpose::New(Came::ByLink))
     }
 
-    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, again: bool, came: Came) -> u64 {
+    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
         self.tasks += 1;
         let task = ReadTask {
             id: self.tasks,
@@ -81,12 +94,7 @@ impl Session {
             setup,
         };
         self.requests.push(Request::Read(task.clone()));
-        self.reading.push(Reading {
-            task,
-            done: 0,
-            again,
-            came,
-        });
+        self.reading.push(Reading { task, done: 0, purpose });
         self.revision += 1;
         self.tasks
     }
@@ -98,7 +106,7 @@ impl Session {
             |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
         if !self.reading.iter().any(same) {
             self.mark_unread(&file.sha256, None);
-            self.begin(&file.name, file.content, file.size, setup, true, Came::ByHand);
+            self.begin(&file.name, file.content, file.size, setup, Purpose::Again);
         }
     }
 
@@ -131,13 +139,13 @@ impl Session {
     /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody waits for it any longer.
     pub fn finish_reading(&mut self, task: u64, report: Result<ReadReport, String>) -> Option<Result<Loaded, String>> {
         let at = self.reading.iter().position(|reading| reading.task.id == task)?;
-        let Reading { task, again, came, .. } = self.reading.remove(at);
+        let Reading { task, purpose, .. } = self.reading.remove(at);
         self.revision += 1;
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
                 let text = format!("{} could not be read: {reason}.", task.name);
-                if again {
+                if purpose == Purpose::Again {
                     self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
                 }
                 self.say(Level::Error, text);
@@ -150,18 +158,41 @@ impl Session {
             (Content::Outside(_), [file]) if file.unpacked.is_none() => Content::Outside(file.sha256.clone()),
             (content, _) => content,
         };
-        Some(if again {
-            let refilled = self.refill(report, &task.setup.options);
-            if let Err(error) = &refilled {
-                self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
-                self.say(Level::Error, error.to_string());
+        let loaded = match purpose {
+            Purpose::Again => {
+                let waiting: Vec<String> = (self.library.entries().iter())
+                    .filter(|entry| entry.awaits_skeleton())
+                    .map(|entry| entry.id.clone())
+                    .collect();
+                let refilled = self.refill(report, &task.setup.options);
+                if let Err(error) = &refilled {
+                    self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
+                    self.say(Level::Error, error.to_string());
+                }
+                for id in waiting {
+                    self.offer_moving(&id, Came::ByHand);
+                }
+                self.drop_used_skeletons();
+                self.refresh();
+                refilled
             }
-            self.drop_used_skeletons();
-            self.refresh();
-            refilled.map_err(|error| error.to_string())
-        } else {
-            self.admit(report, &content, &task.setup, came).map_err(|error| error.to_string())
-        })
+            Purpose::New(came) => self.admit(report, &content, &task.setup, came),
+            Purpose::Sample(sample) => {
+                let taken = self.take_sample(sample, report);
+                if let Err(error) = &taken {
+                    self.say(Level::Error, error.to_string());
+                }
+                taken
+            }
+        };
+        Some(loaded.map_err(|error| error.to_string()))
+    }
+
+    /// Whether a bundled take is being read. It comes with the page: nobody is told of it as of a file, and nobody stops it.
+    #[must_use]
+    pub fn is_reading_sample(&self) -> bool {
+        let is_sample = |reading: &Reading| matches!(reading.purpose, Purpose::Sample(_));
+        self.reading.iter().any(is_sample)
     }
 
     /// Gives up a task.
@@ -170,7 +201,8 @@ impl Session {
         let Some(at) = self.reading.iter().position(|reading| reading.task.id == task) else {
             return;
         };
-        let Reading { task, again, .. } = self.reading.remove(at);
+        let Reading { task, purpose, .. } = self.reading.remove(at);
+        let again = purpose == Purpose::Again;
         if again {
             let text = format!("Reading {} was stopped. Choose how it is read to read it again.", task.name);
             self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
@@ -190,7 +222,8 @@ impl Session {
     }
 
     pub(super) fn reading_jobs(&self) -> impl Iterator<Item = Job> + '_ {
-        self.reading.iter().map(|Reading { task, done, .. }| Job {
+        let files = self.reading.iter().filter(|reading| !matches!(reading.purpose, Purpose::Sample(_)));
+        files.map(|Reading { task, done, .. }| Job {
             task: Some(task.id),
             name: task.name.clone(),
             progress: *done as f64 / task.size.max(1) as f64,
@@ -296,7 +329,7 @@ impl Session {
         if is_read_as_said {
             return;
         }
-        if file.is_large() {
+        if !self.reads_at_once(&file) {
             self.read_again(file);
         } else if let Err(error) = self.read_at_once(&file) {
             self.say(Level::Error, error.to_string());
@@ -334,9 +367,14 @@ impl Session {
         Ok(loaded)
     }
 
+    /// Whether [`Self::read_at_once`] is the way to read a file.
+    pub(super) fn reads_at_once(&self, file: &SourceFile) -> bool {
+        self.reads.is_some() && !file.is_large()
+    }
+
     /// Reads a file of the library anew, at once. An error changes nothing.
     pub(super) fn read_at_once(&mut self, file: &SourceFile) -> Result<Loaded, ImportError> {
-        let Content::Here(bytes) = &file.content else {
+        let (Content::Here(bytes), Some(read)) = (&file.content, self.reads) else {
             return Ok(Loaded::default());
         };
         let setup = self.setup_of(file);
@@ -390,13 +428,20 @@ impl Session {
         let entries = self.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.awaits_skeleton()) {
             let Origin::File(file) = &entry.origin else { continue };
-            if file.is_large() {
+            if !self.reads_at_once(file) {
                 self.read_again(file.clone());
             } else if let Err(error) = self.read_at_once(file) {
                 self.say(Level::Error, error.to_string());
-            } else if self.library.find(&entry.id).is_some_and(|entry| entry.motion.is_some()) {
-                self.offer(&entry.id, came);
+            } else {
+                self.offer_moving(&entry.id, came);
             }
+        }
+    }
+
+    /// Offers a clip that waited, if it moves by now.
+    fn offer_moving(&mut self, id: &str, came: Came) {
+        if self.library.find(id).is_some_and(|entry| entry.motion.is_some()) {
+            self.offer(id, came);
         }
     }
 
@@ -425,7 +470,7 @@ impl Session {
             options: *options,
             ..file.clone()
         };
-        if file.is_large() {
+        if !self.reads_at_once(&file) {
             self.remember(None);
             self.read_again(file);
             return Ok(());
@@ -436,25 +481,45 @@ impl Session {
         Ok(())
     }
 
-    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file.
+    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file. Where files are read elsewhere, so is it.
     ///
     /// # Errors
     /// [`ImportError`] when it is damaged.
     pub fn load_sample(&mut self, sample: &'static Sample, packed: &[u8]) -> Result<(), ImportError> {
-        let bytes = formats::unpack_gzip(sample.file, packed, LARGEST_SAMPLE)?;
-        let imported = import(sample.file.trim_end_matches(".gz"), &bytes, &ImportOptions::default())?;
-        let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
-        if let Some(clip) = imported.clips.into_iter().next() {
-            let about = About::from(&clip);
-            let motion = Motion::analyze(clip.clip, None);
+        let setup = ReadSetup {
+            options: ImportOptions {
+                max_bytes: LARGEST_SAMPLE,
+                ..ImportOptions::default()
+            },
+            ..ReadSetup::default()
+        };
+        let Some(read) = self.reads else {
+            let size = packed.len() as u64;
+            self.begin(sample.file, Content::Here(Arc::from(packed)), size, setup, Purpose::Sample(sample));
+            return Ok(());
+        };
+        let report = read(sample.file, packed, &setup, &mut |_| true).unwrap_or_default();
+        self.take_sample(sample, report).map(drop)
+    }
+
+    /// Gives a bundled take its motion.
+    fn take_sample(&mut self, sample: &'static Sample, report: ReadReport) -> Result<Loaded, ImportError> {
+        let clips = report.files.into_iter().next().map(|file| file.result).transpose()?;
+        if let Some(mut clips) = clips.filter(|clips| !clips.clips.is_empty()) {
+            let clip = clips.clips.swap_remove(0);
             self.library.change(sample.id, |entry| {
-                entry.motion = Some(Arc::new(motion.with_roles(entry.roles_by_hand.as_ref())));
-                entry.about = Some(about);
-                entry.warnings = warnings;
+                entry.motion = Some(Arc::new(clip.motion.with_roles(entry.roles_by_hand.as_ref())));
+                entry.about = Some(clip.about);
+                entry.warnings = clips.warnings;
             });
         }
         self.refresh();
-        Ok(())
+        Ok(Loaded::default())
+    }
+
+    /// Whether a bundled take has come and is being read.
+    pub(super) fn has_come(&self, sample: &'static Sample) -> bool {
+        self.reading.iter().any(|reading| reading.purpose == Purpose::Sample(sample))
     }
 }
 

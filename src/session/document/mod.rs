@@ -26,6 +26,7 @@ use super::link;
 use super::motion::Motion;
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
+use super::reading::{Reads, read};
 use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
@@ -112,6 +113,8 @@ pub struct Session {
     driving: driving::Driving,
     shelf: Shelf,
     requests: Vec<Request>,
+    /// What reads small files at once; none where all reading is done elsewhere.
+    reads: Option<Reads>,
     reading: Vec<Reading>,
     tasks: u64,
     /// Whether A and B were named with the addresses of the link, or since.
@@ -132,7 +135,19 @@ impl Session {
     /// A new document with the built-in clips, showing what a first visitor sees.
     #[must_use]
     pub fn new() -> Self {
+        Self::that_reads(Some(read))
+    }
+
+    /// One that asks for every file to be read elsewhere ([`Request::Read`]), however small. A page that only has this one needs no code that reads
+    /// files.
+    #[must_use]
+    pub fn that_has_files_read() -> Self {
+        Self::that_reads(None)
+    }
+
+    fn that_reads(reads: Option<Reads>) -> Self {
         let mut session = Self {
+            reads,
             params: Params::default(),
             library: built_in_entries().collect(),
             history: History::default(),

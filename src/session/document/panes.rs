@@ -222,7 +222,7 @@ impl Session {
         let motion = match &entry.origin {
             Origin::Sample(sample) => {
                 let request = Request::Sample(sample);
-                if !self.requests.contains(&request) {
+                if !self.requests.contains(&request) && !self.has_come(sample) {
                     self.requests.push(request);
                 }
                 return Err(format!("{} is being loaded.", sample.label));
@@ -238,7 +238,7 @@ impl Session {
             Origin::File(_) if entry.unread.is_some() => return Err(entry.unread.clone().unwrap_or_default()),
             Origin::File(file) => {
                 let file = file.clone();
-                if !file.is_large() {
+                if self.reads_at_once(&file) {
                     self.read_at_once(&file).map_err(|error| error.to_string())?;
                     let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
                     return motion.ok_or_else(|| format!("{} has no such clip any more.", file.name));

@@ -130,7 +130,7 @@ impl Session {
             if self.library.get(&entry.id).is_none_or(read_by_now) {
                 continue;
             }
-            if file.is_large() {
+            if !self.reads_at_once(file) {
                 self.read_again(file.clone());
             } else if self.read_at_once(file).is_err() {
                 self.library.remove(&entry.id);

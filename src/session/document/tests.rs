@@ -135,7 +135,9 @@ fn a_motion_is_made_whatever_was_set_for_another() {
             let values = session.compare().unwrap().values;
             assert!(values[0] != values[1] && values[1] != values[2], "{gait}: {values:?}");
             assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{gait}: {values:?}");
-            session.apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))])).unwrap();
+            session
+                .apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))]))
+                .unwrap();
         }
     }
 }

@@ -129,6 +129,9 @@ pub struct About {
     pub t_pose_dropped: bool,
 }
 
+/// [`read`], or none of it.
+pub type Reads = fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> Option<ReadReport>;
+
 /// Reads a file, or all motion files of an archive. `progress` hears how much of it is done, in bytes, and says whether to go on; `None` when it
 /// said no.
 pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMut(usize) -> bool) -> Option<ReadReport> {

@@ -41,7 +41,10 @@ fn synth_params(params: &Params) -> synth::Params {
     };
     let natural = synth::Params::new(synth_action(params));
     synth::Params {
-        speed_mps: within(Key::GaitSpeed, params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32)),
+        speed_mps: within(
+            Key::GaitSpeed,
+            params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32),
+        ),
         turn_rate_dps: of(Key::TurnRate),
         height_m: of(Key::BodyHeight),
         style: synth::Style {
