@@ -486,7 +486,7 @@ fn what_is_found_for_a_threshold_serves_all_lower_ones() {
 fn jolts_that_are_found_ahead_are_those_that_a_search_finds() {
     let (ahead, plain) = (three([60, 50, 40]), three([60, 50, 40]));
     let mut search = JoltSearch::default();
-    let slices = (0..).take_while(|_| !search.advance(&ahead, 100)).count();
+    let slices = (0..1_000).take_while(|_| !search.advance(&ahead, 100)).count();
     assert!(slices > 5 && search.advance(&ahead, 100), "{slices}");
     for clip in 0..4 {
         assert_eq!(ahead.jolts(clip), plain.jolts(clip));

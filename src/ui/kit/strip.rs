@@ -146,11 +146,14 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
             draw(index, Stroke::new(2.4 * scale, color));
         }
     }
+    // The first of the others is as blue as the main part.
+    let [_, second, third, fourth] = palette.others;
+    let apart = [palette.a, second, third, fourth];
     let bar_of = |from: f32, to: f32| Rect::from_x_y_ranges(x_of(from)..=x_of(to), bars);
     for stretch in strip.stretches {
         let color = match stretch.fate {
             Fate::Main => palette.b,
-            Fate::Apart(part) => palette.others[part % palette.others.len()],
+            Fate::Apart(part) => apart[part % apart.len()],
             Fate::Astray | Fate::End => palette.line_strong,
         };
         // The end of one bar is not the beginning of the next.

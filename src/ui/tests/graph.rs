@@ -143,7 +143,7 @@ fn whoever_sends_the_walk_where_no_way_leads_is_told() {
         harness.run();
         let walk = harness.state().session.graph_walk().unwrap();
         assert_eq!(walk.missed, [(0.0, 3)]);
-        let sentence = "No way leads to Idle from where the walk is at 0.0 s: a higher threshold may make one.";
+        let sentence = "No way leads to Stand from where the walk is at 0.0 s: a higher threshold may make one.";
         assert!(harness.query_all_by_label(sentence).count() > 0);
         picture(if theme == DARK { "graph-no-way-dark" } else { "graph-no-way-light" }, &mut harness);
     }
