@@ -42,7 +42,12 @@ fn lint(report: &mut Report) {
     );
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
-        shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--lib"]))
+        shell::run(&mut clippy(&[
+            "--target=wasm32-unknown-unknown",
+            "--bin=segue",
+            "--bin=reader",
+            "--lib",
+        ]))
     });
 }
 

@@ -4,12 +4,11 @@ use super::page::listen;
 use super::words_of;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
-use segue::session::reading::{Parcel, ReadSetup, ReadTask, Unpacker, read};
+use segue::session::reading::{ReadTask, Unpacker};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
 use std::rc::Rc;
-use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
 

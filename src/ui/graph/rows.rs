@@ -10,6 +10,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Id, Layout as Flow, RichText, Ui};
+use petgraph::graph::NodeIndex;
 use segue::session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
 use std::sync::Arc;
 
@@ -261,7 +262,7 @@ fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
         return Arc::default();
     };
     // All that can be reached from a stretch can be reached from all of it, and to find it takes a while in a large graph.
-    let node = walk.built.graph().node_at(place).map(|node| node.index());
+    let node = walk.built.graph().node_at(place);
     let id = Id::unique("graph reached");
     let known: Option<Reached> = ui.data(|data| data.get_temp(id));
     if let Some(known) = known.filter(|known| Arc::ptr_eq(&known.built, &walk.built) && known.node == node) {
@@ -281,7 +282,7 @@ fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
 #[derive(Clone)]
 struct Reached {
     built: Arc<Built>,
-    node: Option<usize>,
+    node: Option<NodeIndex>,
     clips: Arc<Vec<bool>>,
 }
 
