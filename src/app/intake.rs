@@ -91,7 +91,7 @@ impl Segue {
         let key = self.session.reading_key(task).map(str::to_owned);
         if let (Some(key), Ok(report)) = (&key, &report) {
             match report.files.as_slice() {
-                [file] if file.result.is_ok() && file.unpacked.is_none() => self.vault.name(key, &file.sha256),
+                [file] if file.result.is_ok() && report.is_one_file() => self.vault.name(key, &file.sha256),
                 _ => self.vault.drop_file(key),
             }
         }

@@ -93,10 +93,14 @@ impl Session {
             size,
             setup,
         };
+        self.ask(task, purpose);
+        self.tasks
+    }
+
+    fn ask(&mut self, task: ReadTask, purpose: Purpose) {
         self.requests.push(Request::Read(task.clone()));
         self.reading.push(Reading { task, done: 0, purpose });
         self.revision += 1;
-        self.tasks
     }
 
     /// Reads a file of the library anew, as its entries say, unless that is under way.
@@ -154,8 +158,8 @@ impl Session {
             }
         };
         // What lies outside is from now on known by what it holds.
-        let content = match (task.content, report.files.as_slice()) {
-            (Content::Outside(_), [file]) if file.unpacked.is_none() => Content::Outside(file.sha256.clone()),
+        let content = match (task.content.clone(), report.files.as_slice()) {
+            (Content::Outside(_), [file]) if report.is_one_file() => Content::Outside(file.sha256.clone()),
             (content, _) => content,
         };
         let loaded = match purpose {
@@ -175,6 +179,12 @@ impl Session {
                 self.drop_used_skeletons();
                 self.refresh();
                 refilled
+            }
+            // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive is read again from there.
+            Purpose::New(_) if report.is_one_file() && self.misses_skeleton(&report, &task.setup) => {
+                let setup = self.setup_for_new();
+                self.ask(ReadTask { setup, content, ..task }, purpose);
+                return None;
             }
             Purpose::New(came) => self.admit(report, &content, &task.setup, came),
             Purpose::Sample(sample) => {
@@ -244,7 +254,7 @@ impl Session {
         let (mut names, mut t_poses) = (Vec::new(), 0);
         let brings_skeleton =
             |file: &ReadFile| file.kind == FileKind::Asf || file.result.as_ref().is_ok_and(|read| read.companion.is_some());
-        let skeleton_came = report.files.iter().any(brings_skeleton);
+        let skeleton_came = report.files.iter().any(brings_skeleton) || self.misses_skeleton(&report, setup);
         for file in report.files {
             let name = file.name.clone();
             match file_entries(file, content, &setup.options) {
@@ -421,6 +431,12 @@ impl Session {
             }
         }
         all
+    }
+
+    /// Whether a motion awaits a skeleton, and one has come since it was read.
+    fn misses_skeleton(&self, report: &ReadReport, setup: &ReadSetup) -> bool {
+        let awaits = |file: &ReadFile| file.result.as_ref().is_ok_and(|read| read.awaits_skeleton);
+        report.files.iter().any(awaits) && self.companions() != setup.companions
     }
 
     /// A skeleton has come: motions that waited for it are read.

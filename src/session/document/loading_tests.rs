@@ -95,6 +95,107 @@ fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
     assert_eq!(names, ["01_02", "walk"], "the skeleton has no row of its own any longer");
 }
 
+/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was asked with.
+fn serve(session: &mut Session) {
+    loop {
+        let asked: Vec<_> = (session.take_requests().into_iter())
+            .filter_map(|request| match request {
+                Request::Read(task) => Some(task),
+                _ => None,
+            })
+            .collect();
+        if asked.is_empty() {
+            return;
+        }
+        for task in asked {
+            let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
+            let report = crate::session::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
+            assert!(session.jobs().iter().any(|job| job.task == Some(task.id)) || session.is_reading_sample());
+            let _ = session.finish_reading(task.id, Ok(report));
+        }
+    }
+}
+
+/// What is in the library, and what is played.
+fn shown(session: &Session) -> (Vec<(String, &'static str, usize)>, [String; 2]) {
+    (files(session), [Key::A, Key::B].map(|key| session.params().text(key).to_owned()))
+}
+
+#[test]
+fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
+    let packed = {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(BVH.as_bytes()).unwrap();
+        Arc::<[u8]>::from(encoder.finish().unwrap())
+    };
+    let archive = Arc::<[u8]>::from(zip(&[("01_03.amc", AMC)]));
+    let dropped: [&[(&str, Arc<[u8]>)]; 6] = [
+        &[("walk.bvh", bytes(BVH))],
+        &[("01_02.amc", bytes(AMC)), ("01.asf", bytes(ASF))],
+        &[("01.asf", bytes(ASF)), ("01_02.amc", bytes(AMC))],
+        &[("01.asf", bytes(ASF)), ("takes.zip", archive)],
+        &[("person.glb", person(60))],
+        &[("walk.bvh.gz", packed), ("broken.bvh", bytes("HIERARCHY ROOT"))],
+    ];
+    for files in dropped {
+        let (mut at_once, mut elsewhere) = (Session::new(), Session::that_has_files_read());
+        for (name, bytes) in files {
+            let _ = at_once.load(name, Arc::clone(bytes));
+            assert_eq!(elsewhere.load(name, Arc::clone(bytes)), Ok(Loaded::default()), "it is asked for");
+        }
+        assert!(elsewhere.clip_infos().iter().all(|info| info.sha256.is_none()));
+        serve(&mut elsewhere);
+        assert_eq!(shown(&elsewhere), shown(&at_once));
+        let errors = |session: &Session| session.notices().list().iter().filter(|notice| notice.level == Level::Error).count();
+        assert_eq!(errors(&elsewhere), errors(&at_once));
+        assert!(elsewhere.jobs().iter().all(|job| job.task.is_none()));
+
+        // After a reload, and read with other options.
+        let content_of = |sha256: &str| {
+            at_once.library().entries().iter().find_map(|entry| match &entry.origin {
+                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
+                _ => None,
+            })
+        };
+        let mut restored = Session::that_has_files_read();
+        restored.restore(&elsewhere.saved(), content_of, None);
+        serve(&mut restored);
+        assert_eq!(shown(&restored), shown(&at_once));
+        let id = restored.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
+        let options = crate::formats::ImportOptions {
+            fps: Some(60.0),
+            ..Default::default()
+        };
+        restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+        serve(&mut restored);
+        assert_eq!(restored.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps, 60.0);
+    }
+}
+
+#[test]
+fn a_bundled_take_is_read_elsewhere_without_a_word() {
+    let sample = &Session::samples()[2];
+    let packed = std::fs::read(format!("{}/assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    let mut session = Session::that_has_files_read();
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    let asks = |session: &mut Session| session.take_requests().contains(&Request::Sample(sample));
+    assert!(asks(&mut session));
+    session.load_sample(sample, &packed).unwrap();
+    assert!(session.is_reading_sample() && session.jobs().is_empty());
+    session.apply(Command::Set(vec![(Key::BlendTime, Value::Number(0.6))])).unwrap();
+    let told = session.notices().list().len();
+    let reads: Vec<_> = session.take_requests();
+    assert!(!reads.contains(&Request::Sample(sample)), "it has come");
+    let Some(Request::Read(task)) = reads.into_iter().find(|request| matches!(request, Request::Read(_))) else {
+        panic!()
+    };
+    let report = crate::session::reading::read(&task.name, &packed, &task.setup, &mut |_| true).unwrap();
+    session.finish_reading(task.id, Ok(report)).unwrap().unwrap();
+    assert!(session.library().get(sample.id).unwrap().motion.is_some());
+    assert_eq!(session.notices().list().len(), told);
+    assert!(!session.is_reading_sample());
+}
+
 #[test]
 fn a_skeleton_serves_all_its_motions() {
     let mut session = Session::new();

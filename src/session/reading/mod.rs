@@ -77,6 +77,14 @@ pub struct ReadReport {
     pub notes: Vec<String>,
 }
 
+impl ReadReport {
+    /// Whether it is of one motion file that lay in no archive.
+    #[must_use]
+    pub fn is_one_file(&self) -> bool {
+        matches!(self.files.as_slice(), [file] if file.unpacked.is_none())
+    }
+}
+
 /// One motion file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadFile {
