@@ -64,9 +64,10 @@ function compare(page) {
     };
     const text = new TextDecoder().decode(buffer);
     const theirs = await best(1, () => new BVHLoader().parse(text));
-    // What the worker runs. The bindings are those of the page: the same module, once more imported.
+    // What the worker runs (web/js/reader.js).
     const setup = JSON.stringify({ options: { metres_per_unit: null, up: null, fps: null, max_bytes: 512 << 20, drop_t_pose: true }, roles: {}, companions: [] });
-    const { readFile } = await import(document.querySelector("link[rel=modulepreload][href*='segue-']").href);
+    const { default: init, readFile } = await import(new URL("./read/reader.js", document.querySelector("link[rel=modulepreload][href$='boot.js']").href));
+    await init();
     const bytes = new Uint8Array(buffer);
     const ours = () => readFile("speed.bvh", bytes, setup, "0".repeat(64), () => {}, () => {}, () => {});
     const first = await best(1, ours);
