@@ -158,7 +158,8 @@ class Life {
   panicText(fallback) {
     try {
       const summary = this.handle.panicSummary();
-      if (summary) return String(summary);
+      // Which package and line is of use, not where it lay on the machine that compiled it.
+      if (summary) return String(summary).replace(/^panicked at .*\/registry\/src\/[^/]+\//, "panicked at ");
     } catch {
       // what trapped can be past answering
     }
