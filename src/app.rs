@@ -295,7 +295,7 @@ impl Segue {
         self.keeper.is_waiting()
             || !self.downloads.is_empty()
             || !self.samples.is_empty()
-            || self.session.is_reading_sample()
+            || self.session.is_reading_small()
             || self.picture.is_at_work()
             || soon
     }
@@ -306,9 +306,9 @@ impl Segue {
         self.keeper.is_waiting()
     }
 
-    /// Whether what is stored is to be expected any moment, though something is shown already.
+    /// Whether what is stored is to be expected any moment, or is being read, though something is shown already.
     pub(crate) fn awaits_work(&mut self) -> bool {
-        self.is_waiting() || self.keeper.is_late(platform::now_ms())
+        self.is_waiting() || self.keeper.is_late(platform::now_ms()) || self.session.is_reading_small()
     }
 
     /// Carries out a command of the user's. What cannot be done is said.

@@ -227,7 +227,7 @@ impl Segue {
 
     /// Whether that file is still being read.
     pub(crate) fn is_reading(&self, task: u64) -> bool {
-        self.session.jobs().iter().any(|job| job.task == Some(task))
+        self.session.is_reading(task)
     }
 
     /// Stops what is under way: the file of that name that is read or fetched.

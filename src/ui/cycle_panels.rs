@@ -2,13 +2,12 @@
 
 use super::kit::{self, Button, Mark, Part};
 use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
-use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::state::UiState;
 use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Color32, RichText, Ui};
+use super::theme::{palette_of, space};
+use eframe::egui::Ui;
 use segue::session::{Cycle, CycleMade, Key, Session, Slot, Value};
 
 /// The upper end of the slider before the clips are known, metres per second.
@@ -19,7 +18,7 @@ const SLIDER_BEYOND: f64 = 1.6;
 /// Two gaits at a speed.
 pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
+    kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
     pair_ui(session, out, ui);
     let palette = palette_of(ui);
     let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
@@ -41,7 +40,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     param_row_ui(Key::Speed, &detail, session, out, ui);
     if let (Some(warning), None) = (warning, session.compare()) {
-        note_ui(&warning, palette.warning, ui);
+        kit::note_ui(&warning, palette.warning, ui);
     }
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
     if kit::button_ui(Button::new(if on { text::COMPARE_OFF } else { text::THREE_SPEEDS }), ui).clicked() {
@@ -49,7 +48,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     ui.add_space(space::S);
     param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
-    note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
+    kit::note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
@@ -73,7 +72,7 @@ pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
 /// A clip that becomes a cycle.
 pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
+    kit::note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
     slot_row_ui(Slot::A, session, out, ui);
     ui.add_space(space::S);
     let params = session.params();
@@ -101,7 +100,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         None => vec![params.text(Key::LoopMethod).to_owned()],
     };
     if let [method] = methods.as_slice() {
-        note_ui(text::loop_method(method), palette_of(ui).muted, ui);
+        kit::note_ui(text::loop_method(method), palette_of(ui).muted, ui);
     }
     let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
     if any(&["exact", "both", "start", "end"]) {
@@ -138,10 +137,4 @@ fn found_sentence(cycle: Option<Cycle>) -> String {
         Some(CycleMade::Cut { distance_cm, .. }) => text::ends_found(distance_cm),
         _ => format!("{}.", text::FOUND),
     }
-}
-
-/// A sentence in small type.
-fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
-    ui.add_space(space::XS);
 }

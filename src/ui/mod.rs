@@ -259,6 +259,11 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
                         state.library_open = false;
                     }
                 } else {
+                    // On so small a stage it would lie on what it speaks of.
+                    if let Some(hint) = stage_panel::hint(session) {
+                        kit::note_ui(hint, palette_of(ui).muted, ui);
+                        ui.add_space(space::M);
+                    }
                     lab_panel::lab_panel_ui(session, state, out, ui);
                 }
             });

@@ -9,7 +9,7 @@ use super::path_hand::path_of;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Color32, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue::path::PathEdit;
 use segue::session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};
 
@@ -24,12 +24,12 @@ const MOST_WARNINGS: usize = 3;
 pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::PATH_ABOUT, palette.muted, ui);
+    kit::note_ui(text::PATH_ABOUT, palette.muted, ui);
     slot_row_ui(Slot::A, session, out, ui);
     let pane = session.panes().first();
     let path = pane.and_then(|pane| path_of(session, pane));
     if let Some(problem) = pane.and_then(|pane| pane.problem.as_deref()) {
-        note_ui(problem, palette.warning, ui);
+        kit::note_ui(problem, palette.warning, ui);
     }
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
@@ -54,19 +54,19 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         out.set_once(Key::Path, Value::Text(String::new()));
     }
     if let Some(said) = &state.path.said {
-        note_ui(said, palette.warning, ui);
+        kit::note_ui(said, palette.warning, ui);
     }
     if let Some(path) = path {
         warnings_ui(path, ui);
     }
     ui.add_space(space::S);
     param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
-    note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
+    kit::note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     if path.is_some_and(|path| path.awaits_feet) {
-        note_ui(text::FEET_LATER, palette.muted, ui);
+        kit::note_ui(text::FEET_LATER, palette.muted, ui);
     }
     ui.add_space(space::S);
     fit_ui(path, session, out, ui);
@@ -109,7 +109,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
         || text::POINTS_HELP.to_owned(),
         |(index, place)| text::chosen_point(index, points.len(), place),
     );
-    note_ui(&words, palette_of(ui).muted, ui);
+    kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
 /// What is done with the whole path.
@@ -153,10 +153,10 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
     let fps = path.fitted.motion().clip.fps();
     let warning = palette_of(ui).warning;
     for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
-        note_ui(&text::hard_turn(turn, fps), warning, ui);
+        kit::note_ui(&text::hard_turn(turn, fps), warning, ui);
     }
     if path.hard_turns.len() > MOST_WARNINGS {
-        note_ui(&text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS), warning, ui);
+        kit::note_ui(&text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS), warning, ui);
     }
 }
 
@@ -178,7 +178,7 @@ fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) 
     );
     let color = palette_of(ui).a;
     kit::profile_ui(&words, path.fitted.errors_cm(), error.most_cm, color, ui);
-    note_ui(&words, palette_of(ui).muted, ui);
+    kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
 /// Few and many control points side by side, or back to one pane.
@@ -226,7 +226,7 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
                 });
             });
             if let Err(problem) = &companion.motion {
-                note_ui(problem, palette.warning, ui);
+                kit::note_ui(problem, palette.warning, ui);
             }
         });
     }
@@ -241,11 +241,5 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));
     }
-    note_ui(text::COMPANY_HELP, palette.muted, ui);
-}
-
-/// A sentence in small type.
-fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
-    ui.add_space(space::XS);
+    kit::note_ui(text::COMPANY_HELP, palette.muted, ui);
 }

@@ -19,7 +19,7 @@ const FIRST_SHARE: f64 = 0.25;
 /// All rows of the lab.
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
+    kit::note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
     pair_ui(session, out, ui);
     map_ui(session, state, out, ui);
     let params = session.params();
@@ -92,7 +92,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 WeightCurveEvent::Settled => out.commands.push(Command::Settle),
             }
         }
-        note_ui(text::WEIGHT_CURVE_HELP, palette_of(ui).muted, ui);
+        kit::note_ui(text::WEIGHT_CURVE_HELP, palette_of(ui).muted, ui);
     }
     let (label, wanted) = if keys.is_empty() {
         (text::WEIGHT_OVER_TIME, text::FIRST_WEIGHTS)
@@ -170,7 +170,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let job = session.jobs().into_iter().find(|job| job.name == "registering");
     let waits = job.map(|job| format!("{}… {:.0} %", text::COMPARING, 100.0 * job.progress));
     let Some(map) = session.distance_map() else {
-        note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);
+        kit::note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);
         return;
     };
     let picture = picture_of(map, ui);
@@ -221,9 +221,9 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     let pair = state.hovered_pair.or(now.filter(inside));
     let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
-    note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
+    kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
     if session.params().text(Key::Pins).is_empty() {
-        note_ui(text::MAP_HELP, palette.muted, ui);
+        kit::note_ui(text::MAP_HELP, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr(&text::pins(pins.len()), ui)).font(theme_of(ui).font(Type::Label)));
@@ -233,7 +233,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         });
     }
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
-        note_ui(problem, palette.warning, ui);
+        kit::note_ui(problem, palette.warning, ui);
     }
     ui.add_space(space::S);
 }
@@ -408,9 +408,4 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     };
     ui.data_mut(|data| data.insert_temp(id, picture.clone()));
     Some(picture)
-}
-
-/// A sentence in small type.
-fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

@@ -69,23 +69,10 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     camera_buttons_ui(session, stage, state, out, ui);
     stick_on_stage_ui(session, stage, layout, state, ui);
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
-    let hint = if is_welcome(session) {
-        text::WELCOME_HINT
-    } else if session.params().text(Key::Lab) == "register" {
-        text::REGISTER_HINT
-    } else if session.params().text(Key::Lab) == "path" {
-        text::PATH_HINT
-    } else if session.params().text(Key::Lab) == "graph" {
-        text::GRAPH_HINT
-    } else if session.is_driven() {
-        text::MATCH_HINT
-    } else {
-        ""
-    };
     let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
-    } else if state.hint && roomy && !hint.is_empty() {
+    } else if let Some(hint) = hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone) {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
             free.min.x += kit::stick_size(ui) + space::L;
@@ -94,6 +81,17 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
         if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
             state.hint = false;
         }
+    }
+}
+
+/// What to look at, in one line.
+pub(crate) fn hint(session: &Session) -> Option<&'static str> {
+    match session.params().text(Key::Lab) {
+        "register" => Some(text::REGISTER_HINT),
+        "path" => Some(text::PATH_HINT),
+        "graph" => Some(text::GRAPH_HINT),
+        _ if is_welcome(session) => Some(text::WELCOME_HINT),
+        _ => session.is_driven().then_some(text::MATCH_HINT),
     }
 }
 

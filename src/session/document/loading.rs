@@ -7,7 +7,7 @@ use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
-use crate::session::reading::{Companion, Content, ReadFile, ReadReport, ReadSetup, ReadTask};
+use crate::session::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -40,6 +40,12 @@ enum Purpose {
     Again,
     /// It is the motion of a bundled take.
     Sample(&'static Sample),
+}
+
+impl Reading {
+    fn is_small(&self) -> bool {
+        self.task.size <= LARGE_BYTES || matches!(self.purpose, Purpose::Sample(_))
+    }
 }
 
 impl Session {
@@ -183,7 +189,7 @@ impl Session {
             // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive is read again from there.
             Purpose::New(_) if report.is_one_file() && self.misses_skeleton(&report, &task.setup) => {
                 let setup = self.setup_for_new();
-                self.ask(ReadTask { setup, content, ..task }, purpose);
+                self.ask(ReadTask { content, setup, ..task }, purpose);
                 return None;
             }
             Purpose::New(came) => self.admit(report, &content, &task.setup, came),
@@ -198,11 +204,16 @@ impl Session {
         Some(loaded.map_err(|error| error.to_string()))
     }
 
-    /// Whether a bundled take is being read. It comes with the page: nobody is told of it as of a file, and nobody stops it.
+    /// Whether that task is under way.
     #[must_use]
-    pub fn is_reading_sample(&self) -> bool {
-        let is_sample = |reading: &Reading| matches!(reading.purpose, Purpose::Sample(_));
-        self.reading.iter().any(is_sample)
+    pub fn is_reading(&self, task: u64) -> bool {
+        self.reading.iter().any(|reading| reading.task.id == task)
+    }
+
+    /// Whether something is being read that is there in a moment: nobody is told how far that is.
+    #[must_use]
+    pub fn is_reading_small(&self) -> bool {
+        self.reading.iter().any(Reading::is_small)
     }
 
     /// Gives up a task.
@@ -232,7 +243,7 @@ impl Session {
     }
 
     pub(super) fn reading_jobs(&self) -> impl Iterator<Item = Job> + '_ {
-        let files = self.reading.iter().filter(|reading| !matches!(reading.purpose, Purpose::Sample(_)));
+        let files = self.reading.iter().filter(|reading| !reading.is_small());
         files.map(|Reading { task, done, .. }| Job {
             task: Some(task.id),
             name: task.name.clone(),

@@ -110,11 +110,14 @@ fn serve(session: &mut Session) {
         for task in asked {
             let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
             let report = crate::session::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
-            assert!(session.jobs().iter().any(|job| job.task == Some(task.id)) || session.is_reading_sample());
-            let _ = session.finish_reading(task.id, Ok(report));
+            assert!(session.is_reading(task.id) && session.is_reading_small() && session.jobs().iter().all(|job| job.task.is_none()));
+            session.finish_reading(task.id, Ok(report));
         }
     }
 }
+
+/// Names and bytes of what is dropped.
+type Dropped<'a> = &'a [(&'a str, Arc<[u8]>)];
 
 /// What is in the library, and what is played.
 fn shown(session: &Session) -> (Vec<(String, &'static str, usize)>, [String; 2]) {
@@ -129,7 +132,7 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         Arc::<[u8]>::from(encoder.finish().unwrap())
     };
     let archive = Arc::<[u8]>::from(zip(&[("01_03.amc", AMC)]));
-    let dropped: [&[(&str, Arc<[u8]>)]; 6] = [
+    let dropped: [Dropped<'_>; 6] = [
         &[("walk.bvh", bytes(BVH))],
         &[("01_02.amc", bytes(AMC)), ("01.asf", bytes(ASF))],
         &[("01.asf", bytes(ASF)), ("01_02.amc", bytes(AMC))],
@@ -140,13 +143,20 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
     for files in dropped {
         let (mut at_once, mut elsewhere) = (Session::new(), Session::that_has_files_read());
         for (name, bytes) in files {
-            let _ = at_once.load(name, Arc::clone(bytes));
+            at_once.load(name, Arc::clone(bytes)).ok();
             assert_eq!(elsewhere.load(name, Arc::clone(bytes)), Ok(Loaded::default()), "it is asked for");
         }
         assert!(elsewhere.clip_infos().iter().all(|info| info.sha256.is_none()));
         serve(&mut elsewhere);
         assert_eq!(shown(&elsewhere), shown(&at_once));
-        let errors = |session: &Session| session.notices().list().iter().filter(|notice| notice.level == Level::Error).count();
+        let errors = |session: &Session| {
+            session
+                .notices()
+                .list()
+                .iter()
+                .filter(|notice| notice.level == Level::Error)
+                .count()
+        };
         assert_eq!(errors(&elsewhere), errors(&at_once));
         assert!(elsewhere.jobs().iter().all(|job| job.task.is_none()));
 
@@ -181,7 +191,7 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
     let asks = |session: &mut Session| session.take_requests().contains(&Request::Sample(sample));
     assert!(asks(&mut session));
     session.load_sample(sample, &packed).unwrap();
-    assert!(session.is_reading_sample() && session.jobs().is_empty());
+    assert!(session.is_reading_small() && session.jobs().is_empty());
     session.apply(Command::Set(vec![(Key::BlendTime, Value::Number(0.6))])).unwrap();
     let told = session.notices().list().len();
     let reads: Vec<_> = session.take_requests();
@@ -193,7 +203,7 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
     session.finish_reading(task.id, Ok(report)).unwrap().unwrap();
     assert!(session.library().get(sample.id).unwrap().motion.is_some());
     assert_eq!(session.notices().list().len(), told);
-    assert!(!session.is_reading_sample());
+    assert!(!session.is_reading_small());
 }
 
 #[test]

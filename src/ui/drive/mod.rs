@@ -11,9 +11,6 @@ pub(super) use hand::{steer, stick_on_stage_ui};
 pub(super) use rows::{compare_hysteresis, drive_ui};
 pub(super) use strip::drive_panel_ui;
 
-use super::theme::{Type, theme_of};
-use crate::ui::language::tr;
-use eframe::egui::{Color32, RichText, Ui};
 use segue::session::Session;
 use segue::session::{DriveMoment, Driven, Key};
 use std::sync::Arc;
@@ -27,9 +24,4 @@ pub(super) fn is_open(session: &Session) -> bool {
 fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
     let driven = session.main_outcome()?.driven.as_ref()?;
     Some((driven, driven.at(session.now_secs())?))
-}
-
-/// A sentence in small type.
-fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

@@ -1,6 +1,5 @@
 //! What is set in the Match lab.
 
-use super::note_ui;
 use super::tags::tags_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
@@ -19,9 +18,9 @@ use segue::session::{Command, Key, Session, Value, sentence, write_ids};
 pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::MATCH_ABOUT, palette.muted, ui);
+    kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
-        note_ui(problem, palette.warning, ui);
+        kit::note_ui(problem, palette.warning, ui);
     }
     ui.add_space(space::XS);
     row(Key::Scenario, session, out, ui);
@@ -77,7 +76,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     if session.is_driven() {
         let secs = session.recording().ticks() as f64 / RATE as f64;
-        note_ui(&text::driven_for(secs), muted, ui);
+        kit::note_ui(&text::driven_for(secs), muted, ui);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
             let replay = Button::new(text::REPLAY).icon(Icon::Loop).hint(text::REPLAY_HELP);
@@ -89,7 +88,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             }
         });
     } else if session.params().text(Key::Scenario) != "own" || !session.params().text(Key::Drive).is_empty() {
-        note_ui(text::RECORDED, muted, ui);
+        kit::note_ui(text::RECORDED, muted, ui);
         if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui).clicked() {
             out.commands.push(Command::Set(vec![
                 (Key::Scenario, Value::Choice("own")),
@@ -111,7 +110,7 @@ fn any(key: Key, word: &str, session: &Session) -> bool {
 
 fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     row(Key::Hysteresis, session, out, ui);
-    note_ui(text::hysteresis(session.params().text(Key::Hysteresis)), palette_of(ui).muted, ui);
+    kit::note_ui(text::hysteresis(session.params().text(Key::Hysteresis)), palette_of(ui).muted, ui);
     if any(Key::Hysteresis, "bias", session) {
         row(Key::BiasShare, session, out, ui);
         row(Key::BiasConstant, session, out, ui);
@@ -159,7 +158,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let ids = session.match_clip_ids();
     if ids.is_empty() {
-        note_ui(text::MADE_SET, palette.muted, ui);
+        kit::note_ui(text::MADE_SET, palette.muted, ui);
     }
     let set = |ids: &[String], out: &mut Out| out.set_once(Key::MatchClips, Value::Text(write_ids(ids)));
     for (index, id) in ids.iter().enumerate() {
@@ -189,9 +188,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if let Some((driven, _)) = super::shown(session) {
         let skipped = driven.database.skipped();
-        note_ui(&text::database(&driven.database), palette.muted, ui);
+        kit::note_ui(&text::database(&driven.database), palette.muted, ui);
         for error in skipped.iter().take(3) {
-            note_ui(&sentence(&error.to_string()), palette.warning, ui);
+            kit::note_ui(&sentence(&error.to_string()), palette.warning, ui);
         }
     }
     row(Key::Mirrored, session, out, ui);

@@ -1,7 +1,7 @@
 //! Stretches of clips that are tagged by hand, and which tags are asked for.
 
+use super::shown;
 use super::strip::strip_place;
-use super::{note_ui, shown};
 use crate::ui::kit::{self, Button, Chosen, Icon, SliderRow};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
@@ -21,7 +21,7 @@ pub(super) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     for (key, word) in [(Key::AskTag, "any"), (Key::ForbidTag, "nothing")] {
         wanted_ui(key, word, &tags, session, out, ui);
     }
-    note_ui(text::TAGS_HELP, muted, ui);
+    kit::note_ui(text::TAGS_HELP, muted, ui);
     for (index, tag) in tags.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.push_id(("tag", index), |ui| {
@@ -35,7 +35,7 @@ pub(super) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 .library()
                 .find(&tag.clip)
                 .map_or(tag.clip.as_str(), |entry| entry.name.as_str());
-            note_ui(&text::hand_tag(name, tag.secs, &tag.word, tag.takes_away), palette_of(ui).text, ui);
+            kit::note_ui(&text::hand_tag(name, tag.secs, &tag.word, tag.takes_away), palette_of(ui).text, ui);
         });
     }
     let Some((driven, moment)) = shown(session) else { return };

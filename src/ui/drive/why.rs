@@ -1,6 +1,6 @@
 //! Why this frame: what the last search found, with its cost by feature block.
 
-use super::{note_ui, shown};
+use super::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
@@ -33,7 +33,7 @@ pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
     let search = shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
     let Some((driven, search)) = search else {
-        note_ui(text::NO_SEARCH, palette.muted, ui);
+        kit::note_ui(text::NO_SEARCH, palette.muted, ui);
         return;
     };
     let database = &driven.database;
@@ -69,7 +69,7 @@ pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         state.drive.chosen = clicked.filter(|index| state.drive.chosen != Some(*index));
     }
     ui.add_space(space::XS);
-    note_ui(&text::searched(search, database.valid().len()), palette.muted, ui);
-    note_ui(text::GHOST_HELP, palette.muted, ui);
+    kit::note_ui(&text::searched(search, database.valid().len()), palette.muted, ui);
+    kit::note_ui(text::GHOST_HELP, palette.muted, ui);
     param_row_ui(Key::ShownCandidates, &Detail::default(), session, out, ui);
 }

@@ -1,6 +1,6 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
-use super::{jump_words, named, note_ui, open_jump, table};
+use super::{jump_words, named, open_jump, table};
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
@@ -138,7 +138,7 @@ impl Drawn {
 pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let Some(cast) = session.graph_cast() else {
-        note_ui(text::EMPTY_PANE, palette.muted, ui);
+        kit::note_ui(text::EMPTY_PANE, palette.muted, ui);
         return;
     };
     let (walk, built) = (session.graph_walk(), session.graph_built());
@@ -189,7 +189,7 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
             open_jump(ends, session, state, out);
         }
     }
-    note_ui(&words, palette.muted, ui);
+    kit::note_ui(&words, palette.muted, ui);
 }
 
 /// The tiles that were made of a field in the colours of a theme.

@@ -12,9 +12,6 @@ pub(super) use strip::walk_panel_ui;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
-use super::theme::{Type, theme_of};
-use crate::ui::language::tr;
-use eframe::egui::{Color32, RichText, Ui};
 use segue::graph::Place;
 use segue::session::{Built, Command, Key, Session, Value, Walk, write_jump};
 
@@ -70,9 +67,4 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
 fn no_way(built: &Built, (secs, clip): (f64, usize)) -> String {
     let name = built.cast().names().get(clip).map_or("", String::as_str);
     format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")
-}
-
-/// A sentence in small type.
-fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }

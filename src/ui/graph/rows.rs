@@ -1,6 +1,6 @@
 //! What is set of graph and walk.
 
-use super::{close_jump, map, no_way, note_ui, shows_jump, table};
+use super::{close_jump, map, no_way, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
@@ -18,13 +18,13 @@ use std::sync::Arc;
 pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
-    note_ui(text::GRAPH_ABOUT, palette.muted, ui);
+    kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
     progress_ui(session, out, ui);
     if shows_jump(session) && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked() {
         close_jump(state, out);
     }
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
-        note_ui(problem, palette.warning, ui);
+        kit::note_ui(problem, palette.warning, ui);
     }
     if !state.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
@@ -106,7 +106,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         set_clips(&all, out);
     }
     if let Some(words) = session.graph_cast().and_then(|cast| text::moved_onto_first(cast)) {
-        note_ui(&words, palette.muted, ui);
+        kit::note_ui(&words, palette.muted, ui);
     }
 }
 
@@ -166,9 +166,9 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if let Some(built) = session.graph_built() {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
-        note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
+        kit::note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
         if built.lacks_some() {
-            note_ui(
+            kit::note_ui(
                 "More transitions lie below the threshold than can be held: the closest are.",
                 palette.warning,
                 ui,
@@ -220,7 +220,7 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     if let Some(walk) = session.graph_walk() {
         for &missed in &walk.missed {
-            note_ui(&no_way(&walk.built, missed), palette.warning, ui);
+            kit::note_ui(&no_way(&walk.built, missed), palette.warning, ui);
         }
     }
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
@@ -238,18 +238,18 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         ]));
     }
     if state.drawing.is_some() {
-        note_ui(text::DRAWING, palette.accent_ink, ui);
+        kit::note_ui(text::DRAWING, palette.accent_ink, ui);
     }
     if !session.params().text(Key::WalkPath).is_empty() {
         if kit::button_ui(Button::new(text::REMOVE_PATH), ui).clicked() {
             out.set_once(Key::WalkPath, Value::Text(String::new()));
         }
         if let Some(trace) = session.graph_walk().and_then(|walk| walk.followed.as_ref()) {
-            note_ui(&text::followed(trace), palette.muted, ui);
+            kit::note_ui(&text::followed(trace), palette.muted, ui);
         }
     }
     if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
-        note_ui(&text::dead_end(walk.motion.clip.duration_secs()), palette.warning, ui);
+        kit::note_ui(&text::dead_end(walk.motion.clip.duration_secs()), palette.warning, ui);
     }
 }
 
@@ -302,7 +302,7 @@ fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let mut values = link::read(experiment.query).values;
         let on = values.iter().all(|(key, value)| params.get(*key) == value);
         let response = kit::button_ui(Button::new(experiment.name).selected(on).hint(experiment.help), ui);
-        note_ui(experiment.help, palette_of(ui).muted, ui);
+        kit::note_ui(experiment.help, palette_of(ui).muted, ui);
         if response.clicked() {
             if on {
                 values = vec![(Key::Compare, Value::Text(String::new()))];

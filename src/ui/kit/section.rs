@@ -3,8 +3,8 @@
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, put};
 use crate::ui::language::tr;
-use crate::ui::theme::{Type, palette_of, theme_of};
-use eframe::egui::{Align2, CollapsingHeader, Rect, RichText, Ui, vec2};
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{Align2, CollapsingHeader, Color32, Rect, RichText, Ui, vec2};
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at its right end.
 pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
@@ -30,4 +30,10 @@ pub(crate) fn folded_ui(title: &str, ui: &mut Ui, content: impl FnOnce(&mut Ui))
     });
     let shown = header.show_unindented(ui, content);
     shown.body_response.is_some()
+}
+
+/// A sentence about what stands above or below it.
+pub(crate) fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
+    ui.add_space(space::XS);
 }
