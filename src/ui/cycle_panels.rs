@@ -43,7 +43,8 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         kit::note_ui(&warning, palette.warning, ui);
     }
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
-    if kit::button_ui(Button::new(if on { text::COMPARE_OFF } else { text::THREE_SPEEDS }), ui).clicked() {
+    // The rows of what is compared have the way back.
+    if !on && kit::button_ui(Button::new(text::THREE_SPEEDS), ui).clicked() {
         compare_speeds(session, out);
     }
     ui.add_space(space::S);

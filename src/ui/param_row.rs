@@ -184,11 +184,11 @@ fn compared_ui(compare: &Compare, row: &SliderRow<'_>, in_seconds: &dyn Fn(f64) 
         settle(&response, out);
     }
     ui.horizontal(|ui| {
-        let more = Button::new(text::PANE_MORE).quiet().icon(Icon::Plus);
+        let more = Button::icon_only(Icon::Plus, text::PANE_MORE);
         if compare.values.len() < MAX_PANES && kit::button_ui(more, ui).clicked() {
             out.set_once(Key::Compare, Value::Text(compare.with_one_more().to_string()));
         }
-        if kit::button_ui(Button::new(text::PANE_LESS).quiet(), ui).clicked() {
+        if kit::button_ui(Button::icon_only(Icon::Minus, text::PANE_LESS), ui).clicked() {
             panes.values.pop();
             // One value is the parameter's own again.
             match panes.values.as_slice() {

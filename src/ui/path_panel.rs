@@ -164,8 +164,8 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
 fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(tr(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
-    let label = if on { text::COMPARE_OFF } else { text::FOUR_EIGHT_SIXTEEN };
-    if kit::button_ui(Button::new(label).selected(on), ui).clicked() {
+    // The rows of what is compared have the way back.
+    if !on && kit::button_ui(Button::new(text::FOUR_EIGHT_SIXTEEN), ui).clicked() {
         compare_points(session, out);
     }
     param_row_ui(Key::PathSmoothing, &Detail::default(), session, out, ui);

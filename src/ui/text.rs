@@ -17,8 +17,8 @@ pub(crate) const COMPARE_OFF: &str = "One pane";
 /// Of what several values stand side by side, and nothing of the kind.
 pub(crate) const SIDE_BY_SIDE: &str = "Side by side";
 pub(crate) const COMPARE_NOTHING: &str = "one value of each";
-pub(crate) const PANE_MORE: &str = "One more";
-pub(crate) const PANE_LESS: &str = "One fewer";
+pub(crate) const PANE_MORE: &str = "One more pane";
+pub(crate) const PANE_LESS: &str = "One pane fewer";
 pub(crate) const COMPARE_HELP: &str = "Full, half and a third of the value side by side";
 pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";

@@ -32,6 +32,8 @@ pub(crate) enum Icon {
     Link,
     /// One more.
     Plus,
+    /// One fewer.
+    Minus,
     /// Throw away.
     Trash,
     /// Change the words.
@@ -168,6 +170,7 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.stroke(&[(8.0, 3.0), (8.0, 13.0)]);
             pen.stroke(&[(3.0, 8.0), (13.0, 8.0)]);
         }
+        Icon::Minus => pen.stroke(&[(3.0, 8.0), (13.0, 8.0)]),
         Icon::Trash => {
             pen.stroke(&[(2.8, 4.5), (13.2, 4.5)]);
             pen.stroke(&[(6.0, 4.2), (6.0, 2.5), (10.0, 2.5), (10.0, 4.2)]);
