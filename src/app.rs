@@ -272,6 +272,7 @@ impl Segue {
         }
         if !std::mem::replace(&mut self.has_begun, true) {
             self.begin();
+            self.keeper.has_begun(&self.session);
         }
         self.send_requests();
         let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);

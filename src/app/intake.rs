@@ -3,7 +3,7 @@
 use super::{Event, Segue};
 use crate::platform::{self, Incoming, LargeFile, ReadNews};
 use crate::ui;
-use segue::session::reading::{Content, LARGE_BYTES};
+use segue::session::reading::Content;
 use segue::session::{Command, Key, Level, Request, Value};
 
 impl Segue {
@@ -106,16 +106,6 @@ impl Segue {
 
     /// Loads a file. What is wrong with it stands in a notice.
     fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>, was_fetched: bool) {
-        let size = bytes.len() as u64;
-        if size > LARGE_BYTES {
-            let content = Content::Here(bytes);
-            if was_fetched {
-                self.session.begin_reading_fetched(name, content, size);
-            } else {
-                self.session.begin_reading(name, content, size);
-            }
-            return;
-        }
         let loaded = if was_fetched {
             self.session.load_fetched(name, bytes)
         } else {

@@ -96,6 +96,13 @@ impl Keeper {
         true
     }
 
+    /// The session is now as it begins: what differs from it later was touched by somebody.
+    pub(crate) fn has_begun(&mut self, session: &Session) {
+        if let Phase::Late { begun, .. } = &mut self.phase {
+            *begun = Mark::of(session);
+        }
+    }
+
     /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
     pub(crate) fn arrived(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) -> bool {
         let nothing = stored.is_none();

@@ -33,7 +33,7 @@ pub struct Candidates {
     pub(super) nearest_cm: Option<f64>,
     /// How many were below the threshold and are not held.
     pub(super) left_out: usize,
-    /// The threshold, centimetres.
+    /// The threshold by which they were found, centimetres: they serve all lower ones as well.
     pub(super) threshold_cm: f64,
 }
 
@@ -68,12 +68,6 @@ impl Candidates {
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
-    }
-
-    /// The threshold by which they were found, centimetres: they serve all lower ones as well.
-    #[must_use]
-    pub fn threshold_cm(&self) -> f64 {
-        self.threshold_cm
     }
 
     /// Whether all places that are no farther than this are held.

@@ -121,6 +121,12 @@ impl Walker {
         self.ahead = edges.into_iter().collect();
     }
 
+    /// Whether it is on a way that it was told to go.
+    #[must_use]
+    pub fn has_way(&self) -> bool {
+        !self.ahead.is_empty()
+    }
+
     /// The next edge; `None` in a dead end.
     pub fn next_edge(&mut self) -> Option<EdgeIndex> {
         let edge = self.decided()?;

@@ -95,11 +95,11 @@ pub enum CommandError {
 pub enum Request {
     /// A bundled take; hand its packed bytes to [`super::Session::load_sample`].
     Sample(&'static Sample),
-    /// A file at an address; hand its bytes to [`super::Session::load`].
+    /// A file at an address; hand its bytes to [`super::Session::load_fetched`].
     Fetch(String),
     /// The text of a lesson; hand its bytes to [`super::Session::finish_lesson`].
     Lesson(Source),
-    /// A file that takes too long to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
+    /// A file that is not to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
     Read(ReadTask),
     /// Nobody waits for a task any longer.
     StopReading {

@@ -78,16 +78,27 @@ impl Compare {
         })
     }
 
-    /// The same with one value more: of numbers the share of the first that comes next, a quarter after a third.
+    /// The same with one value more: of numbers the share of the first that comes next, a quarter after a third. Where the range (the parameter's
+    /// own, or a narrower one) ends before that, the middle of the widest gap between those that are there.
     #[must_use]
-    pub fn with_one_more(&self) -> Self {
+    pub fn with_one_more(&self, range: Option<(f64, f64)>) -> Self {
         let mut more = self.clone();
-        let next = match (self.key.param().kind, self.values.first()) {
-            (Kind::Number { min, max, .. }, Some(Value::Number(first))) => {
-                Value::Number((first / (self.values.len() + 1) as f64).clamp(min, max))
-            }
-            _ => return more,
+        let Kind::Number { min, max, .. } = self.key.param().kind else {
+            return more;
         };
+        let (min, max) = range.unwrap_or((min, max));
+        let number = |value: &Value| match value {
+            Value::Number(number) => Some(*number),
+            _ => None,
+        };
+        let mut numbers: Vec<f64> = self.values.iter().filter_map(number).collect();
+        let Some(share) = numbers.first().map(|first| first / (self.values.len() + 1) as f64) else {
+            return more;
+        };
+        numbers.sort_by(f64::total_cmp);
+        let gaps = numbers.windows(2).map(|pair| (pair[1] - pair[0], f64::midpoint(pair[0], pair[1])));
+        let widest = gaps.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(min, |(_, middle)| middle);
+        let next = Value::Number(if (min..=max).contains(&share) { share } else { widest });
         if let Ok(next) = self.key.param().check(next) {
             more.values.push(next);
             more.values.truncate(MAX_PANES);
@@ -117,8 +128,9 @@ mod tests {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
         assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0, None), Some(compare.clone()));
-        assert_eq!(compare.with_one_more().to_string(), "blend_window:30,15,10,8");
-        assert_eq!(compare.with_one_more().with_one_more(), compare.with_one_more());
+        let four = compare.with_one_more(None);
+        assert_eq!(four.to_string(), "blend_window:30,15,10,8");
+        assert_eq!(four.with_one_more(None), four);
         // A kept clip's id has commas of its own, and so may a file's name.
         let clips = Compare::parse("a:walk,blend(a:walk,b:run),my%2C walk.bvh~0a1b2c3d").unwrap();
         assert_eq!(clips.values[2], Value::Text("my, walk.bvh~0a1b2c3d".into()));
@@ -132,6 +144,8 @@ mod tests {
         let of = |key, full, range| Compare::full_half_third(key, full, range).unwrap().to_string();
         // No run is as slow as a third of its speed.
         assert_eq!(of(Key::GaitSpeed, 3.5, Some((1.8, 6.5))), "gait_speed:6.5,4.15,1.8");
+        let runs = Compare::parse("gait_speed:6.5,4.15,1.8").unwrap();
+        assert_eq!(runs.with_one_more(Some((1.8, 6.5))).to_string(), "gait_speed:6.5,4.15,1.8,3");
         assert_eq!(of(Key::GaitSpeed, 1.4, Some((0.4, 2.2))), "gait_speed:1.4,0.7,0.45");
         assert_eq!(of(Key::BlendWindow, 1.0, None), "blend_window:240,121,1");
         assert_eq!(Compare::full_half_third(Key::Method, 1.0, None), None);

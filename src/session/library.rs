@@ -211,6 +211,27 @@ impl Library {
         self.entries.len() < before
     }
 
+    /// Takes what is known of clips over that have no motion here, where the other library has them read in the same way.
+    pub fn take_motions_of(&mut self, other: &Self) {
+        for entry in self.entries.iter_mut().filter(|entry| entry.motion.is_none()) {
+            let known = other.get(&entry.id).filter(|known| {
+                let is_read_alike = match (&known.origin, &entry.origin) {
+                    (Origin::File(a), Origin::File(b)) => {
+                        (&a.sha256, a.index, a.options, &a.companion) == (&b.sha256, b.index, b.options, &b.companion)
+                    }
+                    (a, b) => a == b,
+                };
+                known.motion.is_some() && known.roles_by_hand == entry.roles_by_hand && is_read_alike
+            });
+            if let Some(known) = known {
+                *entry = Arc::new(Entry {
+                    name: entry.name.clone(),
+                    ..(**known).clone()
+                });
+            }
+        }
+    }
+
     /// Changes a clip in place, when it is there.
     pub fn change(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> bool {
         let Some(slot) = self.entries.iter_mut().find(|entry| entry.id == id) else {

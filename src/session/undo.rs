@@ -84,7 +84,8 @@ impl History {
             library: library.clone(),
         });
         *open = None;
-        *library = state.library;
+        let left = std::mem::replace(library, state.library);
+        library.take_motions_of(&left);
         for param in PARAMS.iter().filter(|param| param.is_undoable()) {
             params.copy_from(&state.params, param.key);
         }

@@ -16,7 +16,7 @@ use super::save_rows::save_rows_ui;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use super::top_bar::toggle_compare;
+use super::top_bar::{made_number, toggle_compare};
 use eframe::egui::{self, Ui};
 use segue::math::spring;
 use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value, split_reference};
@@ -91,8 +91,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         }
         param_row_ui(param.key, &Detail::default(), session, out, ui);
     }
-    let has_speed = !matches!(session.params().text(Key::Gait), "idle" | "spin");
-    compare_ui(if has_speed { Key::GaitSpeed } else { Key::BodyHeight }, session, out, ui);
+    compare_ui(made_number(session), session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);

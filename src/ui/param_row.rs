@@ -135,9 +135,11 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let in_seconds = |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
     let help = detail.help.as_deref().unwrap_or(param.help);
     if let Some(compare) = compare {
-        return compared_ui(&compare, &row, &in_seconds, help, out, ui);
+        return compared_ui(&compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
+    // What was set for another motion is brought to what this one can do.
     let value = given.or_else(|| session.automatic_value(key)).unwrap_or(default);
+    let value = session.range_of(key).map_or(value, |(min, max)| value.clamp(min, max));
     let secondary = in_seconds(value);
     row = row.secondary(&secondary).help(help).source(match (auto, given) {
         (false, _) => Source::Manual,
@@ -168,7 +170,15 @@ fn number_of(value: &Value) -> Option<f64> {
 }
 
 /// A number that differs from pane to pane: a slider for each of them, so that what is dragged is what one sees.
-fn compared_ui(compare: &Compare, row: &SliderRow<'_>, in_seconds: &dyn Fn(f64) -> String, help: &str, out: &mut Out, ui: &mut Ui) {
+fn compared_ui(
+    compare: &Compare,
+    range: Option<(f64, f64)>,
+    row: &SliderRow<'_>,
+    in_seconds: &dyn Fn(f64) -> String,
+    help: &str,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let param = compare.key.param();
     let mut panes = compare.clone();
     let last = compare.values.len() - 1;
@@ -186,7 +196,7 @@ fn compared_ui(compare: &Compare, row: &SliderRow<'_>, in_seconds: &dyn Fn(f64) 
     ui.horizontal(|ui| {
         let more = Button::icon_only(Icon::Plus, text::PANE_MORE);
         if compare.values.len() < MAX_PANES && kit::button_ui(more, ui).clicked() {
-            out.set_once(Key::Compare, Value::Text(compare.with_one_more().to_string()));
+            out.set_once(Key::Compare, Value::Text(compare.with_one_more(range).to_string()));
         }
         if kit::button_ui(Button::icon_only(Icon::Minus, text::PANE_LESS), ui).clicked() {
             panes.values.pop();

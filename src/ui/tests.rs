@@ -457,7 +457,10 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
     press("A, half way, B", &mut harness);
     assert_eq!(harness.state().session.params().text(Key::Compare), "speed:1.4,2.45,3.5");
     let back = harness.get_by_label("One pane").rect();
-    assert!(back.right() < DESK.x - space::M, "the row of buttons is as wide as the panel at most: {back:?}");
+    assert!(
+        back.right() < DESK.x - space::M,
+        "the row of buttons is as wide as the panel at most: {back:?}"
+    );
     press("One pane", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
 }

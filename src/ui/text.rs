@@ -581,6 +581,11 @@ pub(crate) const GRAPH_ABOUT: &str =
     "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
 /// Over the stage.
 pub(crate) const GRAPH_HINT: &str = "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+/// Why a visit came to nothing.
+pub(crate) fn no_way(name: &str, secs: f64) -> String {
+    format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")
+}
+pub(crate) const GRAPH_LACKS_SOME: &str = "More transitions lie below the threshold than can be held: the closest are.";
 /// Of the clips.
 pub(crate) const GRAPH_CLIPS: &str = "Clips of the graph";
 /// Adds one.

@@ -154,8 +154,8 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
     let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
     match event {
         // At the ends they mark nothing.
-        TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.commands.push(Command::Reset(Key::In)),
-        TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => out.commands.push(Command::Reset(Key::Out)),
+        TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.set(Key::In, Value::Auto),
+        TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => out.set(Key::Out, Value::Auto),
         TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),

@@ -175,12 +175,21 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         "graph" => return compare_windows(out),
         "match" => return compare_hysteresis(session, out),
         "view" => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
-        "make" => Key::GaitSpeed,
+        "make" => made_number(session),
         "transition" => Key::HalfLife,
         "layers" => Key::LayerWeight,
         _ => Key::BlendWindow,
     };
     out.commands.push(Command::Compare(key));
+}
+
+/// What of a made motion is compared: standing and turning on the spot have no speed.
+pub(crate) fn made_number(session: &Session) -> Key {
+    if matches!(session.params().text(Key::Gait), "idle" | "spin") {
+        Key::BodyHeight
+    } else {
+        Key::GaitSpeed
+    }
 }
 
 /// Two clips as they are, side by side: a reference, and what somebody made after it.

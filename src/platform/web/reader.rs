@@ -4,7 +4,7 @@ use super::page::listen;
 use super::words_of;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
-use segue::session::reading::{ReadTask, Unpacker};
+use segue::session::reading::{LARGE_BYTES, ReadTask, Unpacker};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
@@ -67,8 +67,11 @@ pub(super) fn workers_are_made_by(make: Function) {
 /// A worker that has read more than this is ended, for its memory never shrinks, bytes.
 const KEPT_UP_TO: u64 = 16 << 20;
 
-/// Reads files elsewhere, one after the other.
-pub(crate) struct Reader(Rc<RefCell<State>>);
+/// Reads files elsewhere: large ones one after the other, and small ones beside them.
+pub(crate) struct Reader {
+    large: Rc<RefCell<State>>,
+    small: Rc<RefCell<State>>,
+}
 
 struct State {
     inbox: Inbox,
@@ -92,35 +95,45 @@ impl fmt::Debug for Reader {
 impl Reader {
     /// One that tells `inbox` of what it reads.
     pub(crate) fn new(inbox: &Inbox) -> Self {
-        Self(Rc::new(RefCell::new(State {
-            inbox: inbox.clone(),
-            worker: None,
-            waiting: VecDeque::new(),
-            current: None,
-        })))
+        let state = || {
+            Rc::new(RefCell::new(State {
+                inbox: inbox.clone(),
+                worker: None,
+                waiting: VecDeque::new(),
+                current: None,
+            }))
+        };
+        Self {
+            large: state(),
+            small: state(),
+        }
     }
 
     /// Reads a file when those before it are read.
     pub(crate) fn start(&mut self, task: ReadTask, bytes: FileBytes) {
-        self.0.borrow_mut().waiting.push_back((task, bytes));
-        next(&self.0);
+        let state = if bytes.len() > LARGE_BYTES { &self.large } else { &self.small };
+        state.borrow_mut().waiting.push_back((task, bytes));
+        next(state);
     }
 
     /// Nobody waits for this task any longer.
     pub(crate) fn stop(&mut self, task: u64) {
-        {
-            let mut state = self.0.borrow_mut();
-            state.waiting.retain(|(waiting, _)| waiting.id != task);
-            if state.current.as_ref().is_some_and(|current| current.task == task) {
-                state.current = None;
-                state.end_worker();
-            }
+        for state in [&self.large, &self.small] {
+            state.borrow_mut().forget(task);
+            next(state);
         }
-        next(&self.0);
     }
 }
 
 impl State {
+    fn forget(&mut self, task: u64) {
+        self.waiting.retain(|(waiting, _)| waiting.id != task);
+        if self.current.as_ref().is_some_and(|current| current.task == task) {
+            self.current = None;
+            self.end_worker();
+        }
+    }
+
     fn end_worker(&mut self) {
         if let Some(worker) = self.worker.take() {
             worker.terminate();

@@ -36,8 +36,8 @@ pub(super) struct Reading {
 enum Purpose {
     /// Its clips join the library.
     New(Came),
-    /// Its clips are there already, and only want their motion.
-    Again,
+    /// Its clips are there already, and only want their motion. Those that waited for a skeleton, which has come so, are offered A and B.
+    Again(Option<Came>),
     /// It is the motion of a bundled take.
     Sample(&'static Sample),
 }
@@ -50,7 +50,8 @@ impl Reading {
 
 impl Session {
     /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and the first ones take the places of
-    /// built-in clips in A and B. It is read at once; files above [`LARGE_BYTES`] are better given to [`Session::begin_reading`].
+    /// built-in clips in A and B. It is read at once, unless it is larger than [`LARGE_BYTES`] or the session has all files read elsewhere: then it is
+    /// asked for with [`Request::Read`], nothing is loaded yet, and what is wrong with it is told when it was read.
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
@@ -68,9 +69,8 @@ impl Session {
     }
 
     fn load_that_came(&mut self, name: &str, bytes: Arc<[u8]>, came: Came) -> Result<Loaded, ImportError> {
-        let setup = self.setup_for_new();
-        let Some(read) = self.reads else {
-            let size = bytes.len() as u64;
+        let (setup, size) = (self.setup_for_new(), bytes.len() as u64);
+        let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {
             self.begin(name, Content::Here(bytes), size, setup, Purpose::New(came));
             return Ok(Loaded::default());
         };
@@ -82,12 +82,6 @@ impl Session {
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
         self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
-    }
-
-    /// As [`Session::begin_reading`], for a file that was fetched; see [`Session::load_fetched`].
-    pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
-        let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, Purpose::New(Came::ByLink))
     }
 
     fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
@@ -109,15 +103,21 @@ impl Session {
         self.revision += 1;
     }
 
-    /// Reads a file of the library anew, as its entries say, unless that is under way.
-    pub(super) fn read_again(&mut self, file: SourceFile) {
+    /// Has a file of the library read anew elsewhere, as its entries say, unless that is under way. `came`: see [`Purpose::Again`].
+    pub(super) fn read_again(&mut self, file: SourceFile, came: Option<Came>) {
         let setup = self.setup_of(&file);
         let same =
             |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
         if !self.reading.iter().any(same) {
             self.mark_unread(&file.sha256, None);
-            self.begin(&file.name, file.content, file.size, setup, Purpose::Again);
+            self.begin(&file.name, file.content, file.size, setup, Purpose::Again(came));
         }
+    }
+
+    /// Whether it is being read with what was said of it before.
+    pub(super) fn is_read_again(&self, file: &SourceFile) -> bool {
+        let sha256 = Some(file.sha256.as_str());
+        self.reading.iter().any(|reading| reading.task.setup.sha256.as_deref() == sha256)
     }
 
     fn roles_by_hand(&self, file: &SourceFile) -> BTreeMap<usize, crate::skeleton::Roles> {
@@ -155,11 +155,14 @@ impl Session {
             Ok(report) => report,
             Err(reason) => {
                 let text = format!("{} could not be read: {reason}.", task.name);
-                if purpose == Purpose::Again {
+                if let Purpose::Again(_) = purpose {
                     self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
                 }
                 self.say(Level::Error, text);
-                self.refresh();
+                // A bundled take would be asked for at once, and so on for ever: the next thing that is done asks for it.
+                if !matches!(purpose, Purpose::Sample(_)) {
+                    self.refresh();
+                }
                 return Some(Err(reason));
             }
         };
@@ -169,7 +172,7 @@ impl Session {
             (content, _) => content,
         };
         let loaded = match purpose {
-            Purpose::Again => {
+            Purpose::Again(came) => {
                 let waiting: Vec<String> = (self.library.entries().iter())
                     .filter(|entry| entry.awaits_skeleton())
                     .map(|entry| entry.id.clone())
@@ -179,8 +182,10 @@ impl Session {
                     self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
                     self.say(Level::Error, error.to_string());
                 }
-                for id in waiting {
-                    self.offer_moving(&id, Came::ByHand);
+                if let Some(came) = came {
+                    for id in &waiting {
+                        self.offer_moving(id, came);
+                    }
                 }
                 self.drop_used_skeletons();
                 self.refresh();
@@ -223,9 +228,9 @@ impl Session {
             return;
         };
         let Reading { task, purpose, .. } = self.reading.remove(at);
-        let again = purpose == Purpose::Again;
+        let again = matches!(purpose, Purpose::Again(_));
         if again {
-            let text = format!("Reading {} was stopped. Choose how it is read to read it again.", task.name);
+            let text = format!("Reading {} was stopped: drop the file again.", task.name);
             self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
         }
         self.requests.push(Request::StopReading {
@@ -350,9 +355,7 @@ impl Session {
         if is_read_as_said {
             return;
         }
-        if !self.reads_at_once(&file) {
-            self.read_again(file);
-        } else if let Err(error) = self.read_at_once(&file) {
+        if let Err(error) = self.read_anew(&file, None) {
             self.say(Level::Error, error.to_string());
         }
     }
@@ -362,7 +365,7 @@ impl Session {
         came == Came::ByHand || (self.library.get(&entry.id).is_none() && self.params.text(Key::Character).is_empty())
     }
 
-    /// Gives the clips that are in the library what was read anew.
+    /// Gives the clips that are in the library what was read anew. One that is to be read otherwise by now waits for that.
     fn refill(&mut self, report: ReadReport, options: &ImportOptions) -> Result<Loaded, ImportError> {
         let mut loaded = Loaded::default();
         for file in report.files {
@@ -371,10 +374,13 @@ impl Session {
             loaded.warnings.extend(warnings);
             for new in entries {
                 self.library.change(&new.id, |entry| {
-                    if let (Origin::File(file), Origin::File(new)) = (&mut entry.origin, new.origin) {
-                        file.options = *options;
-                        file.companion = new.companion;
+                    let (Origin::File(file), Origin::File(new_file)) = (&mut entry.origin, new.origin) else {
+                        return;
+                    };
+                    if file.options != *options {
+                        return;
                     }
+                    file.companion = new_file.companion;
                     // A motion whose skeleton was not found keeps waiting.
                     entry.motion = new.motion;
                     entry.mesh = new.mesh;
@@ -388,19 +394,15 @@ impl Session {
         Ok(loaded)
     }
 
-    /// Whether [`Self::read_at_once`] is the way to read a file.
-    pub(super) fn reads_at_once(&self, file: &SourceFile) -> bool {
-        self.reads.is_some() && !file.is_large()
-    }
-
-    /// Reads a file of the library anew, at once. An error changes nothing.
-    pub(super) fn read_at_once(&mut self, file: &SourceFile) -> Result<Loaded, ImportError> {
-        let (Content::Here(bytes), Some(read)) = (&file.content, self.reads) else {
-            return Ok(Loaded::default());
+    /// Reads a file of the library anew, as its entries say: at once, or asked for. Says whether it was read. An error changes nothing.
+    pub(super) fn read_anew(&mut self, file: &SourceFile, came: Option<Came>) -> Result<bool, ImportError> {
+        let (Content::Here(bytes), Some(read)) = (&file.content, self.reads.filter(|_| !file.is_large())) else {
+            self.read_again(file.clone(), came);
+            return Ok(false);
         };
         let setup = self.setup_of(file);
         let report = read(&file.name, bytes, &setup, &mut |_| true).unwrap_or_default();
-        self.refill(report, &file.options)
+        self.refill(report, &file.options).map(|_| true)
     }
 
     fn setup_of(&self, file: &SourceFile) -> ReadSetup {
@@ -455,12 +457,10 @@ impl Session {
         let entries = self.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.awaits_skeleton()) {
             let Origin::File(file) = &entry.origin else { continue };
-            if !self.reads_at_once(file) {
-                self.read_again(file.clone());
-            } else if let Err(error) = self.read_at_once(file) {
-                self.say(Level::Error, error.to_string());
-            } else {
-                self.offer_moving(&entry.id, came);
+            match self.read_anew(file, Some(came)) {
+                Ok(true) => self.offer_moving(&entry.id, came),
+                Ok(false) => {}
+                Err(error) => self.say(Level::Error, error.to_string()),
             }
         }
     }
@@ -497,21 +497,28 @@ impl Session {
             options: *options,
             ..file.clone()
         };
-        if !self.reads_at_once(&file) {
-            self.remember(None);
-            self.read_again(file);
-            return Ok(());
+        let library = self.library.clone();
+        // At once, wherever it is read: what is chosen meanwhile adds to it, and taking it back stops it from coming.
+        for entry in library.entries().iter().filter(|entry| entry.sha256() == Some(&file.sha256)) {
+            self.library.change(&entry.id, |entry| {
+                if let Origin::File(file) = &mut entry.origin {
+                    file.options = *options;
+                }
+            });
         }
-        let (params, library) = (self.params.clone(), self.library.clone());
-        self.read_at_once(&file)?;
-        self.history.before_change(&params, &library, None);
+        if let Err(error) = self.read_anew(&file, None) {
+            self.library = library;
+            return Err(error.into());
+        }
+        self.history.before_change(&self.params, &library, None);
         Ok(())
     }
 
-    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file. Where files are read elsewhere, so is it.
+    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file. Where files are read elsewhere, so is it, and is
+    /// not there yet.
     ///
     /// # Errors
-    /// [`ImportError`] when it is damaged.
+    /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was read.
     pub fn load_sample(&mut self, sample: &'static Sample, packed: &[u8]) -> Result<(), ImportError> {
         let setup = ReadSetup {
             options: ImportOptions {
@@ -539,8 +546,8 @@ impl Session {
                 entry.about = Some(clip.about);
                 entry.warnings = clips.warnings;
             });
+            self.refresh();
         }
-        self.refresh();
         Ok(Loaded::default())
     }
 

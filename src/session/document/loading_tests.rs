@@ -4,7 +4,7 @@ use super::*;
 use crate::session::reading::Content;
 use std::io::Write as _;
 
-const ASF: &str = "\
+pub(super) const ASF: &str = "\
 :version 1.10
 :name toy
 :units
@@ -37,13 +37,14 @@ const ASF: &str = "\
     root thigh spine
   end
 ";
-const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+pub(super) const AMC: &str =
+    ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
 
-fn bytes(text: &str) -> Arc<[u8]> {
+pub(super) fn bytes(text: &str) -> Arc<[u8]> {
     Arc::from(text.as_bytes())
 }
 
-fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
+pub(super) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
     let infos = session.clip_infos().into_iter().filter(|info| info.sha256.is_some());
     infos.map(|info| (info.name, info.format, info.frames)).collect()
 }
@@ -96,7 +97,7 @@ fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
 }
 
 /// Reads what the session asks to have read, as a worker does: in order, with the setup that it was asked with.
-fn serve(session: &mut Session) {
+pub(super) fn serve(session: &mut Session) {
     loop {
         let asked: Vec<_> = (session.take_requests().into_iter())
             .filter_map(|request| match request {
@@ -180,6 +181,101 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         serve(&mut restored);
         assert_eq!(restored.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps, 60.0);
     }
+}
+
+#[test]
+fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_only() {
+    let sample = &Session::samples()[2];
+    let mut session = Session::that_has_files_read();
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+    session.load_sample(sample, b"").unwrap();
+    let Some(Request::Read(task)) = session.take_requests().pop() else {
+        panic!()
+    };
+    session
+        .finish_reading(task.id, Err("the worker could not be started".into()))
+        .unwrap()
+        .unwrap_err();
+    assert!(session.take_requests().is_empty() && !session.is_reading_small());
+    session.load_sample(sample, b"").unwrap();
+    serve(&mut session);
+    assert!(
+        session.take_requests().is_empty() && !session.is_reading_small(),
+        "nor where it is damaged"
+    );
+    session.apply(Command::Set(vec![(Key::BlendTime, Value::Number(0.6))])).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+}
+
+#[test]
+fn what_was_read_stays_read_when_a_step_is_taken_back() {
+    let mut session = Session::that_has_files_read();
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    session.load("01.asf", bytes(ASF)).unwrap();
+    session.load("01_02.amc", bytes(AMC)).unwrap();
+    serve(&mut session);
+    let contents: Vec<(String, Content)> = (session.library().entries().iter())
+        .filter_map(|entry| match &entry.origin {
+            Origin::File(file) => Some((file.sha256.clone(), file.content.clone())),
+            _ => None,
+        })
+        .collect();
+    let content_of = |sha256: &str| contents.iter().find(|(key, _)| key == sha256).map(|(_, content)| content.clone());
+    let unread = |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
+    let (mut before, mut late) = (Session::that_has_files_read(), Session::that_has_files_read());
+    before.restore(&session.saved(), content_of, None);
+    // Something is changed while they are read, or before they come.
+    let change = |session: &mut Session| session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
+    change(&mut before);
+    change(&mut late);
+    late.restore_late(&session.saved(), content_of);
+    for mut session in [before, late] {
+        assert_eq!(unread(&session), 2);
+        serve(&mut session);
+        assert_eq!(unread(&session), 0);
+        session.apply(Command::Undo).unwrap();
+        assert_eq!(unread(&session), 0);
+        session.apply(Command::Redo).unwrap();
+        assert_eq!(unread(&session), 0);
+    }
+}
+
+#[test]
+fn how_a_file_is_read_can_be_changed_while_it_is_read() {
+    let mut session = Session::that_has_files_read();
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    serve(&mut session);
+    let id = session.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
+    let fps_of = |session: &Session| session.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps;
+    let options_of = |session: &Session| match &session.library().get(&id).unwrap().origin {
+        Origin::File(file) => file.options,
+        _ => panic!(),
+    };
+    let reimport = |session: &mut Session, fps: Option<f64>, metres_per_unit: Option<f64>| {
+        let options = crate::formats::ImportOptions {
+            metres_per_unit,
+            fps,
+            ..options_of(session)
+        };
+        session.apply(Command::Reimport(id.clone(), options)).unwrap();
+    };
+    reimport(&mut session, Some(60.0), None);
+    reimport(&mut session, Some(60.0), Some(0.5));
+    serve(&mut session);
+    assert_eq!((fps_of(&session), options_of(&session).metres_per_unit), (60.0, Some(0.5)));
+    // Taken back before it has come: it does not come.
+    reimport(&mut session, Some(90.0), Some(0.5));
+    session.apply(Command::Undo).unwrap();
+    serve(&mut session);
+    assert_eq!(fps_of(&session), 60.0);
+    session.apply(Command::Undo).unwrap();
+    session.apply(Command::Undo).unwrap();
+    serve(&mut session);
+    assert_eq!(
+        (fps_of(&session), options_of(&session)),
+        (10.0, crate::formats::ImportOptions::default())
+    );
 }
 
 #[test]

@@ -399,14 +399,13 @@ impl Session {
             }
             Command::Try(query) => self.try_out(&query)?,
             Command::StopGraph(stop) => self.grapher.stop(stop),
-            Command::Undo => {
-                if self.history.undo(&mut self.params, &mut self.library) {
+            Command::Undo | Command::Redo => {
+                let (params, library) = (&mut self.params, &mut self.library);
+                let undoes = matches!(command, Command::Undo);
+                if (undoes && self.history.undo(params, library)) || (!undoes && self.history.redo(params, library)) {
                     self.library_revision += 1;
-                }
-            }
-            Command::Redo => {
-                if self.history.redo(&mut self.params, &mut self.library) {
-                    self.library_revision += 1;
+                    // What had not been read by then.
+                    self.read_stored(Vec::new());
                 }
             }
             Command::Dismiss(id) => self.notices.dismiss(id),
@@ -510,8 +509,9 @@ impl Session {
             let alone = undoable.next().is_none();
             self.remember(alone.then_some(first));
         }
-        self.params = params;
-        self.note_named(&named, changed.contains(&Key::Src));
+        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
+        let new_sources = self.sources_beyond(&had);
+        self.note_named(&named, !new_sources.is_empty());
         for slot in chosen.into_iter().flatten() {
             let id = self.params.text(slot.key()).to_owned();
             self.bring_back(&id);
@@ -522,9 +522,7 @@ impl Session {
         {
             self.bring_back_listed();
         }
-        if changed.contains(&Key::Src) {
-            self.fetch_sources();
-        }
+        self.fetch(new_sources);
         if changed.iter().any(|key| key.param().group.is_of_lab()) {
             self.grapher.stop(false);
         }
@@ -562,8 +560,18 @@ impl Session {
         range_of(&self.params, key)
     }
 
-    fn fetch_sources(&mut self) {
-        let addresses: Vec<String> = self.params.text(Key::Src).split_whitespace().map(str::to_owned).collect();
+    /// The addresses of files that were not named before. `had` is the parameter as it was.
+    fn sources_beyond(&self, had: &str) -> Vec<String> {
+        let is_new = |address: &&str| had.split_whitespace().all(|known| known != *address);
+        self.params
+            .text(Key::Src)
+            .split_whitespace()
+            .filter(is_new)
+            .map(str::to_owned)
+            .collect()
+    }
+
+    fn fetch(&mut self, addresses: Vec<String>) {
         if addresses.len() > MOST_SOURCES {
             self.say(
                 Level::Warning,
@@ -634,12 +642,12 @@ impl Session {
         let mut roles = motion.roles.clone();
         roles.set(role, joint);
         let file = match &entry.origin {
-            Origin::File(file) if file.is_large() => Some(file.clone()),
+            Origin::File(file) if file.is_large() || self.is_read_again(file) => Some(file.clone()),
             _ => None,
         };
         if let Some(file) = file {
             self.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
-            self.read_again(file);
+            self.read_again(file, None);
             return Ok(());
         }
         let corrected = Arc::new(Motion::analyze((*motion.clip).clone(), Some(roles.clone())));

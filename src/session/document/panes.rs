@@ -238,14 +238,11 @@ impl Session {
             Origin::File(_) if entry.unread.is_some() => return Err(entry.unread.clone().unwrap_or_default()),
             Origin::File(file) => {
                 let file = file.clone();
-                if self.reads_at_once(&file) {
-                    self.read_at_once(&file).map_err(|error| error.to_string())?;
-                    let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
-                    return motion.ok_or_else(|| format!("{} has no such clip any more.", file.name));
+                if !self.read_anew(&file, None).map_err(|error| error.to_string())? {
+                    return Err(format!("{} is being read.", file.name));
                 }
-                let text = format!("{} is being read.", file.name);
-                self.read_again(file);
-                return Err(text);
+                let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
+                return motion.ok_or_else(|| format!("{} has no such clip any more.", file.name));
             }
         };
         let by_hand = self.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());

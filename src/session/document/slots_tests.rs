@@ -1,9 +1,10 @@
 //! Which clips take A and B, and what becomes of the places in those that were there.
 
+use super::loading_tests::{AMC, ASF, bytes, files, serve};
 use super::tests::{made_bvh, settle};
 use super::*;
 use crate::formats::ImportOptions;
-use crate::session::reading::{Content, LARGE_BYTES, ReadSetup, read};
+use crate::session::reading::Content;
 use crate::skeleton::Role;
 
 fn opened(link: &str) -> Session {
@@ -43,11 +44,46 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
     let id = session.load("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
     assert_eq!(ids(&session), [&id, "run"]);
     // A large one that is read elsewhere, likewise.
-    let mut session = opened("src=https://example.org/x.bvh&a=walk&b=run");
-    let task = session.begin_reading_fetched("x.bvh", Content::Outside("1".into()), LARGE_BYTES + 1);
-    let report = read("x.bvh", &made_bvh(1.0), &ReadSetup::default(), &mut |_| true).unwrap();
-    session.finish_reading(task, Ok(report)).unwrap().unwrap();
+    // Where files are read elsewhere, likewise.
+    let mut session = Session::that_has_files_read();
+    session
+        .apply(Command::OpenLink("src=https://example.org/x.bvh&a=walk&b=run".into()))
+        .unwrap();
+    session.load_fetched("x.bvh", made_bvh(1.0)).unwrap();
+    serve(&mut session);
+    assert!(files(&session).len() == 1 && ids(&session) == ["walk", "run"]);
+    // And a motion whose skeleton comes behind it.
+    for (link, wanted) in [("a=walk", ["walk", "01_02"]), ("lab=view&a=walk", ["walk", "01_02"])] {
+        for mut session in [Session::new(), Session::that_has_files_read()] {
+            session
+                .apply(Command::OpenLink(format!("src=https://example.org/x&{link}")))
+                .unwrap();
+            for (name, text) in [("01_02.amc", AMC), ("01.asf", ASF)] {
+                session.load_fetched(name, bytes(text)).unwrap();
+                serve(&mut session);
+            }
+            assert_eq!(ids(&session).map(|id| id.split('~').next().unwrap_or_default()), wanted, "{link}");
+        }
+    }
+}
+
+#[test]
+fn an_address_that_is_given_up_leaves_the_others_as_they_are() {
+    let mut session = opened("src=https://example.org/x.bvh%20https://example.org/y.bvh&a=walk&b=run");
+    session.take_requests();
+    set(&mut session, "src=https://example.org/y.bvh");
+    assert!(
+        session.take_requests().iter().all(|request| !matches!(request, Request::Fetch(_))),
+        "y is fetched once"
+    );
+    session.load_fetched("y.bvh", made_bvh(1.0)).unwrap();
     assert_eq!(ids(&session), ["walk", "run"]);
+    set(&mut session, "src=https://example.org/y.bvh%20https://example.org/z.bvh");
+    let fetched = session.take_requests().into_iter().filter_map(|request| match request {
+        Request::Fetch(address) => Some(address),
+        _ => None,
+    });
+    assert_eq!(fetched.collect::<Vec<_>>(), ["https://example.org/z.bvh"]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::session::link;
 use crate::session::notice::Level;
 use crate::session::params::Key;
 use crate::session::reading::{Content, LARGE_BYTES};
-use crate::session::recipe::{Slot, recipe_name, recipe_params};
+use crate::session::recipe::{recipe_name, recipe_params};
 use crate::session::saved::{Saved, SavedEntry, SavedFile};
 use crate::session::undo::History;
 use std::sync::Arc;
@@ -23,19 +23,22 @@ impl Session {
         }
     }
 
-    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are gone or no longer read are named in a notice, large
-    /// ones are asked for with [`super::Request::Read`]. The parameters come from `query` when there is one (a link was opened), else from what was
-    /// stored.
+    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are gone are named in a notice, and so are those that can
+    /// be read no longer, where they are read at once; those that are read elsewhere are asked for with [`super::Request::Read`], first what is shown.
+    /// The parameters come from `query` when there is one (a link was opened), else from what was stored.
     pub fn restore(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>, query: Option<&str>) {
         let (entries, lost) = self.stored_entries(saved, content_of);
         if !entries.is_empty() {
             self.library = entries.into_iter().collect();
         }
-        self.read_stored(lost);
         // A language that was chosen by hand stays, whatever link the page is opened with, unless the link names another.
         self.speak_as(saved);
         self.open_link(query.unwrap_or(&saved.query));
         self.history = History::default();
+        // What is shown is asked for first.
+        self.refresh();
+        self.read_stored(lost);
+        self.look_for_clips();
         self.refresh();
     }
 
@@ -56,14 +59,14 @@ impl Session {
             self.library.put_shared(entry);
         }
         let nothing_came = self.library.entries().is_empty();
-        let named = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
         for entry in before.entries() {
-            // A built-in clip that is not stored was removed on an earlier visit.
-            let stays = nothing_came || !is_built_in(entry) || named.contains(&entry.id);
+            // A built-in clip that is not stored was removed on an earlier visit. What the parameters name of these comes back.
+            let stays = nothing_came || !is_built_in(entry);
             if stays && self.library.get(&entry.id).is_none() {
                 self.library.put_shared(Arc::clone(entry));
             }
         }
+        self.look_for_clips();
         self.read_stored(lost);
         let came: Vec<_> = came.iter().filter_map(|id| self.library.get(id).cloned()).collect();
         self.history.add_to_all(&came);
@@ -122,7 +125,7 @@ impl Session {
 
     /// Reads the files of the library that have no motion yet. Those that cannot be read any more are named with those that are `lost` already;
     /// their clips are gone.
-    fn read_stored(&mut self, mut lost: Vec<String>) {
+    pub(super) fn read_stored(&mut self, mut lost: Vec<String>) {
         let entries = self.library.entries().to_vec();
         for entry in entries {
             let Origin::File(file) = &entry.origin else { continue };
@@ -130,9 +133,7 @@ impl Session {
             if self.library.get(&entry.id).is_none_or(read_by_now) {
                 continue;
             }
-            if !self.reads_at_once(file) {
-                self.read_again(file.clone());
-            } else if self.read_at_once(file).is_err() {
+            if self.read_anew(file, None).is_err() {
                 self.library.remove(&entry.id);
                 lost.push(file.name.clone());
             }

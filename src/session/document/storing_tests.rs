@@ -44,6 +44,21 @@ fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
 }
 
 #[test]
+fn what_comes_late_leaves_the_clips_that_are_in_use() {
+    let mut earlier = Session::new();
+    earlier.apply(Command::Remove("idle".into())).unwrap();
+    for link in ["lab=graph", "lab=view&compare=a:walk,idle", "a=idle"] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        assert!(session.library().get("idle").is_some());
+        session.restore_late(&earlier.saved(), |_| None);
+        let uses = link != "lab=graph" || session.graph_clip_ids().contains(&"idle".to_owned());
+        assert_eq!(session.library().get("idle").is_some(), uses, "{link}");
+        assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
+    }
+}
+
+#[test]
 fn roles_for_joints_that_are_not_there_are_left_alone() {
     let mut session = Session::new();
     settle(&mut session);

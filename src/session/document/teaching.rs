@@ -224,15 +224,13 @@ impl Session {
 
     /// Takes over all parameters, as those of a link that names some of them: says what is wrong with it and what is missing.
     pub(super) fn take_over(&mut self, params: Params, problems: &[String], named: &[Key]) {
-        let sources_changed = params.text(Key::Src) != self.params.text(Key::Src);
-        self.params = params;
-        self.note_named(named, sources_changed);
+        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
+        let new_sources = self.sources_beyond(&had);
+        self.note_named(named, !new_sources.is_empty());
         if !problems.is_empty() {
             self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; ")));
         }
-        if sources_changed {
-            self.fetch_sources();
-        }
+        self.fetch(new_sources);
         self.look_for_clips();
         self.grapher.stop(false);
     }

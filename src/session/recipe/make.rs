@@ -3,7 +3,7 @@ use super::feet::{slide, slide_before, with_feet};
 use super::kept::belongs_to;
 use crate::metrics::foot_slide_cm;
 use crate::session::motion::Motion;
-use crate::session::params::{Key, Kind, Params};
+use crate::session::params::{Key, Kind, Params, Value};
 use crate::synth::{self, Action};
 use std::sync::Arc;
 
@@ -91,7 +91,12 @@ pub(in crate::session) fn made_id(params: &Params) -> String {
         .changed()
         .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait);
     let list: Vec<String> = changed
-        .map(|(param, value)| format!("{}:{}", param.name, param.format(value)))
+        .map(|(param, value)| match (value, range_of(params, param.key)) {
+            // As it is made, not as it was set for another motion.
+            (Value::Number(number), Some((min, max))) => (param, Value::Number(number.clamp(min, max))),
+            _ => (param, value.clone()),
+        })
+        .map(|(param, value)| format!("{}:{}", param.name, param.format(&value)))
         .collect();
     format!("{}({})", params.text(Key::Gait), list.join(","))
 }
@@ -100,7 +105,6 @@ pub(in crate::session) fn made_id(params: &Params) -> String {
 mod tests {
     use super::super::recipe_params;
     use super::*;
-    use crate::session::params::Value;
 
     #[test]
     fn an_id_is_all_that_is_needed_to_make_a_clip_again() {
@@ -111,7 +115,9 @@ mod tests {
         let id = made_id(&params);
         assert_eq!(id, "run(gait_speed:3.05,turn_rate:-20)");
         params.set(Key::Lab, Value::Choice("make")).unwrap();
-        assert_eq!(recipe_params(&id), Some(params));
+        assert_eq!(recipe_params(&id), Some(params.clone()));
+        params.set(Key::Gait, Value::Choice("walk")).unwrap();
+        assert_eq!(made_id(&params), "walk(gait_speed:2.2,turn_rate:-20)", "no walk is as fast");
         for id in [
             "walk",
             "walk)",

@@ -66,5 +66,5 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
 /// Why a visit came to nothing.
 fn no_way(built: &Built, (secs, clip): (f64, usize)) -> String {
     let name = built.cast().names().get(clip).map_or("", String::as_str);
-    format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")
+    text::no_way(name, secs)
 }

@@ -168,11 +168,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
         kit::note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
         if built.lacks_some() {
-            kit::note_ui(
-                "More transitions lie below the threshold than can be held: the closest are.",
-                palette.warning,
-                ui,
-            );
+            kit::note_ui(text::GRAPH_LACKS_SOME, palette.warning, ui);
         }
     }
     param_row_ui(Key::Prune, &Detail::default(), session, out, ui);

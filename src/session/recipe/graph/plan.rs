@@ -99,6 +99,10 @@ impl Plan {
     /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
     /// same clip.
     fn go_like(&mut self, guide: &mut Self) {
+        // To a clip that it was sent to: that is where it goes.
+        if self.walker.has_way() {
+            return;
+        }
         let graph = Arc::clone(&self.graph);
         let Some(here) = graph.graph().node_weight(self.walker.node()).copied() else {
             return;
