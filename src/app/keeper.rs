@@ -263,6 +263,16 @@ mod tests {
     }
 
     #[test]
+    fn who_wants_little_motion_gets_the_work_back_from_a_slow_storage() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.wait(&mut session, &mut Vault::default(), 1151.0);
+        session.apply(Command::TogglePlay).unwrap();
+        keeper.has_begun(&session);
+        keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
+        assert_eq!(session.query(), "blend_window=24");
+    }
+
+    #[test]
     fn what_was_touched_meanwhile_stays() {
         let (mut keeper, mut session) = keeper("blend_window=12");
         keeper.wait(&mut session, &mut Vault::default(), 1151.0);

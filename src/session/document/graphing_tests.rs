@@ -541,6 +541,27 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
 }
 
 #[test]
+fn a_walk_that_goes_like_another_goes_where_it_is_sent() {
+    // From a walk one comes to rest only by stopping.
+    let link = "lab=graph&clips=walk,start,stop,idle,walk_left&walk_seconds=30&play=off&compare=blend_window:24,12,8&edge_threshold=10";
+    let mut session = opened(link);
+    for secs in (2..16).map(f64::from) {
+        set(&mut session, Key::GoTo, Value::Text(format!("{secs}:3")));
+        for pane in 0..3 {
+            let walk = walk_of(&session, pane);
+            assert_eq!(walk.missed, []);
+            let due = (secs * 60.0).round() as usize;
+            let mut behind = walk.passed.iter().filter(|passed| passed.end > due);
+            let transitions = behind.position(|passed| passed.stay.clip == 3);
+            assert!(
+                transitions.is_some_and(|transitions| transitions <= 4),
+                "{secs} s, pane {pane}: {transitions:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
     let mut session = opened(&format!("{SMALL}&go_to=6:2&jump=0:1-2:3"));
     session.apply(Command::Remove("walk".into())).unwrap();
