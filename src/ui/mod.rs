@@ -260,8 +260,8 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
                     }
                 } else {
                     // On so small a stage it would lie on what it speaks of.
-                    if let Some(hint) = stage_panel::hint(session) {
-                        kit::note_ui(hint, palette_of(ui).muted, ui);
+                    if stage_panel::is_welcome(session) {
+                        kit::note_ui(text::WELCOME_HINT, palette_of(ui).muted, ui);
                         ui.add_space(space::M);
                     }
                     lab_panel::lab_panel_ui(session, state, out, ui);

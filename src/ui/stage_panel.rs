@@ -85,7 +85,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
 }
 
 /// What to look at, in one line.
-pub(crate) fn hint(session: &Session) -> Option<&'static str> {
+fn hint(session: &Session) -> Option<&'static str> {
     match session.params().text(Key::Lab) {
         "register" => Some(text::REGISTER_HINT),
         "path" => Some(text::PATH_HINT),
@@ -96,7 +96,7 @@ pub(crate) fn hint(session: &Session) -> Option<&'static str> {
 }
 
 /// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and run.
-fn is_welcome(session: &Session) -> bool {
+pub(crate) fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
     shown(Key::Lab, "blend")
         && shown(Key::A, "walk")
