@@ -426,6 +426,11 @@ fn a_clip_without_a_motion_says_why() {
         ..entry.clone()
     };
     assert_eq!(text::status(&being_read), text::READING);
+    let given_up = Entry {
+        unread: Some("Reading large.bvh was stopped.".into()),
+        ..being_read
+    };
+    assert_eq!(text::status(&given_up), text::UNREAD);
     let mut harness = harness(DESK, DARK, page);
     harness.get_by_label_contains("alone, waits for its skeleton");
     picture("waits-desk-dark", &mut harness);

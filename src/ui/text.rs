@@ -972,31 +972,6 @@ pub(crate) fn tag_as(word: &str, takes_away: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::formats::{FileKind, ImportOptions};
-    use segue::session::reading::Content;
-
-    #[test]
-    fn a_file_that_was_given_up_is_not_being_read() {
-        let file = segue::session::SourceFile {
-            name: "large.bvh".into(),
-            sha256: String::new(),
-            content: Content::Outside("1".into()),
-            size: 9 << 20,
-            kind: FileKind::Bvh,
-            companion: None,
-            index: 0,
-            options: ImportOptions::default(),
-        };
-        let session = segue::session::Session::new();
-        let mut entry = Entry {
-            origin: Origin::File(file),
-            motion: None,
-            ..(**session.library().get("idle").unwrap()).clone()
-        };
-        assert_eq!(status(&entry), READING);
-        entry.unread = Some("Reading large.bvh was stopped.".into());
-        assert_eq!(status(&entry), UNREAD);
-    }
 
     #[test]
     fn what_was_not_matched_is_named_and_counted() {
