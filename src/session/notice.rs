@@ -67,6 +67,11 @@ impl Notices {
         self.put(Level::Warning, text.into(), Some(reference.to_owned()));
     }
 
+    /// The clips that are asked for.
+    pub fn awaited(&self) -> impl Iterator<Item = &str> {
+        self.list.iter().filter_map(|notice| notice.awaits.as_deref())
+    }
+
     /// Takes away what asks for clips that are there by now, or that nobody wants any more.
     pub fn keep_missing(&mut self, is_missing: impl Fn(&str) -> bool) {
         self.list.retain(|notice| notice.awaits.as_deref().is_none_or(&is_missing));

@@ -51,6 +51,12 @@ pub fn best_skeleton(amc_name: &str, amc_bytes: &[u8], skeletons: &[(&str, &Accl
     ranked.max().map(|(_, index)| index)
 }
 
+/// Whether the name of a motion file says that it belongs to a skeleton file: they are called the same, or the motion's goes on after the skeleton's.
+#[must_use]
+pub fn goes_by_name(amc: &str, asf: &str) -> bool {
+    kinship(amc, asf).0 > 0
+}
+
 /// How much the name of a motion file says that it belongs to a skeleton file; more is more.
 fn kinship(amc: &str, asf: &str) -> (u8, usize, usize) {
     let (motion, skeleton) = (stem(amc).to_lowercase(), stem(asf).to_lowercase());

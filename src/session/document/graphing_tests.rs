@@ -179,25 +179,40 @@ fn the_mistakes_spin_on_the_same_walk() {
 }
 
 #[test]
-fn other_windows_and_segments_walk_the_same_way_where_they_can() {
+fn other_windows_walk_the_same_way_where_they_can() {
+    let session = opened(&format!("{SMALL}&edge_threshold=10&compare=blend_window:24,12,8"));
+    let clips = |pane: usize| -> Vec<usize> { walk_of(&session, pane).passed.iter().map(|passed| passed.stay.clip).collect() };
+    assert!(!walk_of(&session, 0).is_guided && walk_of(&session, 1).is_guided);
+    // Most of the time the same clip plays in all panes.
+    for pane in 1..session.panes().len() {
+        let same = (0..200).filter(|k| {
+            let secs = f64::from(*k) * 0.1;
+            let clip = |pane| walk_of(&session, pane).at(secs).unwrap().place.clip;
+            clip(0) == clip(pane)
+        });
+        let share = same.count() as f64 / 200.0;
+        assert!(share > 0.6, "{share}: {:?} {:?}", clips(0), clips(pane));
+    }
+}
+
+#[test]
+fn other_segments_and_thresholds_have_walks_of_their_own() {
+    let segments = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&construction=segments&blend_window=10&edge_threshold=10";
     for link in [
-        format!("{SMALL}&edge_threshold=10&compare=blend_window:24,12,8"),
-        "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=10&construction=segments&edge_threshold=10&compare=segment_size:40,20"
-            .to_owned(),
+        format!("{segments}&compare=segment_size:40,20"),
+        format!("{SMALL}&compare=edge_threshold:2,10"),
     ] {
         let session = opened(&link);
-        let clips = |pane: usize| -> Vec<usize> { walk_of(&session, pane).passed.iter().map(|passed| passed.stay.clip).collect() };
-        assert!(!walk_of(&session, 0).is_guided && walk_of(&session, 1).is_guided);
-        // Most of the time the same clip plays in all panes.
-        for pane in 1..session.panes().len() {
-            let same = (0..200).filter(|k| {
-                let secs = f64::from(*k) * 0.1;
-                let clip = |pane| walk_of(&session, pane).at(secs).unwrap().place.clip;
-                clip(0) == clip(pane)
-            });
-            let share = same.count() as f64 / 200.0;
-            assert!(share > 0.6, "{share}: {:?} {:?}", clips(0), clips(pane));
-        }
+        assert!(!walk_of(&session, 1).is_guided);
+        assert_ne!(way(walk_of(&session, 0)), way(walk_of(&session, 1)), "{link}");
+        assert_ne!(number(&session, 0, "skate"), number(&session, 1, "skate"), "{link}");
+        // As if each stood alone.
+        let alone = opened(
+            &link
+                .replace("compare=segment_size:40,20", "segment_size=20")
+                .replace("compare=edge_threshold:2,10", "edge_threshold=10"),
+        );
+        assert_eq!(way(walk(&alone)), way(walk_of(&session, 1)), "{link}");
     }
 }
 

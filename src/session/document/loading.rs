@@ -2,7 +2,7 @@
 
 use super::slots::Came;
 use super::{Job, Session};
-use crate::formats::{FileKind, ImportError, ImportOptions};
+use crate::formats::{FileKind, ImportError, ImportOptions, acclaim};
 use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
 use crate::session::notice::{Level, sentence};
@@ -302,11 +302,22 @@ impl Session {
         self.history.settle();
         self.library_revision += 1;
         if !names.is_empty() {
-            let told = std::iter::once(in_the_library(&names)).chain(loaded.warnings.iter().map(|warning| sentence(warning)));
-            let text = told.collect::<Vec<_>>().join(" ");
+            let mut told = vec![in_the_library(&names)];
+            for warning in loaded.warnings.iter().map(|warning| sentence(warning)) {
+                if !told.contains(&warning) {
+                    told.push(warning);
+                }
+            }
+            let text = told.join(" ");
             // A T-pose in front is how the takes of whole databases come: good to know, and nothing to do about it.
             let is_odd = loaded.warnings.len() > t_poses;
-            self.say(if is_odd { Level::Warning } else { Level::Info }, text);
+            match loaded.ids.as_slice() {
+                // Until its other half comes.
+                [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
+                // A skeleton that was waited for: it has its motion.
+                [id] if self.library.get(id).is_none() => self.say(Level::Info, in_the_library(&names)),
+                _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
+            }
         }
         self.refresh();
         Ok(loaded)
@@ -446,20 +457,40 @@ impl Session {
         all
     }
 
-    /// Whether a motion awaits a skeleton, and one has come since it was read.
+    /// Whether a clip of the library is a motion without its skeleton, or a skeleton without a motion.
+    pub(super) fn is_half(&self, id: &str) -> bool {
+        let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
+        self.library
+            .get(id)
+            .is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
+    }
+
+    /// Whether a motion leans on a skeleton, and one has come since it was read.
     fn misses_skeleton(&self, report: &ReadReport, setup: &ReadSetup) -> bool {
-        let awaits = |file: &ReadFile| file.result.as_ref().is_ok_and(|read| read.awaits_skeleton);
-        report.files.iter().any(awaits) && self.companions() != setup.companions
+        let leans_on_one = |file: &ReadFile| file.kind == FileKind::Amc;
+        report.files.iter().any(leans_on_one) && self.companions() != setup.companions
     }
 
     /// A skeleton has come: motions that waited for it are read.
     fn read_waiting(&mut self, came: Came) {
-        let entries = self.library.entries().to_vec();
-        for entry in entries.iter().filter(|entry| entry.awaits_skeleton()) {
+        let (entries, skeletons) = (self.library.entries().to_vec(), self.companions());
+        let is_named = |file: &SourceFile, skeleton: &Companion| acclaim::goes_by_name(&file.name, &skeleton.name);
+        for entry in &entries {
             let Origin::File(file) = &entry.origin else { continue };
-            match self.read_anew(file, Some(came)) {
-                Ok(true) => self.offer_moving(&entry.id, came),
-                Ok(false) => {}
+            let awaits = entry.awaits_skeleton();
+            // One that had to make do with another subject's skeleton has its own now.
+            let made_do = (file.companion.as_ref())
+                .is_some_and(|had| !is_named(file, had) && skeletons.iter().any(|skeleton| is_named(file, skeleton)));
+            if !(awaits || made_do) {
+                continue;
+            }
+            let file = SourceFile {
+                companion: None,
+                ..file.clone()
+            };
+            match self.read_anew(&file, awaits.then_some(came)) {
+                Ok(true) if awaits => self.offer_moving(&entry.id, came),
+                Ok(_) => {}
                 Err(error) => self.say(Level::Error, error.to_string()),
             }
         }

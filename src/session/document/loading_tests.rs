@@ -303,6 +303,69 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
 }
 
 #[test]
+fn a_motion_has_the_skeleton_of_its_name() {
+    let of_16 = ASF.replace("length 85", "length 95");
+    for ahead in [true, false] {
+        for mut session in [Session::new(), Session::that_has_files_read()] {
+            let mut come = |files: &[(&str, &str)]| {
+                for (name, text) in files {
+                    session.load(name, bytes(text)).unwrap();
+                }
+                serve(&mut session);
+                session
+                    .notices()
+                    .list()
+                    .last()
+                    .map(|notice| notice.text.clone())
+                    .unwrap_or_default()
+            };
+            come(&[("16.asf", &of_16), ("16_22.amc", AMC)]);
+            // Its own comes behind it, or only later.
+            let own = [("01_01.amc", AMC.replace("spine 2", "spine 3")), ("01_01.asf", ASF.to_owned())];
+            let own = [(own[0].0, own[0].1.as_str()), (own[1].0, own[1].1.as_str())];
+            if ahead {
+                come(&[own[1], own[0]]);
+            } else {
+                assert!(come(&own[..1]).contains("It is on the skeleton of 16.asf."));
+                come(&own[1..]);
+            }
+            assert_eq!(files(&session), [("16_22".to_owned(), "amc", 2), ("01_01".to_owned(), "amc", 2)]);
+            let companions = session.library().entries().iter().filter_map(|entry| match &entry.origin {
+                Origin::File(file) => Some(file.companion.as_ref()?.name.as_str()),
+                _ => None,
+            });
+            assert_eq!(companions.collect::<Vec<_>>(), ["16.asf", "01_01.asf"]);
+        }
+    }
+}
+
+#[test]
+fn what_waits_for_its_other_half_says_so_until_that_has_come() {
+    for files in [[("01_02.amc", AMC), ("01.asf", ASF)], [("01.asf", ASF), ("01_02.amc", AMC)]] {
+        for mut session in [Session::new(), Session::that_has_files_read()] {
+            let odd = |session: &Session| {
+                session
+                    .notices()
+                    .list()
+                    .iter()
+                    .filter(|notice| notice.level == Level::Warning)
+                    .count()
+            };
+            session.load(files[0].0, bytes(files[0].1)).unwrap();
+            serve(&mut session);
+            assert_eq!(odd(&session), 1);
+            session.load(files[1].0, bytes(files[1].1)).unwrap();
+            serve(&mut session);
+            let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            assert!(
+                !told.iter().any(|text| text.contains("no motion") || text.contains("waits")),
+                "{told:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_skeleton_serves_all_its_motions() {
     let mut session = Session::new();
     session.load("01.asf", bytes(ASF)).unwrap();

@@ -113,9 +113,18 @@ impl Session {
         let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
         let others = self.also_blended().into_iter().map(|(reference, _)| reference);
         let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
-        let library = &self.library;
+        let is_missing = |reference: &str| match self.library.find(reference) {
+            Some(entry) => self.is_half(&entry.id),
+            None => named.iter().any(|name| name == reference),
+        };
+        let missing: Vec<String> = self
+            .notices
+            .awaited()
+            .filter(|reference| is_missing(reference))
+            .map(str::to_owned)
+            .collect();
         self.notices
-            .keep_missing(|reference| library.find(reference).is_none() && named.iter().any(|name| name == reference));
+            .keep_missing(|reference| missing.iter().any(|known| known == reference));
     }
 
     /// Whether the clip is in the library, or can be made from its id.

@@ -35,6 +35,8 @@ impl Session {
         self.speak_as(saved);
         self.open_link(query.unwrap_or(&saved.query));
         self.history = History::default();
+        // What was shown until now is none of this work's, and stands in for nothing of it.
+        self.panes.clear();
         // What is shown is asked for first.
         self.refresh();
         self.read_stored(lost);

@@ -258,7 +258,7 @@ impl One<'_> {
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Option<ReadFile> {
         let Self { name, bytes, kind, .. } = *self;
-        let mut companion = None;
+        let (mut companion, mut warnings) = (None, Vec::new());
         let imported = match kind {
             FileKind::Amc => {
                 let named: Vec<(&str, &AcclaimSkeleton)> = skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
@@ -267,6 +267,9 @@ impl One<'_> {
                     None => Ok(None),
                     Some((own, skeleton)) => {
                         companion = Some((*own).clone());
+                        if !acclaim::goes_by_name(name, &own.name) {
+                            warnings.push(format!("it is on the skeleton of {}", own.name));
+                        }
                         let read = acclaim::read_motion_with_progress(name, bytes, skeleton, &setup.options, progress);
                         match read {
                             Ok(None) => return None,
@@ -287,10 +290,16 @@ impl One<'_> {
             size: bytes.len() as u64,
             kind,
             unpacked: None,
-            result: imported.map(|imported| ReadClips {
-                awaits_skeleton: imported.is_none(),
-                companion,
-                ..ReadClips::of(imported.unwrap_or_default(), setup)
+            result: imported.map(|imported| {
+                let awaits_skeleton = imported.is_none();
+                let clips = ReadClips::of(imported.unwrap_or_default(), setup);
+                warnings.extend(clips.warnings.iter().cloned());
+                ReadClips {
+                    warnings,
+                    companion,
+                    awaits_skeleton,
+                    ..clips
+                }
             }),
         })
     }

@@ -100,12 +100,22 @@ impl Wanted {
         })
     }
 
-    /// Likewise, like the walk of other parameters if it goes through another graph. One that follows a line has its own way to go.
+    /// Likewise, like the walk of other parameters if only its transitions take longer or shorter. Where one may go over is another matter: a graph of
+    /// shorter segments, or up to a higher threshold, has all places of the other one, and to go like that walk would show none of its own. One that
+    /// follows a line has its own way to go.
     pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
+        let but_for_window = |graph: GraphKey| GraphKey {
+            options: GraphOptions {
+                blend_window: 1,
+                ..graph.options
+            },
+            ..graph
+        };
         let guide = guide
-            .filter(|guide| guide.graph != wanted.graph && wanted.jump.is_none() && wanted.path.is_empty())
+            .filter(|guide| guide.graph != wanted.graph && but_for_window(guide.graph) == but_for_window(wanted.graph))
+            .filter(|_| wanted.jump.is_none() && wanted.path.is_empty())
             .map(Box::new);
         Ok(Self { guide, ..wanted })
     }
