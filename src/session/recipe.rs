@@ -33,7 +33,7 @@ pub(super) use kept::{belongs_to, read_ids, recipe_id, recipe_ingredients, recip
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use looping::{CycleFinder, LoopInputs};
-pub(super) use make::{made_id, make, preset_motion, range_of, synth_action};
+pub(super) use make::{has as made_motion_has, made_id, make, preset_motion, range_of, synth_action};
 pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath};
 pub(super) use path::{PathInputs, Paths};

@@ -4,7 +4,7 @@ use super::break_it::break_it_ui;
 use super::clip_panel::clip_panel_ui;
 use super::cycle_panels::{loop_ui, speed_ui};
 use super::drive::drive_ui;
-use super::graph::graph_ui;
+use super::graph::{graph_ui, seed_detail};
 use super::kit::{self, Button, Icon};
 use super::language::tr;
 use super::layers_rows::layers_ui;
@@ -84,12 +84,9 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
         // What the chosen motion does not have is not offered.
-        if let (Key::GaitSpeed, "idle" | "spin") | (Key::TurnRate, "idle" | "spin" | "jump" | "start" | "stop") =
-            (param.key, session.params().text(Key::Gait))
-        {
-            continue;
+        if session.made_motion_has(param.key) {
+            param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
-        param_row_ui(param.key, &Detail::default(), session, out, ui);
     }
     compare_ui(made_number(session), session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
@@ -354,6 +351,7 @@ pub(crate) fn named_params_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         match key {
             Key::A => slot_row_ui(Slot::A, session, out, ui),
             Key::B => slot_row_ui(Slot::B, session, out, ui),
+            Key::Seed => param_row_ui(key, &seed_detail(session), session, out, ui),
             _ => param_row_ui(key, &Detail::default(), session, out, ui),
         }
     }

@@ -8,7 +8,7 @@ use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::compare_clips;
-use eframe::egui::{self, Frame, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue::session::export::{ExportFormat, ExportOptions};
 use segue::session::{Command, Entry, Key, Origin, Session, Slot};
 
@@ -37,12 +37,24 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
         .iter()
         .filter(|entry| !is_built_in(entry))
         .chain(entries.iter().filter(|entry| is_built_in(entry)));
+    // The one that came last, and has not been here before: it is brought into sight.
+    let newest = entries
+        .iter()
+        .rfind(|entry| !is_built_in(entry) && entry.motion.is_some())
+        .map(|entry| entry.id.clone());
+    let seen_id = Id::unique("newest clip seen");
+    let seen: Option<Option<String>> = ui.data(|data| data.get_temp(seen_id));
+    let arrived = newest.clone().filter(|_| seen.is_some_and(|seen| seen != newest));
+    ui.data_mut(|data| data.insert_temp(seen_id, newest));
     for entry in ordered {
         // A take that nobody asked for yet is behind "samples".
         if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {
             continue;
         }
-        ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui));
+        let row = ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui)).response;
+        if arrived.as_ref() == Some(&entry.id) {
+            row.scroll_to_me(None);
+        }
     }
 }
 

@@ -195,25 +195,31 @@ fn compared_ui(
     }
     ui.horizontal(|ui| {
         let more = Button::icon_only(Icon::Plus, text::PANE_MORE);
-        if compare.values.len() < MAX_PANES && kit::button_ui(more, ui).clicked() {
+        let has_room = compare.values.len() < MAX_PANES;
+        // Dimmed it keeps its place: the next button must not come under the pointer.
+        if ui.add_enabled_ui(has_room, |ui| kit::button_ui(more, ui)).inner.clicked() {
             out.set_once(Key::Compare, Value::Text(compare.with_one_more(range).to_string()));
         }
         if kit::button_ui(Button::icon_only(Icon::Minus, text::PANE_LESS), ui).clicked() {
             panes.values.pop();
-            // One value is the parameter's own again.
             match panes.values.as_slice() {
-                [only] => out.commands.push(Command::Set(vec![
-                    (compare.key, only.clone()),
-                    (Key::Compare, Value::Text(String::new())),
-                ])),
+                [_] => keep_first(&panes, out),
                 _ => out.set(Key::Compare, Value::Text(panes.to_string())),
             }
             out.commands.push(Command::Settle);
         }
         if kit::button_ui(Button::new(text::COMPARE_OFF).quiet(), ui).clicked() {
-            out.set_once(Key::Compare, Value::Text(String::new()));
+            keep_first(&panes, out);
+            out.commands.push(Command::Settle);
         }
     });
+}
+
+/// One pane, as the first one is: its value is the parameter's own again.
+fn keep_first(compare: &Compare, out: &mut Out) {
+    let own = compare.values.first().map(|value| (compare.key, value.clone()));
+    let alone = (Key::Compare, Value::Text(String::new()));
+    out.commands.push(Command::Set(own.into_iter().chain([alone]).collect()));
 }
 
 /// Which parameter of those that have a row stands side by side with other values of itself.

@@ -5,7 +5,7 @@ use super::out::{Action, Out};
 use super::stage_panel::frame_everything;
 use super::state::UiState;
 use super::top_bar::toggle_compare;
-use eframe::egui::{Context, Event, Key as Keyboard, Modifiers, Popup};
+use eframe::egui::{Context, Event, Id, Key as Keyboard, Modifiers, Popup};
 use segue::session::{Command, Key, Kind, Session, Value};
 
 /// The labs, from left to right: the row of digits and what stands behind them.
@@ -52,12 +52,19 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
         (state.help_open, state.library_open) = (false, false);
         state.drawing = None;
     }
-    // A focused slider or tab takes Space and the arrows for itself.
-    let focused = ctx.memory(|memory| memory.focused().is_some());
+    // A focused slider or tab takes Space and the arrows for itself. What has the focus only because it was dragged or clicked leaves Space to the
+    // motion: one drags, and wants to see it play.
+    let focus = ctx.memory(eframe::egui::Memory::focused);
+    let by_pointer = Id::unique("focused by the pointer");
+    if ctx.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
+        ctx.data_mut(|data| data.insert_temp(by_pointer, focus));
+    }
+    let focused = focus.is_some();
+    let touched = ctx.data(|data| data.get_temp::<Option<Id>>(by_pointer)).flatten();
+    if (!focused || touched == focus) && pressed(none, Keyboard::Space) {
+        out.commands.push(Command::TogglePlay);
+    }
     if !focused {
-        if pressed(none, Keyboard::Space) {
-            out.commands.push(Command::TogglePlay);
-        }
         // Where a character is driven, the arrows drive it.
         let steps: &[(Keyboard, i64)] = if session.is_driven() {
             &[]

@@ -468,6 +468,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
     );
     press("One pane", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
+    assert_eq!(harness.state().session.params().number(Key::Speed), 1.4, "as the first pane was");
 }
 
 #[test]
@@ -622,6 +623,29 @@ fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
     }
 }
 
+/// One drags, and wants to see it play: Space is the motion's, unless the focus came by the keyboard.
+#[test]
+fn space_plays_after_a_drag() {
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    let plays = |harness: &Harness<'_, Page>| harness.state().session.params().is_on(Key::Play);
+    let slider = harness.get_by_label("Blend window").rect();
+    let track = slider.center_bottom() - vec2(0.0, 6.0);
+    step(vec![egui::Event::PointerMoved(track), button(track, true)], &mut harness);
+    step(vec![egui::Event::PointerMoved(track + vec2(20.0, 0.0))], &mut harness);
+    step(vec![button(track + vec2(20.0, 0.0), false)], &mut harness);
+    harness.run_steps(2);
+    assert!(harness.get_by_label("Blend window").is_focused());
+    harness.key_press(egui::Key::Space);
+    harness.run_steps(2);
+    assert!(plays(&harness));
+    // By the keyboard a switch has the focus, and Space is its own.
+    harness.get_by_label("Align to A").focus();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Space);
+    harness.run_steps(2);
+    assert!(plays(&harness) && !harness.state().session.params().is_on(Key::Align));
+}
+
 /// What a first visitor drags is what the panes show: every pane of a comparison has its own slider.
 #[test]
 fn values_side_by_side_are_dragged_one_by_one() {
@@ -633,6 +657,9 @@ fn values_side_by_side_are_dragged_one_by_one() {
     harness.key_press(egui::Key::ArrowRight);
     harness.run_steps(2);
     assert_eq!(compare(&harness), "blend_window:30,16,10");
+    press(text::PANE_MORE, &mut harness);
+    assert_eq!(compare(&harness), "blend_window:30,16,10,8");
+    // There is no room for a fifth: the button keeps its place, and does nothing.
     press(text::PANE_MORE, &mut harness);
     assert_eq!(compare(&harness), "blend_window:30,16,10,8");
     for _ in 0..3 {

@@ -581,6 +581,8 @@ pub(crate) const GRAPH_ABOUT: &str =
     "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
 /// Over the stage.
 pub(crate) const GRAPH_HINT: &str = "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+/// Of the seed, in place of what it does for a made motion.
+pub(crate) const GRAPH_SEED_HELP: &str = "Another seed, another way through the graph; the same seed, the same walk on every machine.";
 /// Why a visit came to nothing.
 pub(crate) fn no_way(name: &str, secs: f64) -> String {
     format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")

@@ -152,6 +152,16 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
     let (params, fps) = (session.params(), outcome.motion.clip.fps());
     let in_transition = params.text(Key::Lab) == "transition";
     let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
+    // The flags do not pass each other.
+    let (from, to) = (
+        params.optional(Key::In).unwrap_or(0.0),
+        params.optional(Key::Out).unwrap_or(session.duration_secs()),
+    );
+    let event = match event {
+        TimelineEvent::SetIn(secs) => TimelineEvent::SetIn(secs.min(to - 1.0 / fps).max(0.0)),
+        TimelineEvent::SetOut(secs) => TimelineEvent::SetOut(secs.max(from + 1.0 / fps).min(session.duration_secs())),
+        event => event,
+    };
     match event {
         // At the ends they mark nothing.
         TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.set(Key::In, Value::Auto),

@@ -93,11 +93,13 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     {
         out.toggle(Key::Projector, projector);
     }
-    if kit::icon_button_ui(Icon::Redo, text::REDO, ui).clicked() {
-        out.commands.push(Command::Redo);
-    }
-    if kit::icon_button_ui(Icon::Undo, text::UNDO, ui).clicked() {
-        out.commands.push(Command::Undo);
+    for (icon, name, can, command) in [
+        (Icon::Redo, text::REDO, session.can_redo(), Command::Redo),
+        (Icon::Undo, text::UNDO, session.can_undo(), Command::Undo),
+    ] {
+        if ui.add_enabled_ui(can, |ui| kit::icon_button_ui(icon, name, ui)).inner.clicked() {
+            out.commands.push(command);
+        }
     }
     let panes = session.panes().len();
     let label = if panes > 1 {
@@ -185,10 +187,10 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
 
 /// What of a made motion is compared: standing and turning on the spot have no speed.
 pub(crate) fn made_number(session: &Session) -> Key {
-    if matches!(session.params().text(Key::Gait), "idle" | "spin") {
-        Key::BodyHeight
-    } else {
+    if session.made_motion_has(Key::GaitSpeed) {
         Key::GaitSpeed
+    } else {
+        Key::BodyHeight
     }
 }
 

@@ -31,7 +31,7 @@ use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
 };
-use super::recipe::{middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
+use super::recipe::{made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::skin::Character;
@@ -552,6 +552,12 @@ impl Session {
     #[must_use]
     pub fn names(&self, key: Key) -> bool {
         self.named_by_link.contains(&key)
+    }
+
+    /// Whether the motion that Make is set to has that parameter: nobody who stands has a speed.
+    #[must_use]
+    pub fn made_motion_has(&self, key: Key) -> bool {
+        made_motion_has(&self.params, key)
     }
 
     /// What of a number's range makes sense now, where that is less than the table says: the speeds and lengths of a made motion.

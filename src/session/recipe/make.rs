@@ -20,6 +20,16 @@ pub(in crate::session) fn synth_action(params: &Params) -> Action {
     }
 }
 
+/// Whether the chosen motion has that parameter: nobody who stands has a speed.
+pub(in crate::session) fn has(params: &Params, key: Key) -> bool {
+    let lacks = match key {
+        Key::GaitSpeed => matches!(params.text(Key::Gait), "idle" | "spin"),
+        Key::TurnRate => matches!(params.text(Key::Gait), "idle" | "spin" | "jump" | "start" | "stop"),
+        _ => false,
+    };
+    !lacks
+}
+
 /// What of a number's range the chosen motion can be made with, where it is not all of it.
 pub(in crate::session) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
     let (own, table) = match (key, key.param().kind) {
@@ -89,7 +99,7 @@ pub(in crate::session) fn preset_motion(id: &str) -> Result<Motion, String> {
 pub(in crate::session) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait);
+        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait && has(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
             // As it is made, not as it was set for another motion.

@@ -1,6 +1,6 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
-use super::{jump_words, named, open_jump, table};
+use super::{jump_words, named, open_jump, point_at, table};
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
@@ -177,7 +177,7 @@ pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
     if let (Some(drawn), Some(built)) = (&drawn, built) {
         let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
         if let Some(&ends) = ends {
-            state.hovered_jump = Some(ends);
+            point_at(ends, walk.map(|walk| &**walk), state);
             words = jump_words(built, walk.map(|walk| &**walk), ends).unwrap_or_default();
         } else if let Some([row, column]) = response.at {
             let place = |at: f32| set.place(at.max(0.0) as usize);

@@ -6,7 +6,7 @@ mod strip;
 mod table;
 
 pub(super) use map::{is_open, map_panel_ui, map_share};
-pub(super) use rows::{compare_windows, graph_ui};
+pub(super) use rows::{compare_windows, graph_ui, seed_detail};
 pub(super) use strip::walk_panel_ui;
 
 use super::out::Out;
@@ -61,6 +61,15 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
         jump.distance_cm,
         probability,
     ))
+}
+
+/// Shows both poses of a transition that is pointed at, unless it is the one that plays: then it is looked at itself.
+fn point_at(ends: [Place; 2], walk: Option<&Walk>, state: &mut UiState) {
+    let jump = walk.filter(|walk| walk.is_jump);
+    let seam = jump.and_then(|walk| walk.passed.get(1)?.seam);
+    if seam.is_none_or(|seam| [seam.leave, seam.enter] != ends) {
+        state.hovered_jump = Some(ends);
+    }
 }
 
 /// Why a visit came to nothing.

@@ -175,15 +175,20 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::MinJump, &Detail::default(), session, out, ui);
 }
 
+/// What the seed does here.
+pub(in crate::ui) fn seed_detail(session: &Session) -> Detail {
+    let is_graph = session.params().text(Key::Lab) == "graph";
+    Detail {
+        help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()),
+        ..Detail::default()
+    }
+}
+
 fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     kit::section_header_ui(text::WALK, ui);
     let plain = Detail::default();
-    let seed = Detail {
-        help: Some("Another seed, another way through the graph; the same seed, the same walk on every machine.".into()),
-        ..Detail::default()
-    };
-    param_row_ui(Key::Seed, &seed, session, out, ui);
+    param_row_ui(Key::Seed, &seed_detail(session), session, out, ui);
     param_row_ui(Key::Continuity, &plain, session, out, ui);
     param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
     if params.text(Key::EdgeWeight) == "exponential" {

@@ -1,7 +1,7 @@
 //! Below the stage: the walk in time, and the graph as bars and arcs.
 
 use super::map::Drawn;
-use super::{jump_words, named, no_way, open_jump, rows};
+use super::{jump_words, named, no_way, open_jump, point_at, rows};
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
@@ -103,7 +103,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let height = (ui.available_height() - space::XS).max(40.0);
     let response = kit::strip_ui(&strip, height, ui);
     if let Some(&ends) = response.hovered_arc.and_then(|arc| drawn.ends.get(arc)) {
-        state.hovered_jump = Some(ends);
+        point_at(ends, Some(walk), state);
     }
     if let Some(&ends) = response.clicked_arc.and_then(|arc| drawn.ends.get(arc)) {
         open_jump(ends, session, state, out);

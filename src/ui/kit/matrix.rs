@@ -79,6 +79,14 @@ impl Window {
         }
     }
 
+    /// The same part on a field of another size.
+    fn on(self, before: f32, side: f32) -> Self {
+        Self {
+            cells: self.cells * before / side,
+            ..self
+        }
+    }
+
     /// Inside of the picture, and not so near that a cell is larger than a fingertip.
     fn bounded(self, size: f32, side: f32) -> Self {
         let cells = self.cells.clamp((1.0_f32 / 24.0).min(size / side), size / side);
@@ -108,17 +116,19 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
     let (_, whole) = ui.allocate_space(Vec2::splat(side + margin));
     let field = Rect::from_min_size(whole.min + Vec2::splat(margin), Vec2::splat(side));
     let id = ui.make_persistent_id(matrix.label);
-    let response = ui.interact(field, id, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, matrix.label));
-
     let size = matrix.size.max(1) as f32;
-    let kept: Option<(usize, Window)> = ui.data(|data| data.get_temp(id));
+    let kept: Option<(usize, f32, Window)> = ui.data(|data| data.get_temp(id));
     let mut window = kept
-        .filter(|(of, _)| *of == matrix.size)
-        .map_or(Window::whole(size, side), |(_, window)| window)
+        .filter(|(of, ..)| *of == matrix.size)
+        .map_or(Window::whole(size, side), |(_, before, window)| window.on(before, side))
         .bounded(size, side);
+    // There is nowhere to drag all of it to: a finger that lies on it moves the panel.
+    let is_whole = window.cells >= 0.999 * size / side;
+    let sense = if is_whole { Sense::click() } else { Sense::click_and_drag() };
+    let response = ui.interact(field, id, sense);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, matrix.label));
     window = moved(window, (size, side), field, &response, ui);
-    ui.data_mut(|data| data.insert_temp::<(usize, Window)>(id, (matrix.size, window)));
+    ui.data_mut(|data| data.insert_temp::<(usize, f32, Window)>(id, (matrix.size, side, window)));
     let place = |row: f32, column: f32| field.min + (vec2(column, row) - window.corner) / window.cells;
 
     let painter = ui.painter_at(field.expand(1.0));
@@ -317,6 +327,17 @@ pub(crate) fn tiles_id() -> Id {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_of_it_stays_all_of_it_on_a_field_of_another_size() {
+        for side in [120.0, 317.0, 640.0] {
+            let whole = Window::whole(1000.0, side);
+            assert_eq!(Window::whole(1000.0, 500.0).on(500.0, side).bounded(1000.0, side), whole);
+            let near = Window::whole(1000.0, 500.0).zoomed(4.0, vec2(250.0, 100.0));
+            let seen = near.on(500.0, side).bounded(1000.0, side);
+            assert!(seen.corner == near.corner && (seen.cells * side - near.cells * 500.0).abs() < 1e-3);
+        }
+    }
 
     #[test]
     fn whoever_comes_nearer_sees_the_marks_that_there_was_no_room_for() {

@@ -215,4 +215,9 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     harness.run();
     let jump = harness.state().session.params().text(Key::Jump).to_owned();
     assert_eq!(jump, segue::session::write_jump(pointed[0], pointed[1]));
+    // What plays is looked at itself, though the pointer still rests on its ring.
+    while harness.state_mut().session.work() {}
+    harness.run_steps(3);
+    assert!(harness.state().session.graph_walk().unwrap().is_jump);
+    assert_eq!(harness.state().state.last_jump, None);
 }
