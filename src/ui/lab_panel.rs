@@ -87,8 +87,10 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         if session.made_motion_has(param.key) {
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
+        if param.key == made_number(session) {
+            compare_ui(param.key, session, out, ui);
+        }
     }
-    compare_ui(made_number(session), session, out, ui);
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);

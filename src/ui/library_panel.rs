@@ -60,6 +60,16 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
 
 /// Where files are dropped or asked for, and the bundled takes.
 pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    // A panel is as large as what was in it the last time: it is laid out once more before anybody sees it cut off.
+    let rows = (
+        state.fetching.len(),
+        session.jobs().iter().filter(|job| job.size.is_some()).count(),
+        state.samples_open,
+    );
+    let rows_id = Id::unique("rows of the drop zone");
+    if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(rows_id), rows)) != rows {
+        ui.ctx().request_discard("rows came to the drop zone");
+    }
     for (name, done) in &state.fetching {
         let detail = done.map_or_else(String::new, |done| format!("{:.0} %", done * 100.0));
         if kit::progress_row_ui(name, done.map(|done| done as f32), &detail, ui) {

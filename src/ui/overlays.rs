@@ -33,7 +33,9 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
             action: "",
         })
         .collect();
-    if let Some((index, NoticeEvent::Dismissed)) = kit::toasts_ui(&notices, state.stage, ui)
+    // Above the numbers: they are what one looks at.
+    let free = state.stage.with_max_y(state.numbers_top.max(state.stage.center().y));
+    if let Some((index, NoticeEvent::Dismissed)) = kit::toasts_ui(&notices, free, ui)
         && let Some(notice) = list.get(index)
     {
         out.commands.push(Command::Dismiss(notice.id));

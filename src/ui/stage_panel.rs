@@ -63,6 +63,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
             numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, ui));
         }
     }
+    state.numbers_top = numbers_top;
     if layout == Layout::Phone && panes.len() > 1 {
         pane_switch_ui(panes.len(), stage, state, ui);
     }

@@ -111,6 +111,8 @@ pub(crate) struct UiState {
     pub(crate) hint: bool,
     /// Where the stage was drawn, points.
     pub(crate) stage: Rect,
+    /// The upper edge of the panes' numbers on the stage, points.
+    pub(crate) numbers_top: f32,
     /// Files on their way, with how much of each is there, 0 to 1, where that is known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
 }
@@ -144,6 +146,7 @@ impl Default for UiState {
             filming: Filming::default(),
             hint: true,
             stage: Rect::NOTHING,
+            numbers_top: 0.0,
             fetching: Vec::new(),
         }
     }

@@ -84,9 +84,9 @@ pub(crate) fn timeline_panel_ui(
             },
             CurveOf::Pane(index, _) => Series {
                 name: of.name(),
-                // The first is the result that everything else on the page shows; two more are told apart by light, the last by warmth.
-                color: [palette.accent, palette.text, palette.muted, palette.warning][index % 4],
-                ink: [palette.accent_ink, palette.text, palette.muted, palette.warning][index % 4],
+                // The first is the result that everything else on the page shows; two more are told apart by light, the last by a colour that neither clip has.
+                color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
+                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
                 strong: *index == 0,
                 points,
             },

@@ -159,7 +159,8 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
             runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 { space::XS } else { 0.0 }));
         }
         let names = line_of(&runs, area.width(), ui);
-        if top + names.size().y > area.bottom() + space::S {
+        // The last one may hang into the time's axis, which begins beside it.
+        if top > area.bottom() + space::XS {
             break;
         }
         top = put(ui.painter(), pos2(area.left(), top), Align2::LEFT_TOP, names).bottom();
