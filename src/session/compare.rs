@@ -78,15 +78,21 @@ impl Compare {
         })
     }
 
-    /// The same with one value more: of numbers the share of the first that comes next, a quarter after a third. Where the range (the parameter's
+    /// The same with one value more, if there is room: of choices the next that is not there yet; of numbers the share of the first that comes next, a quarter after a third. Where the range (the parameter's
     /// own, or a narrower one) ends before that, the middle of the widest gap between those that are there.
     #[must_use]
     pub fn with_one_more(&self, range: Option<(f64, f64)>) -> Self {
         let mut more = self.clone();
-        let Kind::Number { min, max, .. } = self.key.param().kind else {
-            return more;
+        let (min, max) = match self.key.param().kind {
+            Kind::Number { min, max, .. } => range.unwrap_or((min, max)),
+            Kind::Choice(choices) => {
+                let others = choices.iter().map(|choice| Value::Choice(choice.key));
+                more.values.extend(others.filter(|choice| !self.values.contains(choice)).take(1));
+                more.values.truncate(MAX_PANES);
+                return more;
+            }
+            _ => return more,
         };
-        let (min, max) = range.unwrap_or((min, max));
         let number = |value: &Value| match value {
             Value::Number(number) => Some(*number),
             _ => None,
@@ -152,6 +158,9 @@ mod tests {
         let methods = Compare::choices(Key::Method, "dead").unwrap();
         assert!(methods.to_string().starts_with("method:dead,inertialize,"), "{methods}");
         assert_eq!(methods.values.len(), MAX_PANES);
+        assert_eq!(methods.with_one_more(None), methods);
+        let two = Compare::parse("method:dead,cut").unwrap().with_one_more(None);
+        assert_eq!(two.to_string(), "method:dead,cut,inertialize");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::out::Out;
 use super::text;
 use super::theme::palette_of;
 use eframe::egui::Ui;
-use segue::session::{Command, Compare, Key, Kind, MAX_PANES, Session, Value, decimals_of};
+use segue::session::{Command, Compare, Key, Kind, Session, Value, decimals_of};
 use segue::skeleton::Role;
 
 /// What a panel knows about a parameter beyond the table.
@@ -37,6 +37,9 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
         }
         Kind::Choice(choices) => {
             let options: Vec<(&'static str, &str)> = choices.iter().map(|choice| (choice.key, choice.label)).collect();
+            if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
+                return compared_choices_ui(&compare, &options, out, ui);
+            }
             let chosen = choices
                 .iter()
                 .find(|choice| choice.key == session.params().text(key))
@@ -193,9 +196,31 @@ fn compared_ui(
         }
         settle(&response, out);
     }
+    panes_ui(compare, range, out, ui);
+}
+
+/// A choice that differs from pane to pane: a row for each of them.
+fn compared_choices_ui(compare: &Compare, options: &[(&'static str, &str)], out: &mut Out, ui: &mut Ui) {
+    let label = compare.key.param().label;
+    for (pane, value) in compare.values.iter().enumerate() {
+        let Value::Choice(chosen) = value else { continue };
+        let label = format!("{label} · {}", pane + 1);
+        let picked = ui.push_id(pane, |ui| kit::choice_row_ui(&label, *chosen, options, ui)).inner;
+        if let Some(word) = picked {
+            let mut panes = compare.clone();
+            panes.values[pane] = Value::Choice(word);
+            out.set_once(Key::Compare, Value::Text(panes.to_string()));
+        }
+    }
+    panes_ui(compare, None, out, ui);
+}
+
+/// One pane more, one fewer, or one alone.
+fn panes_ui(compare: &Compare, range: Option<(f64, f64)>, out: &mut Out, ui: &mut Ui) {
+    let mut panes = compare.clone();
     ui.horizontal(|ui| {
         let more = Button::icon_only(Icon::Plus, text::PANE_MORE);
-        let has_room = compare.values.len() < MAX_PANES;
+        let has_room = compare.with_one_more(range) != *compare;
         // Dimmed it keeps its place: the next button must not come under the pointer.
         if ui.add_enabled_ui(has_room, |ui| kit::button_ui(more, ui)).inner.clicked() {
             out.set_once(Key::Compare, Value::Text(compare.with_one_more(range).to_string()));

@@ -672,6 +672,24 @@ fn values_side_by_side_are_dragged_one_by_one() {
 }
 
 #[test]
+fn choices_side_by_side_have_a_row_each() {
+    let mut harness = harness(DESK, DARK, page("compare=weight_law:smooth,linear&play=off"));
+    picture("compare-choices", &mut harness);
+    let compare = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Compare).to_owned();
+    assert!(harness.query_by_label("Weight law").is_none());
+    press(text::PANE_MORE, &mut harness);
+    let three = compare(&harness);
+    assert!(
+        three.starts_with("weight_law:smooth,linear,") && three.matches(',').count() == 2,
+        "{three}"
+    );
+    press(text::PANE_LESS, &mut harness);
+    press("One pane", &mut harness);
+    assert_eq!(compare(&harness), "");
+    assert_eq!(harness.state().session.params().text(Key::WeightLaw), "smooth");
+}
+
+#[test]
 fn an_embedded_page_keeps_the_rows_that_its_link_names() {
     let link = "lab=blend&embed=1&blend_window=30&a=walk&look=both&play=off";
     let mut harness = harness(vec2(800.0, 500.0), DARK, page(link));
