@@ -25,13 +25,14 @@ const LIBRARY: [(&str, &str); 16] = [
     ("scene", ALL_MOTION_AND_SESSION),
 ];
 
-/// The folders of the app. The platform holds the handle by which the page drives the app, so these two know each other.
-const APP: [(&str, &str); 5] = [
+/// The folders of the app, and the worker that reads files, which has nothing of it. The platform holds the handle by which the page drives the app, so these two know each other.
+const APP: [(&str, &str); 6] = [
     ("render", LIBRARY_WITHOUT_SESSION),
     ("ui", WHOLE_LIBRARY),
     ("platform", WHOLE_LIBRARY_AND_APP),
     ("app", EVERYTHING),
     ("main", "app platform render ui"),
+    ("bin", "session"),
 ];
 
 const MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics";

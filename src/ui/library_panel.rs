@@ -68,7 +68,7 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     );
     let rows_id = Id::unique("rows of the drop zone");
     if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(rows_id), rows)) != rows {
-        ui.ctx().request_discard("rows came to the drop zone");
+        ui.ctx().request_discard("drop_zone");
     }
     for (name, done) in &state.fetching {
         let detail = done.map_or_else(String::new, |done| format!("{:.0} %", done * 100.0));
