@@ -50,7 +50,9 @@ pub(crate) fn timeline_panel_ui(
     ui: &mut Ui,
 ) {
     let params = session.params();
-    let Some(outcome) = session.main_outcome() else { return };
+    let Some(outcome) = session.main_outcome() else {
+        return kit::note_ui(text::EMPTY_PANE, palette_of(ui).muted, ui);
+    };
     if let Some(driven) = &outcome.driven {
         return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
