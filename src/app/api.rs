@@ -195,14 +195,6 @@ impl Segue {
         Ok((key, value))
     }
 
-    /// Reads a file, exactly as if it were dropped on the window.
-    #[cfg(test)]
-    fn load_file(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedClips, String> {
-        self.pump();
-        let loaded = self.session.load(name, bytes).map_err(|error| error.to_string())?;
-        Ok(self.loaded_clips(loaded))
-    }
-
     pub(super) fn loaded_clips(&mut self, loaded: Loaded) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
         LoadedClips {
@@ -485,6 +477,15 @@ mod tests {
         segue
     }
 
+    /// As the page's `load` does.
+    fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, String> {
+        let task = segue.load_elsewhere(name, FileBytes::Here(Arc::from(bytes)));
+        while segue.is_reading(task) {
+            segue.pump();
+        }
+        segue.read_result(task).expect("nobody stopped it")
+    }
+
     fn object(json: Json) -> Map<String, Json> {
         if let Json::Object(map) = json {
             map
@@ -584,19 +585,14 @@ mod tests {
         let mut segue = open("a=walk&lab=view");
         let file = segue.export("result", "bvh").unwrap();
         assert_eq!(file.name, "walk.bvh");
-        let loaded = segue.load_file(&file.name, Arc::from(file.bytes)).unwrap();
+        let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
         assert_eq!(loaded.clips.len(), 1);
         assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
         assert_eq!(
             segue.export("result", "fbx").unwrap_err(),
             "found `fbx`, expected one of bvh, csv, glb"
         );
-        assert!(
-            segue
-                .load_file("x.bvh", Arc::from(&b"HIERARCHY oops"[..]))
-                .unwrap_err()
-                .starts_with("x.bvh:1:")
-        );
+        assert!(load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().starts_with("x.bvh:1:"));
         assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
     }
 

@@ -96,6 +96,21 @@ fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
     assert_eq!(names, ["01_02", "walk"], "the skeleton has no row of its own any longer");
 }
 
+/// The bytes of a session's files by their SHA-256, as storage has them.
+fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
+    |sha256| {
+        session.library().entries().iter().find_map(|entry| match &entry.origin {
+            Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
+            _ => None,
+        })
+    }
+}
+
+/// How many notices of a level there are.
+fn told(session: &Session, level: Level) -> usize {
+    session.notices().list().iter().filter(|notice| notice.level == level).count()
+}
+
 /// Reads what the session asks to have read, as a worker does: in order, with the setup that it was asked with.
 pub(super) fn serve(session: &mut Session) {
     loop {
@@ -150,26 +165,12 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         assert!(elsewhere.clip_infos().iter().all(|info| info.sha256.is_none()));
         serve(&mut elsewhere);
         assert_eq!(shown(&elsewhere), shown(&at_once));
-        let errors = |session: &Session| {
-            session
-                .notices()
-                .list()
-                .iter()
-                .filter(|notice| notice.level == Level::Error)
-                .count()
-        };
-        assert_eq!(errors(&elsewhere), errors(&at_once));
+        assert_eq!(told(&elsewhere, Level::Error), told(&at_once, Level::Error));
         assert!(elsewhere.jobs().iter().all(|job| job.task.is_none()));
 
         // After a reload, and read with other options.
-        let content_of = |sha256: &str| {
-            at_once.library().entries().iter().find_map(|entry| match &entry.origin {
-                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
-                _ => None,
-            })
-        };
         let mut restored = Session::that_has_files_read();
-        restored.restore(&elsewhere.saved(), content_of, None);
+        restored.restore(&elsewhere.saved(), stored(&at_once), None);
         serve(&mut restored);
         assert_eq!(shown(&restored), shown(&at_once));
         let id = restored.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
@@ -215,21 +216,14 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
     session.load("01.asf", bytes(ASF)).unwrap();
     session.load("01_02.amc", bytes(AMC)).unwrap();
     serve(&mut session);
-    let contents: Vec<(String, Content)> = (session.library().entries().iter())
-        .filter_map(|entry| match &entry.origin {
-            Origin::File(file) => Some((file.sha256.clone(), file.content.clone())),
-            _ => None,
-        })
-        .collect();
-    let content_of = |sha256: &str| contents.iter().find(|(key, _)| key == sha256).map(|(_, content)| content.clone());
     let unread = |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
     let (mut before, mut late) = (Session::that_has_files_read(), Session::that_has_files_read());
-    before.restore(&session.saved(), content_of, None);
+    before.restore(&session.saved(), stored(&session), None);
     // Something is changed while they are read, or before they come.
     let change = |session: &mut Session| session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
     change(&mut before);
     change(&mut late);
-    late.restore_late(&session.saved(), content_of);
+    late.restore_late(&session.saved(), stored(&session));
     for mut session in [before, late] {
         assert_eq!(unread(&session), 2);
         serve(&mut session);
@@ -343,23 +337,15 @@ fn a_motion_has_the_skeleton_of_its_name() {
 fn what_waits_for_its_other_half_says_so_until_that_has_come() {
     for files in [[("01_02.amc", AMC), ("01.asf", ASF)], [("01.asf", ASF), ("01_02.amc", AMC)]] {
         for mut session in [Session::new(), Session::that_has_files_read()] {
-            let odd = |session: &Session| {
-                session
-                    .notices()
-                    .list()
-                    .iter()
-                    .filter(|notice| notice.level == Level::Warning)
-                    .count()
-            };
             session.load(files[0].0, bytes(files[0].1)).unwrap();
             serve(&mut session);
-            assert_eq!(odd(&session), 1);
+            assert_eq!(told(&session, Level::Warning), 1);
             session.load(files[1].0, bytes(files[1].1)).unwrap();
             serve(&mut session);
-            let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            let texts: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
             assert!(
-                !told.iter().any(|text| text.contains("no motion") || text.contains("waits")),
-                "{told:?}"
+                !texts.iter().any(|text| text.contains("no motion") || text.contains("waits")),
+                "{texts:?}"
             );
         }
     }
@@ -380,17 +366,7 @@ fn a_skeleton_serves_all_its_motions() {
     // The skeleton is stored with each, and used when the file is read again.
     let saved = session.saved();
     let mut restored = Session::new();
-    restored.restore(
-        &saved,
-        |sha256| {
-            let entries = session.library().entries().iter();
-            entries.clone().find_map(|entry| match &entry.origin {
-                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
-                _ => None,
-            })
-        },
-        None,
-    );
+    restored.restore(&saved, stored(&session), None);
     assert_eq!(files(&restored), files(&session));
     let options = crate::formats::ImportOptions {
         fps: Some(60.0),
@@ -417,16 +393,7 @@ fn an_archive_brings_all_its_motions() {
     assert!(session.notices().list().last().unwrap().text.contains("2 files"));
     // What came out of the archive is stored file by file.
     let mut restored = Session::new();
-    restored.restore(
-        &session.saved(),
-        |sha256| {
-            session.library().entries().iter().find_map(|entry| match &entry.origin {
-                Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
-                _ => None,
-            })
-        },
-        None,
-    );
+    restored.restore(&session.saved(), stored(&session), None);
     assert_eq!(files(&restored), files(&session));
 
     let packed = {

@@ -131,7 +131,9 @@ impl Session {
         let entries = self.library.entries().to_vec();
         for entry in entries {
             let Origin::File(file) = &entry.origin else { continue };
-            let read_by_now = |entry: &Arc<Entry>| entry.motion.is_some() || entry.unread.is_some();
+            // What waits for a skeleton has said so when it was read.
+            let waits = |entry: &Entry| entry.awaits_skeleton() && !entry.warnings.is_empty();
+            let read_by_now = |entry: &Arc<Entry>| entry.motion.is_some() || entry.unread.is_some() || waits(entry);
             if self.library.get(&entry.id).is_none_or(read_by_now) {
                 continue;
             }
