@@ -88,7 +88,8 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     shortcuts::shortcuts(session, state, &mut out, ui.ctx());
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
-    state.has_map_panel = layout == Layout::Desk && graph::is_open(session) && !lessons_panel::is_open(session);
+    let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
+    state.has_map_panel = has_room && graph::is_open(session) && !lessons_panel::is_open(session);
     if !matches!(session.params().text(Key::Lab), "graph" | "path") {
         state.drawing = None;
     }
@@ -129,6 +130,8 @@ fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// From this width on the map of a graph has room beside the stage, points.
+const MAP_ROOM: f32 = 1000.0;
 /// Between the bar of a panel that scrolls and the panel's edge, points.
 const BAR_MARGIN: f32 = 3.0;
 

@@ -5,7 +5,7 @@ use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{palette_of, space};
+use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
 use segue::graph::{Choices, DistanceDetail, Place};
 use segue::session::{Built, Distances, Field, Key, Session, Walk};
@@ -20,9 +20,9 @@ pub(in crate::ui) fn map_share(session: &Session) -> f32 {
 /// The map beside the stage, and the numbers of several panes below it.
 pub(in crate::ui) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let several = session.panes().len() > 1;
-    let room = ui.available_height();
+    let (room, below) = (ui.available_height(), 60.0 * theme_of(ui).scale());
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        map_ui(session, if several { 0.6 * room } else { room - 60.0 }, state, out, ui);
+        map_ui(session, if several { 0.6 * room } else { room - below }, state, out, ui);
         if several {
             ui.add_space(space::S);
             table::table_ui(session, out, ui);
