@@ -1,6 +1,6 @@
 use crate::clip::{Clip, ClipError, JointTranslations, Provenance};
 use crate::math::{Planar, quat};
-use crate::skeleton::{Skeleton, WorldPose, world_pose_into};
+use crate::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -74,23 +74,10 @@ impl Assembly {
         }
     }
 
-    /// One frame. `translations` has one value for each of [`moving_joints`]; the carrier, if there is one below the root, is put over the origin of
-    /// `character`: where the root stands still and a joint below it carries the character, the root is a long lever, and angles alone would
-    /// swing it.
-    pub(crate) fn push(
-        &mut self,
-        mut root: Vec3,
-        rotations: &[Quat],
-        translations: &[Vec3],
-        carrier: Option<(usize, Planar)>,
-        world: &mut WorldPose,
-    ) {
+    /// One frame. `translations` has one value for each of [`moving_joints`].
+    pub(crate) fn push(&mut self, root: Vec3, rotations: &[Quat], translations: &[Vec3]) {
         for (track, &value) in self.tracks.iter_mut().zip(translations) {
             track.values.push(value);
-        }
-        if let Some((joint, character)) = carrier {
-            let moved = self.tracks.iter().map(|track| track.joint).zip(translations.iter().copied());
-            root = standing_over(&self.skeleton, root, rotations, moved, (joint, character), world);
         }
         self.rotations.extend_from_slice(rotations);
         self.roots.push(root);
@@ -101,20 +88,6 @@ impl Assembly {
         let clip = Clip::new(name, self.skeleton, self.fps, self.rotations, self.roots)?;
         Ok(clip.with_translations(self.tracks)?.with_provenance(self.provenance))
     }
-}
-
-/// Where the root belongs so that the carrier, a joint below it, stands over the origin of the character's frame.
-pub(crate) fn standing_over(
-    skeleton: &Skeleton,
-    root: Vec3,
-    rotations: &[Quat],
-    moved: impl IntoIterator<Item = (usize, Vec3)>,
-    (carrier, character): (usize, Planar),
-    world: &mut WorldPose,
-) -> Vec3 {
-    world_pose_into(skeleton, root, rotations, moved, world);
-    let off = character.origin() - world.positions[carrier];
-    root + Vec3::new(off.x, 0.0, off.z)
 }
 
 /// The joints other than the root that move against their parent in either clip, in order.

@@ -1,9 +1,9 @@
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BlendError, Concatenation, WeightLaw, align_onto};
-use crate::clip::{Clip, character_frames, motion_root};
+use crate::clip::{Clip, character_frames};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::limb_weights;
-use crate::skeleton::{Roles, Skeleton, WorldPose};
+use crate::skeleton::{Roles, Skeleton};
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
@@ -47,29 +47,22 @@ impl Default for DissolveOptions {
 pub struct Source {
     clip: Arc<Clip>,
     frames: Vec<Planar>,
-    motion_root: usize,
     weights: Vec<f64>,
 }
 
 impl Source {
-    /// Measures where the character stands and faces in every frame, and the joint that carries it. O(frames × joints).
+    /// Measures where the character stands and faces in every frame. O(frames × joints).
     #[must_use]
     pub fn new(clip: Arc<Clip>, roles: &Roles) -> Self {
         let frames = character_frames(&clip, roles);
-        Self::with_frames(clip, roles, frames)
+        Self::with_frames(clip, frames)
     }
 
     /// Likewise, where `frames` ([`character_frames`] of the clip) are known already.
     #[must_use]
-    pub fn with_frames(clip: Arc<Clip>, roles: &Roles, frames: Vec<Planar>) -> Self {
-        let motion_root = motion_root(&clip, roles);
+    pub fn with_frames(clip: Arc<Clip>, frames: Vec<Planar>) -> Self {
         let weights = limb_weights(clip.skeleton());
-        Self {
-            clip,
-            frames,
-            motion_root,
-            weights,
-        }
+        Self { clip, frames, weights }
     }
 
     /// The same motion elsewhere on the ground ([`Clip::transformed`]).
@@ -78,18 +71,16 @@ impl Source {
         Self {
             clip: Arc::new(self.clip.transformed(world_from_clip)),
             frames: self.frames.iter().map(|frame| world_from_clip.after(frame)).collect(),
-            motion_root: self.motion_root,
             weights: self.weights.clone(),
         }
     }
 
-    /// Another motion of the same body, carried by the same joint, where the character's frames are known.
+    /// Another motion of the same body, where the character's frames are known.
     #[must_use]
     pub(crate) fn with_motion(&self, clip: Clip, frames: Vec<Planar>) -> Self {
         Self {
             clip: Arc::new(clip),
             frames,
-            motion_root: self.motion_root,
             weights: self.weights.clone(),
         }
     }
@@ -104,12 +95,6 @@ impl Source {
     #[must_use]
     pub fn frames(&self) -> &[Planar] {
         &self.frames
-    }
-
-    /// The joint that carries the character through the world.
-    #[must_use]
-    pub fn motion_root(&self) -> usize {
-        self.motion_root
     }
 
     /// The step of the character into `frame`, in its own frame at the frame before; into frame 0 the step that follows it (no other is known).
@@ -328,8 +313,7 @@ impl Blend<'_> {
         let mut made = Assembly::new(a, b, self.leave + self.window + (b.frames() - after));
         made.play(a, 0..self.leave);
         let moving = moving_joints(a, b);
-        let carrier = common_carrier(self.a, self.b);
-        let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+        let (mut rotations, mut translations) = (Vec::new(), Vec::new());
         for p in 0..self.window {
             let (fa, fb) = (self.leave + p, self.enter + p);
             let (weight, translation, rotation) = self.root(p, placing);
@@ -340,20 +324,11 @@ impl Blend<'_> {
             translations.clear();
             let between = |&joint: &usize| translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight);
             translations.extend(moving.iter().map(between));
-            let carried = match placing {
-                Placing::Character(frames) => carrier.map(|joint| (joint, frames[p])),
-                Placing::World(_) => None,
-            };
-            made.push(translation, &rotations, &translations, carried, &mut world);
+            made.push(translation, &rotations, &translations);
         }
         made.play_moved(b, after..b.frames(), world_from_b);
         Ok(made.finish(format!("{} → {}", a.name(), b.name()))?)
     }
-}
-
-/// The joint below the root that carries the character in both clips.
-pub(crate) fn common_carrier(a: &Source, b: &Source) -> Option<usize> {
-    Some(a.motion_root).filter(|&joint| joint != 0 && joint == b.motion_root)
 }
 
 /// `weight` of `a`, the rest of `b`; the turn goes the shorter way.

@@ -1,6 +1,6 @@
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BodyPart, mask};
-use crate::clip::{Clip, ClipError, Interpolation, character_frames, motion_root};
+use crate::clip::{Clip, ClipError, Interpolation, character_frames};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::skeleton::{Pose, Roles, WorldPose, world_pose_into};
 use glam::{Quat, Vec3};
@@ -144,12 +144,10 @@ pub fn layer_timed(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptio
             vec![Planar::IDENTITY; clip.frames()]
         }
     };
-    let carrier = motion_root(base, roles);
     let layering = Layering {
         base_stands: stands(base),
         over_stands: stands(over),
         moving: moving_joints(base, over),
-        carrier: Some(carrier).filter(|&joint| joint != 0 && mask[0] > 0.0 && joint == motion_root(over, roles)),
         base,
         over,
         mask,
@@ -193,7 +191,6 @@ struct Layering<'a> {
     base_stands: Vec<Planar>,
     over_stands: Vec<Planar>,
     moving: Vec<usize>,
-    carrier: Option<usize>,
     mask: Vec<f32>,
     options: &'a LayerOptions,
     times: &'a [f64],
@@ -231,8 +228,7 @@ impl Layering<'_> {
                 .iter()
                 .map(|&joint| self.translation(joint, frame, &over, &reference))
                 .collect();
-            let carrier = self.carrier.filter(|_| self.options.mode == LayerMode::Override);
-            made.push(root, &rotations, &translations, carrier.map(|joint| (joint, here)), &mut world);
+            made.push(root, &rotations, &translations);
         }
         made.finish(format!("{} + {}", self.base.name(), self.over.name()))
     }

@@ -88,10 +88,10 @@ mod registered;
 mod weight;
 mod weight_curve;
 
-pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, standing_over, translation_of};
+pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, translation_of};
 pub use concatenation::Concatenation;
 pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
-pub(crate) use dissolve::{check, common_carrier, laid_on};
+pub(crate) use dissolve::{check, laid_on};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};

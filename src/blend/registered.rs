@@ -4,7 +4,7 @@ use super::{BlendError, Concatenation, Source, WeightCurve, WeightLaw};
 use crate::clip::{Clip, Contacts, Interpolation};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::Registration;
-use crate::skeleton::{Pose, Side, WorldPose};
+use crate::skeleton::{Pose, Side};
 use glam::{DVec2, Quat, Vec3};
 
 /// A clip that is blended with a reference, which it is registered to as the target.
@@ -349,9 +349,6 @@ impl<'a> Blend<'a> {
         let clips: Vec<&Clip> = self.sources().map(|source| &**source.clip()).collect();
         let mut made = Assembly::of(clips[0], clips.iter().copied(), instants.len());
         let moving = moving_joints_of(clips.iter().copied());
-        let root = self.reference.motion_root();
-        let carrier = (root != 0 && self.sources().all(|source| source.motion_root() == root)).then_some(root);
-        let mut world = WorldPose::default();
         let way = self.way(instants);
         for (instant, (here, in_reference, alignments)) in instants.iter().zip(&way) {
             let mut mean = Mean::default();
@@ -368,8 +365,7 @@ impl<'a> Blend<'a> {
             if let Some(rotation) = mean.rotations.first_mut() {
                 *rotation = quat::renormalize(place.rotation() * *rotation);
             }
-            let carried = carrier.map(|joint| (joint, *here));
-            made.push(place.apply(mean.root), &mean.rotations, &mean.translations, carried, &mut world);
+            made.push(place.apply(mean.root), &mean.rotations, &mean.translations);
         }
         let names: Vec<&str> = clips.iter().map(|clip| clip.name()).collect();
         let clip = made.finish(names.join(" + "))?;

@@ -15,6 +15,10 @@
 //! Facing comes from where joints are and never from an Euler angle, which jumps where the body does not. Place and facing together are the
 //! character's frame ([`character_frames`]): poses are blended and matched as seen from there.
 //!
+//! The first joint carries the body: it is the one where legs and trunk meet. Files may have more above it, a root that stands still or goes along
+//! the ground; on import that is folded into it ([`Clip::folded`]), and comes back when the clip is written ([`Clip::unfolded`]). A lever between
+//! root and hips would otherwise be mixed by its angles, and swing the body.
+//!
 //! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one to come down and a looser one to leave, as
 //! a thermostat has two temperatures: about a single limit a trembling foot would flicker.
 //!
@@ -54,13 +58,14 @@
 //!
 //! # What it does not do
 //!
-//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. Whoever lies on the side has no
-//! facing and keeps that of the nearest frame that has one.
+//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. A body that lies on its side has no
+//! facing: over such frames its heading turns evenly from the last known to the next.
 //!
 //! # Sources
 //!
 //! Angular velocities: Holden, "Joint limits, quaternions and angular velocity". Cubic interpolation: Catmull and Rom, on rotation vectors.
 
+mod carrier;
 mod contacts;
 mod curves;
 #[cfg(test)]
@@ -82,7 +87,7 @@ pub(crate) use jolts::{Jolting, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget};
-pub use root_motion::{character_frames, facing, ground_speed, motion_root};
+pub use root_motion::{character_frames, facing, ground_speed};
 pub use sampling::Interpolation;
 pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
 pub use velocity::{Velocities, velocities};

@@ -1,45 +1,13 @@
 use super::Clip;
-use crate::math::Planar;
+use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
-/// A joint moves when its positions over the clip spread by more than this, metres.
-const MOVES_M: f32 = 1e-3;
 /// Across axes whose share over the ground is below this are those of a character lying on its side: no facing.
 const LEAST_ACROSS: f32 = 0.2;
 
 /// The pairs of joints whose axes say where the body faces.
 const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
-
-/// The joint that carries the character through the world: the first from the top whose world position varies, on the way from the root to
-/// the hips. Some files hold a `ROOT` still and move the `Hips` below it. The root where nothing moves.
-#[must_use]
-pub fn motion_root(clip: &Clip, roles: &Roles) -> usize {
-    let skeleton = clip.skeleton();
-    let hips = roles.get_within(Role::Hips, skeleton.len());
-    // Without hips every joint that has translations of its own is a candidate, from the top.
-    let mut candidates: Vec<usize> = match hips {
-        Some(hips) => std::iter::successors(Some(hips), |&joint| skeleton.parent(joint)).collect(),
-        None => clip.translations().iter().map(|track| track.joint).chain([0]).collect(),
-    };
-    candidates.sort_unstable();
-    let mut bounds: Vec<Option<(Vec3, Vec3)>> = vec![None; candidates.len()];
-    let mut world = WorldPose::default();
-    let needed = skeleton.with_ancestors(candidates.iter().copied());
-    for frame in 0..clip.frames() {
-        clip.world_pose_of(frame, &needed, &mut world);
-        for (&joint, bound) in candidates.iter().zip(&mut bounds) {
-            let p = world.positions[joint];
-            *bound = Some(bound.map_or((p, p), |(low, high)| (low.min(p), high.max(p))));
-        }
-    }
-    let moves = |bound: &Option<(Vec3, Vec3)>| bound.is_some_and(|(low, high)| (high - low).max_element() > MOVES_M);
-    candidates
-        .iter()
-        .zip(&bounds)
-        .find(|(_, bound)| moves(bound))
-        .map_or(0, |(&joint, _)| joint)
-}
 
 /// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or nowhere (a character lying on its side).
 ///
@@ -47,17 +15,25 @@ pub fn motion_root(clip: &Clip, roles: &Roles) -> usize {
 /// body does not. A rig without legs and arms faces along its root's +Z.
 #[must_use]
 pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
+    let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint));
+    let has = |role: fn(Side) -> Role| Side::BOTH.into_iter().all(|side| at(role(side)).is_some());
+    if ACROSS.into_iter().any(has) {
+        return axis_facing(world, roles);
+    }
+    over_the_ground(*world.rotations.first()? * Vec3::Z)
+}
+
+/// Likewise by hips and shoulders alone; `None` without either.
+fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
     let across = |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
     let [hips, shoulders] = ACROSS.map(across);
-    let forward = if hips.is_none() && shoulders.is_none() {
-        *world.rotations.first()? * Vec3::Z
-    } else {
-        // Left × up = forward.
-        (hips.unwrap_or_default() + shoulders.unwrap_or_default())
-            .try_normalize()?
-            .cross(Vec3::Y)
-    };
+    // Left × up = forward.
+    let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?;
+    over_the_ground(across.cross(Vec3::Y))
+}
+
+fn over_the_ground(forward: Vec3) -> Option<Vec3> {
     let forward = Vec3::new(forward.x, 0.0, forward.z);
     if forward.length() < LEAST_ACROSS {
         None
@@ -66,50 +42,80 @@ pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     }
 }
 
-/// Where the character stands on the ground and what it faces, frame by frame: `world_from_character`.
+/// Returns where the character stands on the ground and what it faces, frame by frame: `world_from_character`.
 ///
-/// The shift is the [`motion_root`] projected to the ground, the yaw that of [`facing`]. A frame without facing takes the yaw of the nearest
-/// frame that has one (the earlier of two), so that the yaw never jumps to 0; without any such frame the yaw is 0.
+/// The shift is the first joint, which carries the body ([`Clip::folded`]), projected to the ground; the yaw is that of [`facing`]. Over frames
+/// without facing the yaw turns evenly, the shorter way, from the last known one to the next, so that it is continuous; before the first and
+/// behind the last it stays. Without any facing, as for creatures without hips and shoulders, the yaw is the turn of the first joint about +Y since
+/// the first frame, and faces along its +Z there: that is 0 for a joint that points up or down.
 #[must_use]
 pub fn character_frames(clip: &Clip, roles: &Roles) -> Vec<Planar> {
-    let root = motion_root(clip, roles);
+    frames_of(clip, roles, 0)
+}
+
+/// [`character_frames`] of a body that another joint than the first carries.
+pub(super) fn frames_of(clip: &Clip, roles: &Roles, carrier: usize) -> Vec<Planar> {
     let mut world = WorldPose::default();
     let mut frames = Vec::with_capacity(clip.frames());
     let mut known: Vec<Option<f64>> = Vec::with_capacity(clip.frames());
-    let across = ACROSS
+    let mut turns: Vec<Quat> = Vec::with_capacity(clip.frames());
+    let across: Vec<usize> = ACROSS
         .into_iter()
         .flat_map(|role| Side::BOTH.map(role))
-        .filter_map(|role| roles.get(role));
-    let needed = clip.skeleton().with_ancestors(across.chain([root]));
+        .filter_map(|role| roles.get_within(role, clip.skeleton().len()))
+        .collect();
+    let needed = clip.skeleton().with_ancestors(across.iter().copied().chain([carrier]));
     for frame in 0..clip.frames() {
         clip.world_pose_of(frame, &needed, &mut world);
-        let facing = facing(&world, roles);
-        let standing = Planar::standing_at(world.positions[root], facing.unwrap_or(Vec3::Z));
+        let facing = axis_facing(&world, roles);
+        let standing = Planar::standing_at(world.positions[carrier], facing.unwrap_or(Vec3::Z));
         known.push(facing.map(|_| standing.yaw));
+        turns.push(world.rotations[carrier]);
         frames.push(standing);
     }
-    for (frame, yaw) in frames.iter_mut().zip(nearest_known(&known)) {
+    if known.iter().all(Option::is_none) {
+        known = turned_since_the_first(&turns);
+    }
+    for (frame, yaw) in frames.iter_mut().zip(without_gaps(&known)) {
         frame.yaw = yaw.unwrap_or(0.0);
     }
     frames
 }
 
-/// Every gap takes the value of the nearest known entry, of two equally near ones the earlier.
-fn nearest_known(values: &[Option<f64>]) -> Vec<Option<f64>> {
+/// The yaw of a joint, frame by frame: how far it has turned about +Y since the first frame, on top of where its +Z points there. Relative
+/// rotations do not depend on how the file lays the joint's axes. `None` where it is upside down.
+fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
+    let Some(&first) = turns.first() else {
+        return Vec::new();
+    };
+    let forward = first * Vec3::Z;
+    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < LEAST_ACROSS {
+        0.0
+    } else {
+        f64::from(forward.x).atan2(f64::from(forward.z))
+    };
+    let yaw = |turn: &Quat| {
+        let since = *turn * first.conjugate();
+        let upright = since.y.hypot(since.w) > LEAST_ACROSS;
+        upright.then(|| wrap_angle(start + 2.0 * f64::from(since.y).atan2(f64::from(since.w))))
+    };
+    turns.iter().map(yaw).collect()
+}
+
+/// Fills gaps between known angles evenly, the shorter way; before the first and behind the last known one with that.
+fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut filled = values.to_vec();
     let known: Vec<(usize, f64)> = values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?))).collect();
-    let mut next = 0;
-    for (i, slot) in filled.iter_mut().enumerate() {
-        // `known[next]` is the first known entry at or behind i.
-        while known.get(next).is_some_and(|&(at, _)| at < i) {
-            next += 1;
+    for pair in known.windows(2) {
+        let [(from, start), (to, end)] = [pair[0], pair[1]];
+        for (step, slot) in (1..).zip(&mut filled[from + 1..to]) {
+            let share = f64::from(step) / (to - from) as f64;
+            *slot = Some(wrap_angle(start + wrap_angle(end - start) * share));
         }
-        let before = next.checked_sub(1).and_then(|last| known.get(last));
-        *slot = match (before, known.get(next)) {
-            (Some(&(last, value)), Some(&(ahead, _))) if i - last <= ahead - i && ahead != i => Some(value),
-            (_, Some(&(_, value))) | (Some(&(_, value)), None) => Some(value),
-            (None, None) => None,
-        };
+    }
+    if let (Some(&(first, start)), Some(&(last, end))) = (known.first(), known.last()) {
+        filled[..first].fill(Some(start));
+        filled[last + 1..].fill(Some(end));
     }
     filled
 }
@@ -138,39 +144,12 @@ pub fn ground_speed(frames: &[Planar], fps: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::JointTranslations;
-    use crate::clip::fixtures::{wander, wander_by};
+    use crate::clip::fixtures::wander_by;
     use crate::skeleton::fixtures;
     use glam::Quat;
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
     use std::sync::Arc;
-
-    #[test]
-    fn the_root_moves_unless_it_stands_still_above_moving_hips() {
-        let skeleton = fixtures::bandai();
-        let roles = fixtures::roles(&skeleton);
-        let hips = roles.get(Role::Hips).unwrap();
-        let moving = wander(&skeleton, 5, 1);
-        assert_eq!(motion_root(&moving, &roles), 0);
-
-        let still = Clip::new(
-            "still",
-            Arc::clone(&skeleton),
-            30.0,
-            vec![Quat::IDENTITY; 5 * skeleton.len()],
-            vec![Vec3::ZERO; 5],
-        )
-        .unwrap();
-        assert_eq!(motion_root(&still, &roles), 0);
-        let values: Vec<Vec3> = (0..5).map(|i| Vec3::new(0.0, 0.95, 0.1 * i as f32)).collect();
-        let carried = still.with_translations(vec![JointTranslations { joint: hips, values }]).unwrap();
-        assert_eq!(motion_root(&carried, &roles), hips);
-        assert_eq!(motion_root(&carried, &Roles::default()), hips);
-        let frames = character_frames(&carried, &roles);
-        assert!((frames[4].origin() - Vec3::Z * 0.4).length() < 1e-6);
-        assert!((ground_speed(&frames, 30.0) - 3.0).abs() < 1e-5);
-    }
 
     #[test]
     fn the_body_tells_where_it_faces_whatever_the_root_says() {
@@ -207,13 +186,39 @@ mod tests {
     }
 
     #[test]
-    fn gaps_take_the_nearest_value() {
+    fn gaps_turn_evenly_the_shorter_way() {
         let (a, b) = (Some(1.0), Some(2.0));
-        assert_eq!(nearest_known(&[]), []);
-        assert_eq!(nearest_known(&[None, None]), [None, None]);
-        assert_eq!(nearest_known(&[None, a, None, None, None, b, None]), [a, a, a, a, b, b, b]);
-        assert_eq!(nearest_known(&[a, None, None, b]), [a, a, b, b]);
-        assert_eq!(nearest_known(&[a, b, a]), [a, b, a]);
+        assert_eq!(without_gaps(&[]), []);
+        assert_eq!(without_gaps(&[None, None]), [None, None]);
+        assert_eq!(
+            without_gaps(&[None, a, None, None, None, b, None]),
+            [a, a, Some(1.25), Some(1.5), Some(1.75), b, b]
+        );
+        let across_the_back = without_gaps(&[Some(3.0), None, Some(-3.0)])[1].unwrap();
+        assert!((across_the_back.abs() - PI).abs() < 1e-12, "{across_the_back}");
+    }
+
+    /// A creature without hips and shoulders, whose root's axes lie as the file likes, turns as it turns.
+    #[test]
+    fn a_creature_without_limbs_turns_with_its_first_joint() {
+        let skeleton = fixtures::lafan();
+        for axes in [
+            Quat::IDENTITY,
+            Quat::from_rotation_x(1.3),
+            Quat::from_euler(glam::EulerRot::XYZ, 0.4, -2.0, 0.9),
+        ] {
+            let turned = |frame: usize| Quat::from_rotation_y(0.1 * frame as f32) * axes;
+            let mut rotations = vec![Quat::IDENTITY; 60 * skeleton.len()];
+            for (frame, root) in rotations.iter_mut().step_by(skeleton.len()).enumerate() {
+                *root = turned(frame);
+            }
+            let clip = Clip::new("whirl", Arc::clone(&skeleton), 30.0, rotations, vec![Vec3::Y; 60]).unwrap();
+            let frames = character_frames(&clip, &Roles::default());
+            for pair in frames.windows(2) {
+                let turn = crate::math::wrap_angle(pair[1].yaw - pair[0].yaw);
+                assert!((turn - 0.1).abs() < 1e-4, "{turn}");
+            }
+        }
     }
 
     #[test]

@@ -44,6 +44,11 @@ pub struct CsvInputs<'a> {
 /// `right_foot_contact` (0 or 1); the columns of `inputs`. Values that are no numbers are empty. Joints of the same name are numbered: `Hand (2)`.
 #[must_use]
 pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
+    let unfolded = inputs.clip.unfolded();
+    let inputs = &CsvInputs {
+        clip: unfolded.as_ref().unwrap_or(inputs.clip),
+        ..*inputs
+    };
     let clip = inputs.clip;
     let mut out = String::new();
     header(&mut out, inputs, options.rotations);

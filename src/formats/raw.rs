@@ -87,7 +87,7 @@ impl RawMotion {
         with_end_sites(&self.joints, world)
     }
 
-    /// The clip in metres with Y up.
+    /// The clip in metres with Y up, its first joint the one that carries the body ([`Clip::folded`]).
     pub(super) fn into_clip(mut self, name: String, fps: f64, measure: &Measure) -> Result<Clip, RawError> {
         let Provenance { metres_per_unit, up } = measure.provenance;
         let length = |v: Vec3| {
@@ -120,7 +120,7 @@ impl RawMotion {
             .collect();
         let skeleton = Arc::new(Skeleton::new(self.joints)?);
         let clip = Clip::new(name, skeleton, fps, self.rotations, self.root_translations)?;
-        Ok(clip.with_translations(tracks)?.with_provenance(measure.provenance))
+        Ok(clip.with_translations(tracks)?.with_provenance(measure.provenance).folded()?)
     }
 }
 

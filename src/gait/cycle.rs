@@ -12,8 +12,6 @@ use std::ops::Range;
 pub struct GaitCycle {
     /// The cycle. The frame behind its last is its first again.
     pub(super) looped: Loop,
-    /// The joint that carries the character.
-    pub(super) motion_root: usize,
     range: Range<usize>,
     events: Events,
     speed_mps: f64,
@@ -60,7 +58,6 @@ impl GaitCycle {
         frames.extend(frames.first().map(|first| looped.cycle.after(first)));
         Ok(Self {
             speed_mps: f64::from(ground_speed(&frames, looped.clip.fps())),
-            motion_root: source.motion_root(),
             looped,
             range,
             events,

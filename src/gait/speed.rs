@@ -1,9 +1,9 @@
 use super::phase::{Events, Part, PhaseAlignment};
 use super::{GaitCycle, GaitError, SpeedPlayer};
-use crate::blend::{Assembly, moving_joints, standing_over, translation_of};
+use crate::blend::{Assembly, moving_joints, translation_of};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Planar, quat, wrap_angle};
-use crate::skeleton::{Pose, Role, Roles, Side, WorldPose};
+use crate::skeleton::{Pose, Role, Roles, Side};
 use glam::{DVec3, Quat, Vec3};
 use std::ops::RangeInclusive;
 
@@ -72,7 +72,6 @@ pub struct SpeedBlend {
     gaits: [Sampled; 2],
     parts: Vec<Part>,
     moving: Vec<usize>,
-    carrier: Option<usize>,
     options: SpeedOptions,
     weights: [f64; 2],
     name: String,
@@ -128,7 +127,6 @@ impl SpeedBlend {
             gaits,
             parts,
             moving,
-            carrier: Some(a.motion_root).filter(|&joint| joint != 0 && joint == b.motion_root),
             options: *options,
             weights: [-BEYOND, 1.0 + BEYOND],
             name: format!("{} ~ {}", first.name(), second.name()),
@@ -263,18 +261,11 @@ impl SpeedBlend {
         if let Some(root) = rotations.first_mut() {
             *root = quat::renormalize(here.rotation() * *root);
         }
-        let mut pose = Pose {
+        Pose {
             root_translation: here.apply(translations.first().copied().unwrap_or_default()),
             rotations,
             translations: self.moving.iter().copied().zip(translations.into_iter().skip(1)).collect(),
-        };
-        if let Some(joint) = self.carrier {
-            let moved = pose.translations.iter().copied();
-            let mut world = WorldPose::default();
-            let skeleton = self.gaits[0].clip.skeleton();
-            pose.root_translation = standing_over(skeleton, pose.root_translation, &pose.rotations, moved, (joint, *here), &mut world);
         }
-        pose
     }
 
     /// One cycle, from a strike of the left foot to its next, at the nearest whole number of frames: with `n` steps from frame to frame it has
@@ -335,7 +326,7 @@ impl SpeedBlend {
     fn made(&self, facts: GaitFacts, phases: impl Iterator<Item = (f64, f64)>) -> Result<GaitClip, GaitError> {
         let [a, b] = &self.gaits;
         let mut made = Assembly::new(&a.clip, &b.clip, phases.size_hint().0);
-        let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+        let (mut rotations, mut translations) = (Vec::new(), Vec::new());
         let mut planted = [Vec::new(), Vec::new()];
         let mut here = Planar::IDENTITY;
         let mut before = None;
@@ -347,13 +338,7 @@ impl SpeedBlend {
             self.pose_into(weight, phase, &mut rotations, &mut translations);
             rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
             let root = here.apply(translations[0]);
-            made.push(
-                root,
-                &rotations,
-                &translations[1..],
-                self.carrier.map(|joint| (joint, here)),
-                &mut world,
-            );
+            made.push(root, &rotations, &translations[1..]);
             for (flags, down) in planted.iter_mut().zip(self.planted(weight, phase)) {
                 flags.push(down);
             }

@@ -208,7 +208,6 @@ impl Around {
             subject.start.saturating_sub(margin.max(1)).min(clip.frames())..steps.end().saturating_add(margin + 1).min(clip.frames());
         let points = Side::BOTH.map(|side| subject.roles.foot_points(clip.skeleton(), side));
         let low_points = LowPoints::of(clip.skeleton());
-        let motion_root = subject.a.source.motion_root().max(subject.b.source.motion_root());
         let mut around = Self {
             frames: frames.clone(),
             character: vec![],
@@ -219,7 +218,7 @@ impl Around {
         let mut yaw = None;
         for frame in frames {
             clip.world_pose_into(frame, &mut world);
-            let at = world.positions.get(motion_root).copied().unwrap_or_default();
+            let at = world.positions.first().copied().unwrap_or_default();
             let mut standing = Planar::standing_at(at, Vec3::Z);
             if let Some(facing) = facing(&world, subject.roles) {
                 yaw = Some(Planar::standing_at(at, facing).yaw);

@@ -74,6 +74,7 @@
 //! [`Roles::detect`] lists.
 
 mod ancestry;
+mod carrier;
 mod corrections;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -87,6 +88,8 @@ mod roles;
 mod tree;
 mod two_bones;
 
+pub use carrier::{Above, carrier};
+pub(crate) use carrier::{AboveJoint, Beside, Follows};
 pub use joint_map::JointMap;
 pub use kinematics::{WorldPose, local_pose, world_pose, world_pose_into, world_pose_of};
 pub use mirror::{Mirror, NoSides};

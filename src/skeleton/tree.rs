@@ -1,3 +1,4 @@
+use super::Above;
 use glam::Vec3;
 
 /// One number per frame that a file gives for a joint.
@@ -54,9 +55,18 @@ pub enum SkeletonError {
 }
 
 /// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's rotation is the identity.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Two skeletons are equal when their joints are: what a file had above the root ([`Above`]) is not of the body.
+#[derive(Clone, Debug)]
 pub struct Skeleton {
     joints: Vec<Joint>,
+    above: Option<Box<Above>>,
+}
+
+impl PartialEq for Skeleton {
+    fn eq(&self, other: &Self) -> bool {
+        self.joints == other.joints
+    }
 }
 
 impl Skeleton {
@@ -87,7 +97,20 @@ impl Skeleton {
                 }
             }
         }
-        Ok(Self { joints })
+        Ok(Self { joints, above: None })
+    }
+
+    /// The same skeleton with what its file has above the root. Left out where it does not belong to a skeleton of this many joints.
+    #[must_use]
+    pub fn with_above(mut self, above: Option<Above>) -> Self {
+        self.above = above.filter(|above| above.fits(self.joints.len())).map(Box::new);
+        self
+    }
+
+    /// What its file has above the root; `None` where the file's root is the skeleton's.
+    #[must_use]
+    pub fn above(&self) -> Option<&Above> {
+        self.above.as_deref()
     }
 
     /// All joints, parents first.

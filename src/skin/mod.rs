@@ -119,6 +119,14 @@ impl SkinnedMesh {
         }
     }
 
+    /// The same mesh on another list of joints: joint `i` is `joint_of[i]` there, and the new joints' bind poses are `bind`.
+    pub(crate) fn rebind(&mut self, joint_of: &[usize], bind: Vec<RigidTransform>) {
+        for joint in self.joints.as_flattened_mut() {
+            *joint = joint_of.get(usize::from(*joint)).map_or(0, |&joint| joint as u16);
+        }
+        self.bind = bind;
+    }
+
     /// Turns the mesh about the origin, and the joints' axes with it, so that they rest without rotation again.
     pub(crate) fn turn(&mut self, turn: Quat) {
         for position in &mut self.positions {

@@ -1,11 +1,9 @@
 use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
-    Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, common_carrier, dissolve, laid_on,
-    moving_joints,
+    Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, dissolve, laid_on, moving_joints,
 };
 use crate::math::{Planar, quat, wrap_angle};
-use crate::skeleton::WorldPose;
 use glam::Vec3;
 
 /// How to go from one clip to another.
@@ -139,8 +137,7 @@ pub(super) fn inertialize(
     frames.reserve(rest);
     let mut b_during = Vec::with_capacity(window);
     let (mut here, mut world_from_b) = (a_stands, aligned_b);
-    let carrier = common_carrier(a, b).filter(|_| by_velocity);
-    let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+    let (mut rotations, mut translations) = (Vec::new(), Vec::new());
     for p in 0..settling {
         let frame = enter + p;
         inertia.advance(fps.recip());
@@ -160,13 +157,7 @@ pub(super) fn inertialize(
         if p < window {
             b_during.push(world_from_b);
         }
-        made.push(
-            translations[0],
-            &rotations,
-            &translations[1..],
-            carrier.map(|joint| (joint, here)),
-            &mut world,
-        );
+        made.push(translations[0], &rotations, &translations[1..]);
     }
     made.play_moved(to, enter + settling..to.frames(), &world_from_b);
     frames.extend(b.frames()[enter + settling..].iter().map(|frame| world_from_b.after(frame)));

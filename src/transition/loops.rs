@@ -1,9 +1,8 @@
 use super::moving::{View, further, travel};
 use super::{LoopCurve, LoopMethod, MovingPose};
-use crate::blend::{Assembly, MOST_SECS, Source, common_carrier, moving_joints};
+use crate::blend::{Assembly, MOST_SECS, Source, moving_joints};
 use crate::clip::{Clip, ClipError};
 use crate::math::{Planar, Response, quat};
-use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
@@ -180,8 +179,7 @@ pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -
     let travels = last.travel - first.travel;
 
     let mut made = Assembly::new(clip, clip, cycle.len());
-    let carrier = common_carrier(source, source);
-    let (mut rotations, mut translations, mut world) = (Vec::new(), Vec::new(), WorldPose::default());
+    let (mut rotations, mut translations) = (Vec::new(), Vec::new());
     let mut here = source.frames()[cycle.start];
     let mut frames = Vec::with_capacity(cycle.len());
     for (index, frame) in cycle.clone().enumerate() {
@@ -195,7 +193,7 @@ pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -
         }
         rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
         let root = here.apply(translations[0]);
-        made.push(root, &rotations, &translations[1..], carrier.map(|joint| (joint, here)), &mut world);
+        made.push(root, &rotations, &translations[1..]);
         frames.push(here);
         let middle = curve.at((index as f64 + 0.5) * dt_secs).of_vec3(travels, Vec3::ZERO).0;
         here = here.after(&further(&source.step_into(frame + 1), middle, dt_secs));

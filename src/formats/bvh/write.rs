@@ -67,7 +67,8 @@ pub struct WriteOptions {
 /// Every joint keeps its channels as long as they can hold its motion; where they cannot, and where there are none, it gets three rotations
 /// (Z, X, Y unless it has an order of its own) and, if it moves against its parent, three positions. Leaves get an End Site, of length 0 where
 /// the clip has none. Read back, positions (metres) and rotations (radians) are the same to 1e-5. Line ends and braces in names become spaces
-/// and parentheses, since names are the rest of their line.
+/// and parentheses, since names are the rest of their line. Joints that the clip's file has above the one that carries the body are written again
+/// ([`Clip::unfolded`]).
 ///
 /// Some programs put positions in the place of the OFFSET, others add the two. So the root, which always moves, has an OFFSET of zero where it
 /// has all three positions; and a joint that stays at its OFFSET is not given positions that its source did not have.
@@ -75,6 +76,8 @@ pub struct WriteOptions {
 pub fn write(clip: &Clip, options: &WriteOptions) -> String {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
     let clip = resampled.as_ref().unwrap_or(clip);
+    let unfolded = clip.unfolded();
+    let clip = unfolded.as_ref().unwrap_or(clip);
     let writer = Writer::new(clip, options);
     let mut out = String::with_capacity(256 * clip.skeleton().len() + 9 * writer.columns() * clip.frames());
     let order = writer.hierarchy(&mut out);

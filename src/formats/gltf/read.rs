@@ -12,6 +12,7 @@ use crate::formats::t_pose::first_frame_is_t_pose;
 use crate::formats::warning::{Tally, WarningKind};
 use crate::formats::{ImportError, ImportOptions, Imported, ImportedClip, check_size, stem};
 use crate::math::quat;
+use crate::skin::SkinnedMesh;
 use glam::{DMat3, DVec3, Quat, Vec3};
 use gltf::json::Index;
 use gltf::json::accessor::{Accessor, Type};
@@ -201,7 +202,7 @@ impl Context<'_> {
                 mesh.turn(Y_UP_FROM_Z_UP);
             }
         }
-        let skin = skin.map(Arc::new);
+        let skin = skin.map(|mesh| Arc::new(self.folded(mesh, &rest)));
         let is_moved = |motion: &&Motion| {
             let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
             character.nodes.iter().any(moves)
@@ -223,6 +224,18 @@ impl Context<'_> {
             );
         }
         Ok(())
+    }
+
+    /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above the carrier follows the carrier.
+    fn folded(&self, mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
+        let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
+        if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
+            && let Some(above) = clip.skeleton().above()
+        {
+            let bind = above.file_index().iter().filter_map(|&file| mesh.bind.get(file).copied()).collect();
+            mesh.rebind(&above.from_file(), bind);
+        }
+        mesh
     }
 
     /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.

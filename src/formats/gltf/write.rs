@@ -1,10 +1,11 @@
 use super::bones::Bones;
 use crate::clip::{Clip, Interpolation, resample};
 use crate::skeleton::{Joint, Roles, Skeleton};
-use crate::skin::SkinnedMesh;
+use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// How the name of the program that wrote a file begins, where that was Segue.
 pub(super) const GENERATOR: &str = "Segue ";
@@ -31,7 +32,8 @@ pub enum GlbError {
 }
 
 /// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body, and an
-/// animation with the rotations of all joints and the translations of the root and of joints that move.
+/// animation with the rotations of all joints and the translations of the root and of joints that move. Joints that the clip's file has above
+/// the one that carries the body are there again ([`Clip::unfolded`]).
 ///
 /// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
 /// (metres) and rotations (radians) are the same to 1e-5.
@@ -43,21 +45,37 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     const MOST_JOINTS: usize = 1 << 16;
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
     let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
+    // The body is made around the joints that carry it, not around what the file has above them.
+    let body = Arc::clone(clip.skeleton());
+    let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
     let skeleton: &Skeleton = clip.skeleton();
     if skeleton.len() > MOST_JOINTS {
         return Err(GlbError::TooManyJoints(skeleton.len()));
     }
     let mut file = File::default();
     let mut nodes = nodes(skeleton);
-    let body = nodes.len();
+    let body_node = nodes.len();
     nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
-    let mesh = if options.smooth {
-        SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0)
+    let mut mesh = if options.smooth {
+        SkinnedMesh::around(&body, &Roles::detect(&body), 1.0)
     } else {
-        let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
-        let positions: Vec<Vec3> = skeleton.rest_positions().into_iter().map(|position| position + root).collect();
-        Bones::around(skeleton, &positions).into_mesh(&positions)
+        let positions = standing_rest(&body);
+        Bones::around(&body, &positions).into_mesh(&positions)
     };
+    if let Some(above) = body.above() {
+        let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
+            .map(|&position| RigidTransform {
+                rotation: Quat::IDENTITY,
+                translation: -position,
+            })
+            .collect();
+        for (&file, own) in above.file_index().iter().zip(&mesh.bind) {
+            if let Some(bind) = bind.get_mut(file) {
+                *bind = *own;
+            }
+        }
+        mesh.rebind(above.file_index(), bind);
+    }
     let inverse_bind: Vec<f32> = (mesh.bind.iter())
         .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
         .collect();
@@ -66,7 +84,7 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     let mut root = json!({
         "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
-        "scenes": [{ "nodes": [0, body] }],
+        "scenes": [{ "nodes": [0, body_node] }],
         "nodes": nodes,
         "skins": [{ "joints": (0..skeleton.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
         "meshes": [{ "name": "Body", "primitives": [primitive] }],
@@ -76,6 +94,12 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
         root["animations"] = json!([animation(&mut file, &clip)]);
     }
     file.finish(root)
+}
+
+/// Where the joints are at rest, with the root at its offset, metres.
+fn standing_rest(skeleton: &Skeleton) -> Vec<Vec3> {
+    let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
+    skeleton.rest_positions().into_iter().map(|position| position + root).collect()
 }
 
 /// A node for each joint, at its index, then one for each end site.

@@ -6,7 +6,7 @@ use crate::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
 use crate::formats::{FileKind, ImportError};
 use crate::math::Planar;
 use crate::session::motion::Motion;
-use crate::skeleton::{Joint, Roles, Side, Skeleton, SkeletonError};
+use crate::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
 use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{DVec2, Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -69,6 +69,8 @@ struct ClipsHead {
 struct ClipHead {
     name: String,
     joints: Vec<Joint>,
+    #[serde(default)]
+    above: Option<Above>,
     fps: f64,
     frames: usize,
     provenance: Provenance,
@@ -273,6 +275,7 @@ impl ClipHead {
         Self {
             name: motion.clip.name().to_owned(),
             joints: motion.clip.skeleton().joints().to_vec(),
+            above: motion.clip.skeleton().above().cloned(),
             fps: motion.clip.fps(),
             frames: motion.clip.frames(),
             provenance: motion.clip.provenance(),
@@ -377,7 +380,7 @@ impl Arrays {
 
     fn into_clip(self, head: ClipHead, meshes: &[Arc<SkinnedMesh>]) -> Result<ReadClip, WireError> {
         let mesh = head.mesh.and_then(|mesh| meshes.get(mesh)).cloned();
-        let skeleton = Arc::new(Skeleton::new(head.joints)?);
+        let skeleton = Arc::new(Skeleton::new(head.joints)?.with_above(head.above));
         let mut translations = self.translations.into_iter();
         let root = translations.next().unwrap_or_default();
         let tracks = head.moving.into_iter().zip(translations);

@@ -1,7 +1,7 @@
 use super::feet::{slide_before, with_feet};
-use super::pair::Pair;
+use super::pair::{Pair, source_of};
 use super::{Outcome, Slot, Source};
-use crate::blend::{self, BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
+use crate::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
 use crate::clip::{Clip, ContactOptions, Contacts, character_frames};
 use crate::gait::{GaitCycle, strike_phases};
 use crate::math::Planar;
@@ -147,7 +147,7 @@ impl Layerer {
         };
         let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times).map_err(|error| error.to_string())?;
         let shown = Arc::new(Motion::analyze(shown.with_name(b.name()), Some(roles.clone())));
-        let source = blend::Source::with_frames(Arc::clone(&shown.clip), roles, shown.ground_frames.clone());
+        let source = source_of(&shown);
         Ok(Timed {
             pair: Arc::clone(pair),
             wanted,

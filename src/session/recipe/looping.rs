@@ -1,5 +1,6 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
+use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::blend;
@@ -65,7 +66,7 @@ impl CycleFinder {
         {
             return Ok(Arc::clone(found));
         }
-        let source = blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone());
+        let source = source_of(motion);
         let search = CycleSearch {
             start: given[0],
             end: given[1],

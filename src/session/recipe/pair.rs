@@ -54,7 +54,7 @@ pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, O
 
 /// A motion as what is blended.
 pub(super) fn source_of(motion: &Motion) -> blend::Source {
-    blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone())
+    blend::Source::with_frames(Arc::clone(&motion.clip), motion.ground_frames.clone())
 }
 
 impl Retargeted {

@@ -1,8 +1,8 @@
 //! The Path lab: a motion on another path.
 
 use super::feet::slide_before;
+use super::pair::source_of;
 use super::{Outcome, Slot, Source};
-use crate::blend;
 use crate::math::Planar;
 use crate::metrics::Metric;
 use crate::path::{
@@ -31,7 +31,7 @@ pub struct FittedMotion {
 
 impl FittedMotion {
     fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, String> {
-        let source = blend::Source::with_frames(Arc::clone(&motion.clip), &motion.roles, motion.ground_frames.clone());
+        let source = source_of(motion);
         let path = FittedPath::new(Arc::new(source), &options).map_err(|error| error.to_string())?;
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Ok(Self {

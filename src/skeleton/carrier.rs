@@ -1,0 +1,248 @@
+//! Which joint carries the body, and what a file has above it.
+
+use super::{Joint, Role, Roles, Side, Skeleton};
+use glam::{Quat, Vec3};
+
+/// A child that holds at least this share of all bones below a joint holds the body.
+const HOLDS_THE_BODY: f32 = 0.9;
+
+/// Returns the joint where legs and trunk meet: it carries the body through the world.
+///
+/// With both hip joints known that is their lowest common ancestor together with spine, arms and head, as far as the rig has these. Without legs
+/// it is the first joint from the root at which the body branches: as long as one child holds nine tenths of the length of all bones below a
+/// joint, and branches itself, the joint only holds that child. Depends on names and bone lengths alone, so that it is the same for all clips of
+/// a rig.
+#[must_use]
+pub fn carrier(skeleton: &Skeleton, roles: &Roles) -> usize {
+    let joint = |role| roles.get_within(role, skeleton.len());
+    let thighs: Vec<usize> = Side::BOTH.into_iter().filter_map(|side| joint(Role::thigh(side))).collect();
+    if thighs.len() < 2 {
+        return first_branching(skeleton);
+    }
+    let arms = Side::BOTH.map(Role::upper_arm);
+    let trunk = [Role::Spine, Role::Head].into_iter().chain(arms).filter_map(joint);
+    // Hips that were named count where the legs hang on them alone: thighs may start at a joint of their own below.
+    let meet = |a, b| lowest_common_ancestor(skeleton, a, b);
+    let below_hips = joint(Role::Hips).filter(|&hips| thighs.iter().all(|&thigh| meet(hips, thigh) == hips));
+    thighs.into_iter().chain(trunk).chain(below_hips).reduce(meet).unwrap_or(0)
+}
+
+fn lowest_common_ancestor(skeleton: &Skeleton, mut a: usize, mut b: usize) -> usize {
+    // Parents stand before their children: the later of two is never an ancestor of the other.
+    while a != b {
+        let later = a.max(b);
+        let parent = skeleton.parent(later).unwrap_or(0);
+        if later == a {
+            a = parent;
+        } else {
+            b = parent;
+        }
+    }
+    a
+}
+
+fn first_branching(skeleton: &Skeleton) -> usize {
+    let joints = skeleton.joints();
+    // Lengths of all bones below each joint, and whether the tree branches there or below.
+    let mut below = vec![0.0_f32; joints.len()];
+    let mut children = vec![0_usize; joints.len()];
+    let mut branches = vec![false; joints.len()];
+    for (index, joint) in joints.iter().enumerate().rev() {
+        branches[index] |= children[index] > 1;
+        below[index] += joint.end_site.map_or(0.0, Vec3::length);
+        if let Some(parent) = joint.parent {
+            below[parent] += below[index] + joint.offset.length();
+            children[parent] += 1;
+            branches[parent] |= branches[index];
+        }
+    }
+    let mut carrier = 0;
+    // Where a body hangs on the root the bone between them belongs to neither.
+    while let Some(child) = skeleton.children(carrier).find(|&child| {
+        let own = joints[child].offset.length();
+        branches[child] && below[child] > 0.0 && below[child] >= HOLDS_THE_BODY * (below[carrier] - own)
+    }) {
+        carrier = child;
+    }
+    carrier
+}
+
+/// The joints that a file has above the carrier, and how they go along with it: what an exporter needs to write them again.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Above {
+    /// From the file's root to the parent of the carrier; each hangs on the one before.
+    pub(crate) chain: Vec<AboveJoint>,
+    /// Rest translation of the carrier from its parent, in the parent's frame, metres.
+    pub(crate) carrier_offset: Vec3,
+    /// Joints of the file that hang on the chain beside the carrier. Inside they hang on the carrier.
+    pub(crate) beside: Vec<Beside>,
+    /// For each joint of the skeleton its index in the file.
+    pub(crate) file_index: Vec<usize>,
+    /// How the chain goes along.
+    pub(crate) follows: Follows,
+}
+
+/// A joint above the carrier.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct AboveJoint {
+    /// The joint as the file has it; its `parent` is the file's.
+    pub(crate) joint: Joint,
+    /// Its index in the file.
+    pub(crate) file_index: usize,
+    /// Its pose against its parent where it does not move (`parent_from_joint`).
+    pub(crate) rotation: Quat,
+    /// Likewise its translation, metres.
+    pub(crate) translation: Vec3,
+}
+
+/// A joint that hangs on a joint above the carrier.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Beside {
+    /// Its index in the skeleton.
+    pub(crate) joint: usize,
+    /// On which joint of the chain it hangs in the file.
+    pub(crate) hangs_on: usize,
+    /// Its rest translation from that, metres.
+    pub(crate) offset: Vec3,
+}
+
+/// How the joints above a carrier go along with it.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) enum Follows {
+    /// They stand still.
+    Still,
+    /// One of them stays level and goes along the ground below the character, as game engines have it.
+    OnGround {
+        /// Its place in the chain.
+        joint: usize,
+        /// Its height, metres.
+        height: f32,
+        /// Its world rotation where its yaw is 0.
+        rotation: Quat,
+        /// Its place seen from the character's smoothed frame, (x, z) metres.
+        shift: [f64; 2],
+        /// Its yaw against the character's, radians; `None` where it goes along and does not turn.
+        yaw: Option<f64>,
+    },
+    /// One of them moves with the carrier, rigidly.
+    WithCarrier {
+        /// Its place in the chain.
+        joint: usize,
+        /// Its pose in the carrier's frame.
+        rotation: Quat,
+        /// Likewise its translation, metres.
+        translation: Vec3,
+    },
+}
+
+impl Above {
+    /// The joints of the file, with their names, from its root down to the carrier's parent.
+    pub fn joints(&self) -> impl Iterator<Item = &Joint> {
+        self.chain.iter().map(|above| &above.joint)
+    }
+
+    /// For each joint of the file the joint of the skeleton that took its place; those above the carrier are the carrier.
+    #[must_use]
+    pub fn from_file(&self) -> Vec<usize> {
+        let mut taken = vec![0; self.chain.len() + self.file_index.len()];
+        for (joint, &file) in self.file_index.iter().enumerate() {
+            if let Some(place) = taken.get_mut(file) {
+                *place = joint;
+            }
+        }
+        taken
+    }
+
+    /// For each joint of the skeleton its index in the file.
+    #[must_use]
+    pub fn file_index(&self) -> &[usize] {
+        &self.file_index
+    }
+
+    /// Whether it belongs to a skeleton of this many joints. What came from outside may not.
+    #[must_use]
+    pub fn fits(&self, joints: usize) -> bool {
+        let all = joints + self.chain.len();
+        let mut seen = vec![false; all];
+        let places = self
+            .file_index
+            .iter()
+            .copied()
+            .chain(self.chain.iter().map(|above| above.file_index));
+        let each_once = places
+            .filter(|&place| seen.get_mut(place).is_some_and(|seen| !std::mem::replace(seen, true)))
+            .count();
+        let moved = match self.follows {
+            Follows::Still => 0,
+            Follows::OnGround { joint, .. } | Follows::WithCarrier { joint, .. } => joint,
+        };
+        self.file_index.len() == joints
+            && each_once == all
+            && !self.chain.is_empty()
+            && moved < self.chain.len()
+            && self
+                .beside
+                .iter()
+                .all(|beside| beside.joint < joints && beside.hangs_on < self.chain.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::fixtures;
+
+    fn tree(parents: &[(Option<usize>, &str, Vec3)]) -> Skeleton {
+        let joint = |&(parent, name, offset): &(Option<usize>, &str, Vec3)| Joint {
+            name: name.into(),
+            parent,
+            offset,
+            end_site: None,
+            channels: vec![],
+        };
+        Skeleton::new(parents.iter().map(joint).collect()).unwrap()
+    }
+
+    #[test]
+    fn carrier_of_a_person_is_where_legs_and_trunk_meet() {
+        for (rig, skeleton, _) in fixtures::all() {
+            let roles = fixtures::roles(&skeleton);
+            let found = carrier(&skeleton, &roles);
+            let hips = roles.get(Role::Hips).unwrap();
+            let is_above = |joint: usize| lowest_common_ancestor(&skeleton, found, joint) == found;
+            assert!(is_above(hips) && roles.get(Role::LeftThigh).is_some_and(is_above), "{rig}");
+            assert!(
+                skeleton.parent(found).is_none() || found == hips,
+                "{rig}: joint {found} in place of the hips, {hips}"
+            );
+        }
+        assert_eq!(carrier(&fixtures::bandai(), &fixtures::roles(&fixtures::bandai())), 1);
+    }
+
+    #[test]
+    fn carrier_without_legs_is_where_the_body_branches() {
+        let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let spider = tree(&[
+            (None, "scene", Vec3::ZERO),
+            (Some(0), "mover", at(0.0, 9.0)),
+            (Some(1), "body", at(0.0, 0.1)),
+            (Some(2), "leg a", at(1.0, 0.0)),
+            (Some(2), "leg b", at(-1.0, 0.0)),
+            (Some(3), "tip a", at(1.0, -1.0)),
+            (Some(4), "tip b", at(-1.0, -1.0)),
+        ]);
+        assert_eq!(carrier(&spider, &Roles::default()), 2);
+        // A chain never branches: its own root carries it, however long.
+        let chain = tree(&[(None, "a", Vec3::ZERO), (Some(0), "b", Vec3::Y), (Some(1), "c", Vec3::Y)]);
+        assert_eq!(carrier(&chain, &Roles::default()), 0);
+        // A body that hangs on its chest is carried by it, whatever the names of what hangs below.
+        let chest = tree(&[
+            (None, "chest", Vec3::ZERO),
+            (Some(0), "head", at(0.0, 0.6)),
+            (Some(0), "hips", at(0.0, -0.5)),
+            (Some(2), "leg a", at(0.5, -0.5)),
+            (Some(2), "leg b", at(-0.5, -0.5)),
+        ]);
+        assert_eq!(carrier(&chest, &Roles::default()), 0);
+    }
+}
