@@ -1,4 +1,4 @@
-use super::dress::Wardrobe;
+use super::dress::{Wardrobe, size_beside, worn_character};
 use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha};
@@ -7,7 +7,7 @@ use crate::graph::Place;
 use crate::matching;
 use crate::math::Planar;
 use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Value, Walk, joint_of};
-use crate::skeleton::{Role, Side, Skeleton, WorldPose, world_pose, world_pose_into};
+use crate::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub struct Colors {
 }
 
 /// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their way, and the bodies of skeletons.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
@@ -41,6 +41,8 @@ pub struct Director {
     jump: Option<[Place; 2]>,
     candidate: Option<matching::Place>,
     wardrobe: Wardrobe,
+    /// How many times as large as its motion the figure is shown.
+    shown_size: f32,
     /// A pose in the making.
     posed: WorldPose,
 }
@@ -72,6 +74,23 @@ const VIEW_HALF_LIFE_SECS: f32 = 0.06;
 /// A followed character that jumped farther than this (a loop began again) is not chased but cut to.
 const CUT_METRES: f32 = 1.5;
 
+impl Default for Director {
+    fn default() -> Self {
+        Self {
+            shown_size: 1.0,
+            stage: Arc::default(),
+            rigs: Vec::new(),
+            marks_joint: false,
+            pair: None,
+            marks: PathMarks::default(),
+            jump: None,
+            candidate: None,
+            wardrobe: Wardrobe::default(),
+            posed: WorldPose::default(),
+        }
+    }
+}
+
 impl Director {
     /// Everything that is to be seen now: the session's panes that are shown, each with its place (physical pixels). `dt_secs` moves the
     /// cameras on.
@@ -89,11 +108,13 @@ impl Director {
         let stage = Arc::make_mut(&mut self.stage);
         stage.look = look;
         stage.pixels_per_point = pixels_per_point;
-        stage.grid_metres = figure_height(params).recip();
         stage.panes.resize_with(shown.len(), Pane::default);
         let mut panes = std::mem::take(&mut stage.panes);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
         self.wardrobe.choose(session);
+        let first = shown.iter().find_map(|&(index, _)| session.panes().get(index)?.shown_at(now));
+        let size = first.map_or(1.0, |shown| self.body(&shown.outcome.motion).size());
+        self.shown_size = size * figure_height(params);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(shown) {
             pane.clear();
             pane.viewport = viewport;
@@ -122,13 +143,16 @@ impl Director {
                 self.aim(index, &shown, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
-                    && let Some(&at) = shown.world.positions.get(joint)
+                    && let body = self.body(&outcome.motion)
+                    && let Some(&at) = body.seen_pose(&shown.world).positions.get(body.seen_joint(joint))
                 {
                     add_mark(at, colors.result, look.edge, pane);
                 }
             }
         }
-        Arc::make_mut(&mut self.stage).panes = panes;
+        let stage = Arc::make_mut(&mut self.stage);
+        stage.panes = panes;
+        stage.grid_metres = self.shown_size.recip();
         Arc::clone(&self.stage)
     }
 
@@ -206,10 +230,10 @@ impl Director {
             (_, None) => pane.add_body(&body, world, look.clay),
         }
         if matches!(seen, "bones" | "both") {
-            add_bones(motion.clip.skeleton(), world, colors.result, pane);
+            add_bones(&body, motion, world, colors.result, pane);
         }
         if params.is_on(Key::Axes) {
-            add_axes(world, colors, pane);
+            add_axes(&body.seen_pose(world), colors, pane);
         }
         if params.is_on(Key::Sources) {
             self.draw_sources(shown, colors, pane);
@@ -247,10 +271,10 @@ impl Director {
         if params.is_on(Key::JointTrail)
             && let Some(joint) = joint_of(motion, params.text(Key::Joint))
         {
-            add_joint_trail(motion, joint, now, place, colors.result, pane);
+            add_joint_trail(shown, &body, joint, colors.result, pane);
         }
         if params.is_on(Key::Contacts) {
-            add_contacts(shown, colors, pane);
+            add_contacts(shown, &body, colors, pane);
         }
     }
 
@@ -263,10 +287,10 @@ impl Director {
             let Some(world) = pose_at(motion, session.now_secs(), &Planar::IDENTITY) else {
                 continue;
             };
+            let body = self.body(motion);
             if params.text(Key::Look) == "bones" {
-                add_bones(motion.clip.skeleton(), &world, color, pane);
+                add_bones(&body, motion, &world, color, pane);
             } else {
-                let body = self.body(motion);
                 pane.add_body(&body, &world, mixed(look.clay, color, COMPANY_SHARE));
             }
             if params.is_on(Key::Trail) {
@@ -293,7 +317,7 @@ impl Director {
             let moved = pose.translations.iter().copied();
             world_pose_into(skeleton, pose.root_translation, &pose.rotations, moved, world);
             if session.params().text(Key::Look) == "bones" {
-                add_bones(skeleton, world, color, pane);
+                add_bones(&body, &shown.outcome.motion, world, color, pane);
             } else {
                 pane.add_body(&body, world, mixed(look.clay, color, CROWD_SHARE));
             }
@@ -415,17 +439,49 @@ impl Director {
         }
     }
 
+    /// The point of the figure that the camera stays with; `None` when it follows nothing.
+    fn followed_point(&mut self, shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
+        let outcome = shown.outcome;
+        let wanted = match params.text(Key::Follow) {
+            "off" => return None,
+            "a" => Some(Slot::A),
+            "b" => Some(Slot::B),
+            _ => None,
+        };
+        let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
+        let source_pose;
+        let (motion, world) = match source {
+            None => (&outcome.motion, &shown.world),
+            Some(source) => {
+                let (at, world_from_clip) =
+                    (outcome.source_at(source, shown.now)).unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
+                source_pose = pose_at(&source.motion, at, &shown.place.after(&world_from_clip))?;
+                (&source.motion, &source_pose)
+            }
+        };
+        let body = self.body(motion);
+        let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
+        let point = *body.seen_pose(world).positions.get(body.seen_joint(joint))?;
+        let hips = motion.roles.get(Role::Hips).unwrap_or(0);
+        // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the height of a standing body's middle.
+        Some(if joint == hips {
+            point.with_y(middle_height(motion))
+        } else {
+            point
+        })
+    }
+
     /// Brings the pane's camera to where the parameters want it, after the followed joint.
     fn aim(&mut self, index: usize, shown: &Shown<'_>, params: &Params, dt_secs: f32, pane: &mut Pane) {
-        let followed = followed_point(shown, params);
+        let followed = self.followed_point(shown, params);
         let pan = Vec3::new(
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
-        ) / figure_height(params);
+        ) / self.shown_size;
         let goal = Camera {
             target: followed.unwrap_or_else(|| resting_point(shown.outcome, &shown.place)) + pan,
-            ..camera_of(params)
+            ..camera_of(params, self.shown_size)
         };
         let Some(rig) = self.rigs.get_mut(index) else { return };
         let first = *rig == CameraRig::default();
@@ -476,12 +532,20 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
     Some(world)
 }
 
-/// How many times as high as its clip a figure is shown.
+/// Returns how many times as large as its motion a figure is shown: by the height that the parameters give it, and by its own size where it is a
+/// character.
 ///
-/// It is the world about it that is shown smaller: the camera stands nearer and the cells of the grid are narrower, and with the figure grow its
-/// steps, its path, and all that is drawn along with it. What stands still keeps standing still: foot skate is neither made nor hidden.
+/// The figure is drawn in the size and the place of its motion. It is the world about it that is shown smaller: the camera stands nearer and the cells of
+/// the grid are narrower. So its steps, its path and all that is drawn along with it grow as it does, and what stands still keeps standing still: foot
+/// skate is neither made nor hidden.
 #[must_use]
-pub fn figure_height(params: &Params) -> f32 {
+pub fn shown_size(session: &Session, motion: &Motion) -> f32 {
+    let character = worn_character(session).and_then(|character| size_beside(&character, motion));
+    character.unwrap_or(1.0) * figure_height(session.params())
+}
+
+/// How many times as high as by itself the parameters show a figure.
+fn figure_height(params: &Params) -> f32 {
     (params.number(Key::FigureHeight) as f32).max(0.1)
 }
 
@@ -524,9 +588,10 @@ fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose
     Some(world)
 }
 
-/// The camera that the parameters describe, wherever what it follows may be.
+/// The camera that the parameters describe, wherever what it follows may be, about a figure that is shown so many times as large as its motion (see
+/// [`shown_size`]).
 #[must_use]
-pub fn camera_of(params: &Params) -> Camera {
+pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
     let from_above = params.text(Key::Camera) == "top";
     Camera {
         yaw: params.number(Key::CameraYaw).to_radians() as f32,
@@ -535,41 +600,10 @@ pub fn camera_of(params: &Params) -> Camera {
         } else {
             params.number(Key::CameraPitch).to_radians() as f32
         },
-        distance: params.number(Key::CameraDistance) as f32 / figure_height(params),
+        distance: params.number(Key::CameraDistance) as f32 / shown_size,
         lens: if from_above { Lens::Orthographic } else { Lens::Perspective },
         ..Camera::default()
     }
-}
-
-/// The point that the camera stays with; `None` when it follows nothing.
-fn followed_point(shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
-    let outcome = shown.outcome;
-    let wanted = match params.text(Key::Follow) {
-        "off" => return None,
-        "a" => Some(Slot::A),
-        "b" => Some(Slot::B),
-        _ => None,
-    };
-    let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
-    let source_pose;
-    let (motion, world) = match source {
-        None => (&outcome.motion, &shown.world),
-        Some(source) => {
-            let (at, world_from_clip) =
-                (outcome.source_at(source, shown.now)).unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
-            source_pose = pose_at(&source.motion, at, &shown.place.after(&world_from_clip))?;
-            (&source.motion, &source_pose)
-        }
-    };
-    let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
-    let point = *world.positions.get(joint)?;
-    let hips = motion.roles.get(Role::Hips).unwrap_or(0);
-    // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the height of a standing body's middle.
-    Some(if joint == hips {
-        point.with_y(middle_height(motion))
-    } else {
-        point
-    })
 }
 
 /// What an unbound camera looks at: where the motion begins, which lies at `place`. Of a motion on an edited path it is where that began before: the
@@ -639,16 +673,19 @@ fn add_walk_path(session: &Session, colors: &Colors, pane: &mut Pane) {
     }
 }
 
-fn add_joint_trail(motion: &Motion, joint: usize, now: f64, place: &Planar, color: Color, pane: &mut Pane) {
+fn add_joint_trail(shown: &Shown<'_>, body: &Body, joint: usize, color: Color, pane: &mut Pane) {
     /// How much of the way is shown, before and after the present.
     const REACH_SECS: f64 = 1.0;
     const STEPS: i32 = 60;
+    let motion = &shown.outcome.motion;
+    let joint = body.seen_joint(joint);
     let points = (-STEPS..=STEPS).filter_map(|step| {
         let part = f64::from(step) / f64::from(STEPS);
-        let at = now + part * REACH_SECS;
+        let at = shown.now + part * REACH_SECS;
         let inside = (0.0..=motion.clip.duration_secs()).contains(&at);
-        let world = inside.then(|| pose_at(motion, at, place)).flatten()?;
-        Some((*world.positions.get(joint)?, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
+        let world = inside.then(|| pose_at(motion, at, &shown.place)).flatten()?;
+        let position = *body.seen_pose(&world).positions.get(joint)?;
+        Some((position, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
     });
     pane.add_path(points, 1.75, Layer::Space);
 }
@@ -673,7 +710,10 @@ fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     }
 }
 
-fn add_bones(skeleton: &Skeleton, world: &WorldPose, color: Color, pane: &mut Pane) {
+/// The bones of the figure that a pose of `motion` moves.
+fn add_bones(body: &Body, motion: &Motion, world: &WorldPose, color: Color, pane: &mut Pane) {
+    let (skeleton, _) = body.seen((motion.clip.skeleton(), &motion.roles));
+    let world = body.seen_pose(world);
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {
             pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
@@ -699,21 +739,24 @@ fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
     }
 }
 
-/// A ring under each planted foot, red where it slides.
-fn add_contacts(shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
-    let (motion, now, world) = (&shown.outcome.motion, shown.now, &shown.world);
+/// A ring under each planted foot of the figure, red where it slides.
+fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
+    let (motion, now) = (&shown.outcome.motion, shown.now);
     let frame = session::frame_at(motion, now);
     let dt = motion.clip.dt_secs();
     if !Side::BOTH.iter().any(|&side| motion.contacts.planted(side, frame)) {
         return;
     }
+    let (_, roles) = body.seen((motion.clip.skeleton(), &motion.roles));
+    let world = body.seen_pose(&shown.world);
     let earlier = pose_at(motion, now - f64::from(dt), &shown.place);
+    let earlier = earlier.as_ref().map(|earlier| body.seen_pose(earlier));
     for side in Side::BOTH {
         if !motion.contacts.planted(side, frame) {
             continue;
         }
-        let Some(foot) = motion.roles.get(Role::foot(side)) else { continue };
-        let joint = motion.roles.get(Role::toe(side)).unwrap_or(foot);
+        let Some(foot) = roles.get(Role::foot(side)) else { continue };
+        let joint = roles.get(Role::toe(side)).unwrap_or(foot);
         let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else {
             continue;
         };

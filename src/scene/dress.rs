@@ -1,7 +1,7 @@
 //! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a while: until it is there, limbs are worn.
 
 use super::Body;
-use crate::session::{Key, Motion, Session};
+use crate::session::{Key, Motion, Params, Session};
 use crate::skeleton::{Roles, Skeleton};
 use crate::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
 use std::sync::{Arc, Weak};
@@ -9,11 +9,16 @@ use std::sync::{Arc, Weak};
 /// So many skeletons' skins are kept, whether they are worn or not.
 const MOST_KEPT: usize = 16;
 
+/// A character that is by itself smaller or larger beside its motion is none of a size that anybody could look at.
+const SIZES: (f32, f32) = (0.02, 50.0);
+
 /// What bodies look like for now, and those that were made so.
 #[derive(Debug, Default)]
 pub(super) struct Wardrobe {
     cut: Cut,
     character: Option<Character>,
+    /// The character in the sizes that it is drawn in, each with how many times as large it is itself.
+    sizes: Vec<(f32, Character)>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
     /// One for all skeletons that are equal, so that they are drawn together; the oldest first.
     tailored: Vec<Tailored>,
@@ -41,15 +46,31 @@ struct Cut {
     girth: f32,
 }
 
+/// Whether bodies have a skin.
+fn shows_skin(params: &Params) -> bool {
+    params.text(Key::Look) != "limbs"
+}
+
+/// The character that is shown in place of bodies made around bones.
+pub(super) fn worn_character(session: &Session) -> Option<Character> {
+    session.character().filter(|_| shows_skin(session.params()))
+}
+
+/// How many times as large a character is by itself as the motion that moves it; `None` where it cannot.
+pub(super) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
+    let size = character.size_beside(motion.clip.skeleton(), &motion.roles)?;
+    Some(size.clamp(SIZES.0, SIZES.1))
+}
+
 impl Wardrobe {
     /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
     pub(super) fn choose(&mut self, session: &Session) {
         let params = session.params();
         let cut = Cut {
-            skin: params.text(Key::Look) != "limbs",
+            skin: shows_skin(params),
             girth: params.number(Key::FigureBuild) as f32,
         };
-        let character = session.character().filter(|_| cut.skin);
+        let character = worn_character(session);
         let same = match (&character, &self.character) {
             (Some(new), Some(old)) => Arc::ptr_eq(&new.mesh, &old.mesh) && Arc::ptr_eq(&new.skeleton, &old.skeleton),
             (new, old) => new.is_none() && old.is_none(),
@@ -59,6 +80,9 @@ impl Wardrobe {
             for tailored in &mut self.tailored {
                 tailored.mesh = None;
             }
+        }
+        if !same {
+            self.sizes = character.iter().map(|character| (1.0, character.clone())).collect();
         }
         (self.cut, self.character) = (cut, character);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
@@ -78,11 +102,19 @@ impl Wardrobe {
         body
     }
 
-    /// The character in place of a body, where there is one that can be moved so.
-    fn led(&self, motion: &Motion) -> Option<Body> {
+    /// The character in place of a body, where there is one that can be moved so. It is drawn in the size of the motion, so that it stands where all
+    /// else of the motion is drawn; the world is shown smaller by as much.
+    fn led(&mut self, motion: &Motion) -> Option<Body> {
+        let skeleton = motion.clip.skeleton();
         let character = self.character.as_ref()?;
-        let drive = Drive::new(&motion.clip, &motion.roles, character)?;
-        Some(Body::led(character, drive, &motion.roles))
+        let size = size_beside(character, motion)?;
+        let known = self.sizes.iter().find(|(known, _)| *known == size);
+        let sized = known.map_or_else(|| character.scaled(size.recip()), |(_, sized)| sized.clone());
+        if known.is_none() {
+            self.sizes.push((size, sized.clone()));
+        }
+        let drive = Drive::new(&motion.clip, &motion.roles, &sized)?;
+        Some(Body::led(&sized, drive, skeleton, &motion.roles).of_size(size))
     }
 
     /// A body about the bones.

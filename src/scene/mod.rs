@@ -67,11 +67,13 @@ mod dress;
 mod drive;
 mod path;
 mod rig;
+#[cfg(test)]
+mod shown_tests;
 mod stage;
 
 pub use body::Body;
 pub use bounds::Bounds;
-pub use build::{Colors, Director, camera_of, figure_height, pose_at, resting_point};
+pub use build::{Colors, Director, camera_of, pose_at, resting_point, shown_size};
 pub use camera::{Camera, Lens, Ray};
 pub use path::PathMarks;
 pub use rig::CameraRig;

@@ -158,6 +158,17 @@ impl Skeleton {
         self.joints.iter().position(|j| j.name == name)
     }
 
+    /// Returns the skeleton with all lengths multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        let joints = self.joints.iter().map(|joint| Joint {
+            offset: joint.offset * factor,
+            end_site: joint.end_site.map(|end| end * factor),
+            ..joint.clone()
+        });
+        Self { joints: joints.collect() }
+    }
+
     /// The joints' positions at rest with the root's offset left out: the root stands at the origin. Metres.
     #[must_use]
     pub fn rest_positions(&self) -> Vec<Vec3> {

@@ -26,6 +26,30 @@ pub struct Character {
     pub mesh: Arc<SkinnedMesh>,
 }
 
+impl Character {
+    /// Returns how many times as large the character is as a body of another skeleton, as [`Retargeting::scale`] measures it; `None` where the two
+    /// have no joint in common.
+    #[must_use]
+    pub fn size_beside(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<f32> {
+        if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
+            return Some(1.0);
+        }
+        Some(Retargeting::new(skeleton, roles, &self.skeleton, &self.roles)?.scale())
+    }
+
+    /// Returns the character with all lengths multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut mesh = SkinnedMesh::clone(&self.mesh);
+        mesh.scale(factor);
+        Self {
+            skeleton: Arc::new(self.skeleton.scaled(factor)),
+            roles: self.roles.clone(),
+            mesh: Arc::new(mesh),
+        }
+    }
+}
+
 /// How the poses of one skeleton move a [`Character`], rest poses considered (see [`Retargeting`]).
 ///
 /// ```
@@ -81,6 +105,15 @@ impl Drive {
             .as_ref()
             .map_or(0.0, |way| drive.found_lift(clip, roles, character, way.scale()));
         Some(drive)
+    }
+
+    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` where it drives none.
+    #[must_use]
+    pub fn joint_driven_by(&self, source: usize) -> Option<usize> {
+        match &self.way {
+            None => Some(source),
+            Some(way) => (0..self.target.len()).find(|&joint| way.map().source_of(joint) == Some(source)),
+        }
     }
 
     /// The pose of the character for a pose of the clip's skeleton; both in the world.

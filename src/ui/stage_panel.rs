@@ -12,7 +12,7 @@ use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
-use segue::scene::{camera_of, figure_height, resting_point};
+use segue::scene::{camera_of, resting_point, shown_size};
 use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
@@ -573,10 +573,11 @@ fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
 
 fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     let params = session.params();
-    let mut camera = camera_of(session.params());
+    // What the hand moves on the screen does not depend on how large the figure is shown.
+    let mut camera = camera_of(session.params(), 1.0);
     let before = camera.target;
     camera.pan(glam_vec2(drag), stage.height());
-    let moved = (camera.target - before) * figure_height(params);
+    let moved = camera.target - before;
     [(Key::PanX, moved.x), (Key::PanY, moved.y), (Key::PanZ, moved.z)]
         .map(|(key, by)| (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0))))
         .to_vec()
@@ -618,10 +619,10 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     if let Some((key, value)) = &pitch {
         params.set(*key, value.clone()).ok()?;
     }
-    let mut camera = camera_of(&params);
+    let shown = shown_size(session, motion);
+    let mut camera = camera_of(&params, shown);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let shown = figure_height(&params);
     let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, Value::Choice("off")),

@@ -7,6 +7,7 @@ use super::{Color, Limb};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use crate::skin::shapes::{Placed, Shape, shapes};
 use crate::skin::{Character, Drive, SkinnedMesh};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.
@@ -29,12 +30,18 @@ pub struct Body {
     shapes: Vec<Shape>,
     skin: Option<Arc<SkinnedMesh>>,
     led: Option<Led>,
+    size: Option<f32>,
 }
 
 /// How a body is moved by poses of a skeleton that is not its own.
 #[derive(Clone, Debug)]
 struct Led {
     drive: Drive,
+    /// The skeleton of the body itself, and what its joints are for.
+    skeleton: Arc<Skeleton>,
+    roles: Roles,
+    /// The joint that each joint of the other skeleton drives, else the one that its parent does.
+    joints_of: Vec<usize>,
     /// For each of its joints the joint of the other skeleton whose colour it wears.
     colors_of: Vec<usize>,
 }
@@ -53,13 +60,20 @@ impl Body {
             shapes,
             skin: None,
             led: None,
+            size: None,
         }
     }
 
     /// The body of a character that poses of another skeleton, with those roles, move through `drive`.
     #[must_use]
-    pub fn led(character: &Character, drive: Drive, roles: &Roles) -> Self {
+    pub fn led(character: &Character, drive: Drive, source: &Skeleton, roles: &Roles) -> Self {
         let skeleton = &character.skeleton;
+        // Parents come first.
+        let mut joints_of: Vec<usize> = Vec::with_capacity(source.len());
+        for joint in 0..source.len() {
+            let above = source.parent(joint).and_then(|parent| joints_of.get(parent).copied());
+            joints_of.push(drive.joint_driven_by(joint).or(above).unwrap_or(0));
+        }
         // Joints without a namesake go with the one that they hang on; parents come first.
         let mut colors_of = vec![0; skeleton.len()];
         for joint in 0..skeleton.len() {
@@ -70,7 +84,13 @@ impl Body {
             }
         }
         Self {
-            led: Some(Led { drive, colors_of }),
+            led: Some(Led {
+                drive,
+                skeleton: Arc::clone(skeleton),
+                roles: character.roles.clone(),
+                joints_of,
+                colors_of,
+            }),
             ..Self::new(skeleton, Some(&character.roles)).with_skin(Arc::clone(&character.mesh))
         }
     }
@@ -80,6 +100,39 @@ impl Body {
         let led = self.led.as_ref()?;
         led.drive.pose(pose, out);
         Some(out)
+    }
+
+    /// The pose of the figure that is seen for a pose of the skeleton that moves the body.
+    pub(super) fn seen_pose<'a>(&self, pose: &'a WorldPose) -> Cow<'a, WorldPose> {
+        let mut led = WorldPose::default();
+        if self.led_pose(pose, &mut led).is_some() {
+            return Cow::Owned(led);
+        }
+        Cow::Borrowed(pose)
+    }
+
+    /// The body as one that is by itself so many times as large as it is drawn.
+    #[must_use]
+    pub fn of_size(mut self, size: f32) -> Self {
+        self.size = Some(size);
+        self
+    }
+
+    /// How many times as large the body is by itself as it is drawn.
+    #[must_use]
+    pub fn size(&self) -> f32 {
+        self.size.unwrap_or(1.0)
+    }
+
+    /// The skeleton of the figure that is seen, and what its joints are for: its own where another skeleton moves the body.
+    pub(super) fn seen<'a>(&'a self, moving: (&'a Skeleton, &'a Roles)) -> (&'a Skeleton, &'a Roles) {
+        self.led.as_ref().map_or(moving, |led| (&led.skeleton, &led.roles))
+    }
+
+    /// The joint of the figure that is seen for one of the skeleton that moves the body.
+    pub(super) fn seen_joint(&self, joint: usize) -> usize {
+        let led = self.led.as_ref().and_then(|led| led.joints_of.get(joint));
+        led.copied().unwrap_or(joint)
     }
 
     /// The joint of the skeleton that moves the body whose colour one of its own joints wears.

@@ -242,7 +242,7 @@ fn a_character_is_led_by_another_skeleton_and_wears_its_colours() {
         skeleton,
     };
     let drive = Drive::new(&walk, &roles, &character).unwrap();
-    let body = Body::led(&character, drive, &roles);
+    let body = Body::led(&character, drive, walk.skeleton(), &roles);
     for role in [Role::LeftHand, Role::RightFoot, Role::Head] {
         let own = character.roles.get(role).unwrap();
         assert_eq!(Some(body.color_joint(own)), roles.get(role), "{role:?}");

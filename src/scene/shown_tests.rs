@@ -1,0 +1,164 @@
+//! Whatever is drawn belongs to the figure that is shown.
+
+use super::{Colors, Director, Layer, Look, Pane, Viewport, pose_at, shown_size};
+use crate::clip::Clip;
+use crate::formats::gltf::{GlbOptions, write_glb};
+use crate::session::{Command, Key, Session, Value};
+use crate::skeleton::{Role, Roles, Side, fixtures};
+use crate::skin::Character;
+use glam::{Vec3, Vec3Swizzles};
+use std::sync::Arc;
+
+/// A file of another program: a character on a rig of its own with legs of so many metres.
+fn character_file(leg_metres: f32) -> Arc<[u8]> {
+    let skeleton = fixtures::cmu_bvh();
+    let factor = leg_metres / fixtures::roles(&skeleton).leg_length(&skeleton).unwrap();
+    let skeleton = Arc::new(skeleton.scaled(factor));
+    let root = skeleton.joints()[0].offset;
+    let clip = Clip::new("person", Arc::clone(&skeleton), 30.0, vec![], vec![]);
+    let clip = clip.unwrap_or_else(|error| panic!("{error} {root}"));
+    let options = GlbOptions {
+        smooth: true,
+        ..GlbOptions::default()
+    };
+    let mut bytes = write_glb(&clip, &options).unwrap();
+    let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    bytes[at..at + 5].copy_from_slice(b"Other");
+    bytes.into()
+}
+
+/// A page with a character whose legs are `size` times as long as those of the clips.
+fn session(link: &str, size: f32) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    let motion = &session.main_outcome().unwrap().motion;
+    let leg = motion.roles.leg_length(motion.clip.skeleton()).unwrap();
+    session.load("person.glb", character_file(leg * size)).unwrap();
+    while session.work() {}
+    session
+}
+
+fn staged(director: &mut Director, session: &Session) -> Pane {
+    let viewport = Viewport {
+        x: 0,
+        y: 0,
+        width: 640,
+        height: 480,
+    };
+    let stage = director.stage(session, &[(0, viewport)], 1.0, Look::DARK, &Colors::default(), 20.0);
+    let size = shown_size(session, &session.main_outcome().unwrap().motion);
+    assert!((stage.grid_metres * size - 1.0).abs() < 1e-4);
+    stage.panes[0].clone()
+}
+
+/// Where a joint of the first figure is drawn: where its mesh is moved to there.
+fn drawn(pane: &Pane, character: &Character, role: Role) -> Vec3 {
+    let skin = pane.figures[0].skin.as_ref().unwrap();
+    let joint = character.roles.get(role).unwrap();
+    let bound = skin.mesh.bind[joint].inverse();
+    (pane.joints[skin.joints.start + joint] * bound).translation
+}
+
+/// How far a point of the ground is from the lines that are painted on it.
+fn distance_to_ground_lines(pane: &Pane, point: Vec3) -> f32 {
+    let to_line = |from: Vec3, to: Vec3| {
+        let (from, along) = (from.xz(), (to - from).xz());
+        let share = ((point.xz() - from).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
+        point.xz().distance(from + along * share)
+    };
+    let ground = pane.strokes.iter().filter(|stroke| stroke.layer == Layer::Ground);
+    ground.map(|stroke| to_line(stroke.from, stroke.to)).fold(f32::INFINITY, f32::min)
+}
+
+fn set(session: &mut Session, key: Key, value: Value) {
+    session.apply(Command::Set(vec![(key, value)])).unwrap();
+    while session.work() {}
+}
+
+/// Everything that is drawn lies at the figure at some times of what plays.
+fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
+    let character = session.character().unwrap();
+    let mut rings = 0;
+    for step in 0..8 {
+        let secs = session.main_outcome().unwrap().duration_secs() * f64::from(step) / 8.0;
+        set(session, Key::Time, Value::Number(secs));
+        let motion = Arc::clone(session.main_outcome().unwrap());
+        let motion = &motion.motion;
+        let mut director = Director::default();
+        let pane = staged(&mut director, session);
+        let shown = session.panes()[0].shown_at(session.now_secs()).unwrap();
+        let world = pose_at(motion, shown.secs, &shown.place).unwrap();
+        let hips = drawn(&pane, &character, Role::Hips);
+        let moved = world.positions[motion.roles.get(Role::Hips).unwrap()];
+        assert!(hips.xz().distance(moved.xz()) < 2e-3, "{what}: hips at {hips} beside {moved}");
+        let [left, right] = Side::BOTH.map(|side| {
+            let toe = character.roles.get(Role::toe(side)).map_or(Role::foot(side), |_| Role::toe(side));
+            drawn(&pane, &character, toe).lerp(drawn(&pane, &character, Role::foot(side)), 0.35)
+        });
+        for ring in &pane.rings {
+            let from = left.xz().distance(ring.center.xz()).min(right.xz().distance(ring.center.xz()));
+            // The ring of what is steered in the Match lab is no foot's.
+            assert!(from < 2e-3 || ring.radius > 0.15, "{what}: a ring {from} m beside the foot");
+            rings += 1;
+        }
+        let leg = motion.roles.leg_length(motion.clip.skeleton()).unwrap();
+        let head = drawn(&pane, &character, Role::Head);
+        assert!((1.3..2.4).contains(&(head.y / leg)), "{what}: {head} on legs of {leg} m");
+        // The hips sway about the curve that is fitted to their way.
+        let line = distance_to_ground_lines(&pane, hips);
+        assert!(
+            line < if what.contains("path") { 0.25 } else { 0.02 },
+            "{what}: {line} m beside the line"
+        );
+        let target = pane.camera.target;
+        assert!(
+            target.xz().distance(hips.xz()) < 2e-3,
+            "{what}: the camera looks at {target}, hips at {hips}"
+        );
+        assert!(
+            (target.y / hips.y - 0.87).abs() < 0.25,
+            "{what}: the camera looks at {target}, hips at {hips}"
+        );
+        assert!((pane.camera.distance * size / session.params().number(Key::CameraDistance) as f32 - 1.0).abs() < 1e-3);
+    }
+    assert!(rings > 2, "{what}: {rings} rings");
+}
+
+#[test]
+fn rings_trail_and_camera_belong_to_a_character_of_any_size() {
+    for size in [1.6, 0.6] {
+        let others = "camera_distance=4&follow_half_life=0&trail=on&contacts=on";
+        for lab in ["view", "blend", "transition", "loop", "path"] {
+            let mut session = session(&format!("lab={lab}&a=walk&{others}"), size);
+            assert_drawn_together(&mut session, size, &format!("{lab}, {size}"));
+            let roles = Roles::detect(session.main_outcome().unwrap().motion.clip.skeleton());
+            assert!(roles.get(Role::Hips).is_some());
+            set(&mut session, Key::A, Value::Text("run".into()));
+            assert_drawn_together(&mut session, size, &format!("{lab} of another clip, {size}"));
+        }
+    }
+}
+
+#[test]
+fn handles_of_the_path_lie_along_the_way_of_the_character() {
+    let mut session = session("lab=path&a=walk&camera_distance=4&follow_half_life=0&trail=on", 1.6);
+    let character = session.character().unwrap();
+    let mut director = Director::default();
+    director.mark_path(super::PathMarks {
+        handles: true,
+        ..super::PathMarks::default()
+    });
+    let mut farthest = 0.0f32;
+    for step in 0..=4 {
+        let secs = session.main_outcome().unwrap().duration_secs() * f64::from(step) / 4.0;
+        set(&mut session, Key::Time, Value::Number(secs));
+        let pane = staged(&mut director, &session);
+        let hips = drawn(&pane, &character, Role::Hips);
+        let dots = pane.strokes.iter().filter(|stroke| stroke.layer == Layer::Over);
+        let nearest = dots.map(|dot| dot.from.xz().distance(hips.xz())).fold(f32::INFINITY, f32::min);
+        farthest = farthest.max(nearest);
+    }
+    // Handles stand about a metre apart.
+    assert!(farthest < 1.0, "{farthest} m from the nearest handle");
+}
