@@ -166,7 +166,10 @@ impl Skeleton {
             end_site: joint.end_site.map(|end| end * factor),
             ..joint.clone()
         });
-        Self { joints: joints.collect() }
+        Self {
+            joints: joints.collect(),
+            above: None,
+        }
     }
 
     /// The joints' positions at rest with the root's offset left out: the root stands at the origin. Metres.
