@@ -83,6 +83,7 @@
 //!
 //! The definitions are Segue's own; each is written out at its field in [`TransitionMetrics`].
 
+mod artefacts;
 mod deviation;
 mod lowest;
 mod profile;
@@ -90,6 +91,7 @@ mod slide;
 mod transition;
 mod whole;
 
+pub use artefacts::{Artefacts, Flash, MotionTrace};
 pub use deviation::deviations;
 pub use profile::Profile;
 pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};

@@ -35,12 +35,13 @@ cargo xtask fuzz [TARGET …] [--minutes N]
     Feeds the readers of outside bytes with random ones (20 minutes each unless told), with a nightly compiler and cargo-fuzz.
     Targets are the files of fuzz/fuzz_targets; all of them unless some are named. What breaks one is left in fuzz/artifacts.
 
-cargo xtask quality [--data FOLDER]
-    Makes a transition from every clip of a folder (BVH, or AMC beside their ASF) into every one, with the default parameters, and prints how good
-    they are as a table in Markdown. Without a folder: subject 16 of the CMU database, where it lies in ../shared/data/cmu/16.
-
-cargo xtask graph-quality [--data FOLDER]
-    Walks for ten minutes through the motion graph of all clips of a folder, with the default options, and prints how good that is.
+cargo xtask quality [--data FOLDER | --synth N] [--pairs N] [--seed S] [--json FILE]
+    Reads every motion file below a folder (BVH, AMC beside their ASF, GLB, zip), or synthesises N clips, and draws N pairs of the same rig, N of
+    different rigs (8 unless told) and half as many sets of four takes of one rig. Every lab and every method of it is tried on them as a user opens it,
+    without and with planted feet. Prints tables in Markdown: results, refusals with their sentences, panics, spins, flashes, root jumps and skating beside
+    the sources'. Fails where a result is worse than its sources beyond the bounds: pairs whose best windows are closer than 12 cm, and Match, have no
+    spin, flash or root jump of their own, and with planted feet skate no more than the worse source; nothing panics, is not finite, or is refused without
+    a sentence. Without a folder: subject 16 of the CMU database, where it lies in ../shared/data/cmu/16.
 
 cargo xtask match-quality
     Drives a character by recorded input (straight on, 90° turns, a spin, starts and stops, into a run, a figure eight) with the synthesiser's
@@ -65,8 +66,7 @@ fn main() -> ExitCode {
         Some((&"serve", rest)) => serve(rest),
         Some((&"test", rest)) => check::run(rest),
         Some((&"fuzz", rest)) => fuzz::run_targets(rest),
-        Some((&"quality", rest)) => quality::run_pairs(rest),
-        Some((&"graph-quality", rest)) => quality::run_walks(rest),
+        Some((&"quality", rest)) => quality::try_labs(rest),
         Some((&"match-quality", rest)) => quality::run_drives(rest),
         Some((&"match-speed", rest)) => quality::time_searches(rest),
         Some((&"docs", _)) => docs(),

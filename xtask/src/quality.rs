@@ -1,17 +1,29 @@
-//! `cargo xtask quality`, `graph-quality`, `match-quality` and `match-speed`: transitions between all clips of a folder, walks through their motion
-//! graph, and characters driven by recorded input, measured.
+//! `cargo xtask quality`, `match-quality` and `match-speed`: every lab on any motion, characters driven by recorded input, and searches, measured.
 
 use std::path::PathBuf;
 use std::process::Command;
 
 use crate::shell::{Result, cargo, fail, root, run};
 
-pub fn run_pairs(args: &[&str]) -> Result<()> {
-    run_example("transition_quality", args)
-}
+/// Those of `quality` that name a file or a folder.
+const PATHS: [&str; 2] = ["--data", "--json"];
 
-pub fn run_walks(args: &[&str]) -> Result<()> {
-    run_example("graph_quality", args)
+pub fn try_labs(args: &[&str]) -> Result<()> {
+    let mut example = example("quality", "quality");
+    example.arg("--");
+    let mut words = args.iter();
+    while let Some(word) = words.next() {
+        match words.next() {
+            // The example runs in the repository's root, the path was named from here.
+            Some(path) if PATHS.contains(word) => example.arg(word).arg(std::path::absolute(path)?),
+            Some(value) => example.arg(word).arg(value),
+            None => return fail(format!("{word} is followed by a value")),
+        };
+    }
+    if !args.contains(&"--data") && !args.contains(&"--synth") {
+        example.arg("--data").arg(usual_folder()?);
+    }
+    run(&mut example)
 }
 
 pub fn run_drives(args: &[&str]) -> Result<()> {
@@ -26,27 +38,15 @@ fn run_made(name: &str, args: &[&str]) -> Result<()> {
     if !args.is_empty() {
         return fail("this command takes no arguments: it drives with the synthesiser's motions");
     }
-    run(&mut example(name))
+    run(&mut example(name, "release"))
 }
 
-fn run_example(name: &str, args: &[&str]) -> Result<()> {
-    let folder = match args {
-        [] => usual_folder()?,
-        // The table is made in the repository's root, the folder was named from here.
-        ["--data", folder] => std::path::absolute(folder)?,
-        _ => return fail("these commands know --data, followed by one folder, and nothing else"),
-    };
-    if !folder.is_dir() {
-        return fail(format!("there is no folder {}", folder.display()));
-    }
-    run(example(name).arg("--").arg(folder))
-}
-
-fn example(name: &str) -> Command {
+fn example(name: &str, profile: &str) -> Command {
     cargo(&[
         "run",
         "--quiet",
-        "--release",
+        "--profile",
+        profile,
         "--locked",
         "--no-default-features",
         "--example",
@@ -64,6 +64,6 @@ fn usual_folder() -> Result<PathBuf> {
     let mut folders = places.into_iter().flatten().map(|place| place.join("cmu/16"));
     match folders.find(|folder| folder.is_dir()) {
         Some(folder) => Ok(folder),
-        None => fail("the takes of CMU's subject 16 are not in ../shared/data/cmu/16: name a folder of BVH, or of AMC and ASF, by --data"),
+        None => fail("the takes of CMU's subject 16 are not in ../shared/data/cmu/16: name a folder of motion files by --data"),
     }
 }

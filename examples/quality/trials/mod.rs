@@ -1,0 +1,12 @@
+//! Takes from a folder or from the synthesiser, tried in every lab and measured. Shared with the test of the same name.
+
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "a module of an example and of a test, each of which uses a part of it"
+)]
+
+pub mod folder;
+pub mod guard;
+pub mod table;
+pub mod trial;

@@ -1,0 +1,215 @@
+//! What the trials came to, in Markdown and as JSON.
+
+use super::folder::Motions;
+use super::trial::{Came, Drawn, Numbers, Trial, median};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// Rows of the list of faults.
+const MOST_FAULTS: usize = 60;
+
+/// The tables.
+#[must_use]
+pub fn markdown(motions: &Motions, trials: &[Trial]) -> String {
+    let mut out = String::new();
+    for drawn in [Drawn::SameRig, Drawn::OtherRigs, Drawn::Set] {
+        let own: Vec<&Trial> = trials.iter().filter(|trial| trial.drawn == drawn).collect();
+        if !own.is_empty() {
+            write_methods(&mut out, drawn, &own);
+        }
+    }
+    write_refusals(&mut out, motions, trials);
+    write_faults(&mut out, trials);
+    out
+}
+
+/// Writing to a string cannot fail.
+macro_rules! line {
+    ($out:expr, $($part:tt)*) => {
+        writeln!($out, $($part)*).ok();
+    };
+}
+
+fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
+    line!(out, "### {}\n", drawn.title());
+    line!(
+        out,
+        "Skating in cm/s and the median slide of a stance in cm are means over the results: free / feet planted / the sources. Flashes and root jumps: all, \
+         and in brackets those faster than anything in the sources. Held: results that are held to the bounds, and how many of them break one.\n"
+    );
+    line!(
+        out,
+        "| lab, method | made | refused | panics | not finite | spins | flashes | root jumps | skating | stance | held | slowest |"
+    );
+    line!(out, "|---|---|---|---|---|---|---|---|---|---|---|---|");
+    let mut methods: Vec<(&str, &str)> = Vec::new();
+    for trial in trials {
+        let name = (trial.lab, trial.method.as_str());
+        if !methods.contains(&name) {
+            methods.push(name);
+        }
+    }
+    for (lab, method) in methods {
+        let own: Vec<&&Trial> = (trials.iter()).filter(|trial| trial.lab == lab && trial.method == method).collect();
+        let count = |is: fn(&Came) -> bool| own.iter().filter(|trial| is(&trial.came)).count();
+        let made: Vec<(bool, &Numbers)> = own.iter().filter_map(|trial| Some((trial.locked, numbers(trial)?))).collect();
+        let sum = |of: fn(&Numbers) -> usize| made.iter().map(|(_, numbers)| of(numbers)).sum::<usize>();
+        let mean = |locked: Option<bool>, of: fn(&Numbers) -> Option<f64>| {
+            let values: Vec<f64> = (made.iter())
+                .filter(|(is_locked, _)| locked.is_none_or(|locked| locked == *is_locked))
+                .filter_map(|(_, numbers)| of(numbers))
+                .collect();
+            if values.is_empty() {
+                "–".to_owned()
+            } else {
+                format!("{:.1}", values.iter().sum::<f64>() / values.len() as f64)
+            }
+        };
+        let three = |own: fn(&Numbers) -> Option<f64>, source: fn(&Numbers) -> Option<f64>| {
+            format!("{} / {} / {}", mean(Some(false), own), mean(Some(true), own), mean(None, source))
+        };
+        let (bound, broken) = own
+            .iter()
+            .filter(|trial| trial.bound && numbers(trial).is_some())
+            .fold((0, 0), |(all, broken), trial| {
+                (all + 1, broken + usize::from(!trial.faults().is_empty()))
+            });
+        let slowest = own.iter().map(|trial| trial.secs).fold(0.0, f64::max);
+        line!(
+            out,
+            "| {lab}, {method} | {} | {} | {} | {} | {} | {} ({}) | {} ({}) | {} | {} | {bound}, {broken} | {} |",
+            made.len(),
+            count(|came| matches!(came, Came::Refused(_) | Came::Silent)),
+            count(|came| matches!(came, Came::Panicked(_))),
+            sum(|numbers| usize::from(numbers.not_finite)),
+            sum(|numbers| numbers.spins),
+            sum(|numbers| numbers.flashes),
+            sum(|numbers| numbers.new_flashes),
+            sum(|numbers| numbers.root_jumps),
+            sum(|numbers| numbers.new_root_jumps),
+            three(|numbers| numbers.skating, |numbers| numbers.source_skating),
+            three(|numbers| numbers.stance_cm, |numbers| numbers.source_stance_cm),
+            if slowest < 1.0 {
+                format!("{:.0} ms", slowest * 1e3)
+            } else {
+                format!("{slowest:.1} s")
+            },
+        );
+    }
+    line!(out, "");
+}
+
+fn numbers(trial: &Trial) -> Option<&Numbers> {
+    match &trial.came {
+        Came::Made(numbers) => Some(numbers),
+        _ => None,
+    }
+}
+
+/// A sentence without what is different in each: names of takes and numbers.
+fn general(sentence: &str, names: &[String]) -> String {
+    let mut general = sentence.to_owned();
+    for name in names {
+        let stem = name.rsplit('/').next().unwrap_or(name);
+        let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+        if stem.len() > 1 {
+            general = general.replace(name, "…").replace(stem, "…");
+        }
+    }
+    let mut digits = false;
+    general.retain(|c| {
+        let repeats = digits && (c.is_ascii_digit() || c == '.');
+        digits = c.is_ascii_digit() || repeats;
+        !repeats
+    });
+    general.chars().map(|c| if c.is_ascii_digit() { '#' } else { c }).collect()
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace(['\r', '\n'], " ")
+}
+
+fn write_refusals(out: &mut String, motions: &Motions, trials: &[Trial]) {
+    let mut sentences: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for (path, sentence) in &motions.refused {
+        let of = ("reading".to_owned(), general(sentence, std::slice::from_ref(path)));
+        *sentences.entry(of).or_default() += 1;
+    }
+    for (path, place) in &motions.panics {
+        *sentences
+            .entry(("reading".to_owned(), format!("PANIC {place}: {path}")))
+            .or_default() += 1;
+    }
+    for trial in trials {
+        let sentence = match &trial.came {
+            Came::Made(_) => continue,
+            Came::Refused(sentence) => general(sentence, &trial.takes),
+            Came::Silent => "NO WORD".to_owned(),
+            Came::Panicked(place) => format!("PANIC {place}"),
+        };
+        *sentences.entry((trial.lab.to_owned(), sentence)).or_default() += 1;
+    }
+    if sentences.is_empty() {
+        return;
+    }
+    line!(out, "### Refusals\n\n| times | lab | sentence |\n|---|---|---|");
+    let mut rows: Vec<_> = sentences.into_iter().collect();
+    rows.sort_by_key(|(_, times)| std::cmp::Reverse(*times));
+    for ((lab, sentence), times) in rows {
+        line!(out, "| {times} | {lab} | {} |", cell(&sentence));
+    }
+    line!(out, "");
+}
+
+fn write_faults(out: &mut String, trials: &[Trial]) {
+    let faulty: Vec<(&Trial, Vec<&str>)> = (trials.iter())
+        .map(|trial| (trial, trial.faults()))
+        .filter(|(_, faults)| !faults.is_empty())
+        .collect();
+    line!(out, "### Worse than their sources: {} of {} results\n", faulty.len(), trials.len());
+    if faulty.is_empty() {
+        return;
+    }
+    line!(out, "| what | takes | where | link |\n|---|---|---|---|");
+    for (trial, faults) in faulty.iter().take(MOST_FAULTS) {
+        let mut place = String::new();
+        if let Some(numbers) = numbers(trial) {
+            if let Some((frame, joint, times)) = &numbers.first_flash {
+                write!(place, "frame {frame}, {joint}, {times:.1} times; ").ok();
+            }
+            if let (Some(own), Some(source)) = (numbers.skating, numbers.source_skating) {
+                write!(place, "skating {own:.1} of {source:.1} cm/s").ok();
+            }
+        }
+        let takes = cell(&trial.takes.join(", "));
+        line!(
+            out,
+            "| {} | {takes} | {} | `?{}` |",
+            faults.join(", "),
+            cell(&place),
+            cell(&trial.link)
+        );
+    }
+    if faulty.len() > MOST_FAULTS {
+        line!(out, "| and {} more | | | |", faulty.len() - MOST_FAULTS);
+    }
+}
+
+/// Everything, for a program.
+#[must_use]
+pub fn json(motions: &Motions, trials: &[Trial]) -> serde_json::Value {
+    let faults: Vec<Vec<&str>> = trials.iter().map(Trial::faults).collect();
+    let skating: Vec<f64> = trials
+        .iter()
+        .filter(|trial| trial.locked)
+        .filter_map(|trial| numbers(trial)?.skating)
+        .collect();
+    serde_json::json!({
+        "takes": motions.takes.iter().map(|take| &take.name).collect::<Vec<_>>(),
+        "refused_files": motions.refused,
+        "panicked_files": motions.panics,
+        "median_skating_locked": median(&skating),
+        "faults": faults,
+        "trials": trials,
+    })
+}

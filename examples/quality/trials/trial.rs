@@ -1,0 +1,546 @@
+//! Every lab and every method of it, tried on a pair or on a set of takes by links, as a user opens them.
+
+use super::folder::{Chance, Motions, encoded};
+use super::guard::{guarded, shared_out};
+use segue::clip::{Clip, mirror};
+use segue::math::stats;
+use segue::metrics::{Artefacts, MotionTrace};
+use segue::path::GroundSpline;
+use segue::session::{Command, Motion, Outcome, Session, write_ids};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked than what a good transition does.
+const CLOSE_CM: f32 = 12.0;
+/// What takes longer is given up, seconds.
+const MOST_SECS: f64 = 120.0;
+/// An edited path bulges out by this share of its length, and by no more than so many metres.
+const BULGE: f64 = 0.15;
+const MOST_BULGE_M: f64 = 1.0;
+/// Takes in a set.
+const SET: usize = 4;
+
+const WEIGHT_LAWS: [&str; 3] = ["smooth", "linear", "smoother"];
+const TRANSITIONS: [&str; 7] = ["inertialize", "cubic", "quintic", "dead", "smooth", "linear", "cut"];
+const LOOPS: [&str; 6] = ["exact", "both", "start", "end", "linear", "cubic"];
+const LAYERS: [&str; 2] = ["partial", "additive"];
+const REGISTERED: [&str; 2] = ["blend", "join"];
+const KEEPS: [&str; 3] = ["speed", "duration", "whole"];
+const CONSTRUCTIONS: [&str; 2] = ["minima", "segments"];
+const WALKS: [&str; 2] = ["dissolve", "inertialize"];
+const SCENARIOS: [&str; 7] = ["straight", "left", "right", "spin", "start_stop", "run", "eight"];
+const JUMPS: [&str; 2] = ["inertialize", "dead"];
+
+/// What takes are drawn together for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Drawn {
+    /// Two takes of one rig.
+    SameRig,
+    /// Two takes of two rigs.
+    OtherRigs,
+    /// Four takes of one rig.
+    Set,
+}
+
+impl Drawn {
+    /// The heading of its table.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::SameRig => "Pairs of the same rig",
+            Self::OtherRigs => "Pairs of different rigs",
+            Self::Set => "Sets of four takes of one rig",
+        }
+    }
+}
+
+/// One way to use a lab.
+#[derive(Clone, Debug)]
+struct Way {
+    lab: &'static str,
+    method: String,
+    /// What the link says besides the takes.
+    query: String,
+    /// The parameter that plants feet.
+    lock: &'static str,
+    of: Of,
+    /// It jumps by intent: it is measured, and nothing is asked of it.
+    jumps: bool,
+}
+
+/// Which takes a way uses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Of {
+    /// A and B.
+    Both,
+    /// A.
+    First,
+    /// All, in the list of that parameter.
+    All(&'static str),
+}
+
+/// A result, or why there is none.
+#[derive(Debug, serde::Serialize)]
+pub struct Trial {
+    /// The lab's name in links.
+    pub lab: &'static str,
+    /// The method's.
+    pub method: String,
+    /// Which table it belongs to.
+    #[serde(skip)]
+    pub drawn: Drawn,
+    /// The takes.
+    pub takes: Vec<String>,
+    /// What opens it again where the takes are in the library.
+    pub link: String,
+    /// Feet are planted.
+    pub locked: bool,
+    /// It is held to the bounds.
+    pub bound: bool,
+    /// How long it took, seconds.
+    pub secs: f64,
+    /// What came of it.
+    pub came: Came,
+}
+
+/// What came of a trial.
+#[derive(Debug, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Came {
+    /// A motion.
+    Made(Numbers),
+    /// No motion, and a sentence that says why.
+    Refused(String),
+    /// No motion, and no word.
+    Silent,
+    /// The words and the place of a panic.
+    Panicked(String),
+}
+
+/// A result beside its sources.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct Numbers {
+    /// Something in it is not a number.
+    pub not_finite: bool,
+    /// As [`Artefacts`] has them.
+    pub spins: usize,
+    pub flashes: usize,
+    pub new_flashes: usize,
+    pub root_jumps: usize,
+    pub new_root_jumps: usize,
+    /// Where the first flash is that no source has: frame, joint, and how many times the sources' 99.9th percentile.
+    pub first_flash: Option<(usize, String, f64)>,
+    /// Skating of the result, and of the worst source, cm/s.
+    pub skating: Option<f64>,
+    pub source_skating: Option<f64>,
+    /// The median slide of a stance of the result, and of the sources, cm.
+    pub stance_cm: Option<f64>,
+    pub source_stance_cm: Option<f64>,
+}
+
+impl Trial {
+    /// What about it is worse than its sources beyond the bounds; empty where nothing is.
+    #[must_use]
+    pub fn faults(&self) -> Vec<&'static str> {
+        let mut faults = Vec::new();
+        let mut note = |is_fault: bool, name: &'static str| {
+            if is_fault {
+                faults.push(name);
+            }
+        };
+        match &self.came {
+            Came::Refused(_) => {}
+            Came::Silent => note(true, "refused without a word"),
+            Came::Panicked(_) => note(true, "panic"),
+            Came::Made(numbers) => {
+                note(numbers.not_finite, "not finite");
+                if self.bound {
+                    note(numbers.spins > 0, "spin");
+                    note(numbers.new_flashes > 0, "flash");
+                    note(numbers.new_root_jumps > 0, "root jump");
+                    let worse = numbers
+                        .skating
+                        .zip(numbers.source_skating)
+                        .is_some_and(|(own, source)| own > source);
+                    note(self.locked && worse, "skating");
+                }
+            }
+        }
+        faults
+    }
+}
+
+/// Tries all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four takes, drawn by `seed`.
+#[must_use]
+pub fn try_all(motions: &Motions, pairs: usize, seed: u64) -> Vec<Trial> {
+    let drawn = draw(motions, pairs, seed);
+    let tried = shared_out(drawn.len(), |index| {
+        let (what, takes) = &drawn[index];
+        Bench::new(motions, *what, takes).run()
+    });
+    tried.into_iter().flatten().collect()
+}
+
+fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Drawn, Vec<usize>)> {
+    let takes = &motions.takes;
+    let mut chance = Chance::new(seed);
+    let rig = |take: usize| takes[take].rig;
+    let mut drawn: Vec<(Drawn, Vec<usize>)> = Vec::new();
+    let wanted = [
+        (Drawn::SameRig, 2, pairs),
+        (Drawn::OtherRigs, 2, pairs),
+        (Drawn::Set, SET, pairs.div_ceil(2)),
+    ];
+    for (what, size, count) in wanted {
+        let first = drawn.len();
+        // Where there are fewer than are wanted, all are drawn sooner or later.
+        for _ in 0..count * 200 {
+            if drawn.len() - first == count || takes.is_empty() {
+                break;
+            }
+            let mut chosen = vec![chance.below(takes.len())];
+            while chosen.len() < size {
+                let fits = |take: usize| (rig(take) == rig(chosen[0])) != (what == Drawn::OtherRigs) && !chosen.contains(&take);
+                let mates: Vec<usize> = (0..takes.len()).filter(|&take| fits(take)).collect();
+                match mates.get(chance.below(mates.len())) {
+                    Some(&mate) => chosen.push(mate),
+                    None => break,
+                }
+            }
+            if chosen.len() == size && !drawn[first..].iter().any(|(_, known)| *known == chosen) {
+                drawn.push((what, chosen));
+            }
+        }
+    }
+    drawn
+}
+
+/// Takes, a session with them, and what their sources do.
+struct Bench<'a> {
+    motions: &'a Motions,
+    drawn: Drawn,
+    takes: Vec<usize>,
+    session: Option<(Session, Vec<String>)>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(motions: &'a Motions, drawn: Drawn, takes: &[usize]) -> Self {
+        Self {
+            motions,
+            drawn,
+            takes: takes.to_vec(),
+            session: None,
+        }
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.takes.iter().map(|&take| self.motions.takes[take].name.clone()).collect()
+    }
+
+    /// Opens a link in the session; a new one where the last was lost in a panic.
+    fn open(&mut self, link: impl Fn(&[String]) -> String) -> Opened {
+        if self.session.is_none() {
+            match guarded(|| self.motions.open(&self.takes)) {
+                Ok(Ok(session)) => self.session = Some(session),
+                Ok(Err(sentence)) => return Opened::without(String::new(), Err(Came::Refused(sentence))),
+                Err(place) => return Opened::without(String::new(), Err(Came::Panicked(place))),
+            }
+        }
+        let Some((mut session, ids)) = self.session.take() else {
+            return Opened::without(String::new(), Err(Came::Silent));
+        };
+        let link = link(&ids);
+        let start = Instant::now();
+        let made = guarded(|| shown(&mut session, &link));
+        let secs = start.elapsed().as_secs_f64();
+        let made = match made {
+            Ok(made) => {
+                self.session = Some((session, ids));
+                made
+            }
+            Err(place) => Err(Came::Panicked(place)),
+        };
+        Opened { link, secs, made }
+    }
+
+    fn run(mut self) -> Vec<Trial> {
+        // What a session makes for itself is no part of the first result.
+        let view = self.open(|ids| format!("lab=view&a={}", encoded(&ids[0])));
+        let mut trials = Vec::new();
+        let Ok(first) = &view.made else {
+            trials.push(self.trial("view", "a clip as it is".to_owned(), false, false, view, |_| Numbers::default()));
+            return trials;
+        };
+        let (first, mut sources) = (Arc::clone(&first.motion), Vec::new());
+        let mut is_close = self.drawn == Drawn::Set;
+        if self.drawn == Drawn::Set {
+            for index in 0..self.takes.len() {
+                if let Ok(outcome) = self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made {
+                    sources.push(traced(&outcome.motion));
+                }
+            }
+        } else {
+            sources.push(traced(&first));
+            let pair = self.open(|ids| format!("lab=blend&a={}&b={}", encoded(&ids[0]), encoded(&ids[1])));
+            if let Ok(outcome) = &pair.made {
+                is_close = outcome.transition.is_some_and(|transition| transition.distance_cm < CLOSE_CM);
+                // B as it is mixed: on the skeleton of A.
+                sources.extend(outcome.sources.get(1).map(|source| traced(&source.motion)));
+            }
+            if self.drawn == Drawn::OtherRigs
+                && let Ok(outcome) = self.open(|ids| format!("lab=view&a={}", encoded(&ids[1]))).made
+                && let Some(moved) = pair
+                    .made
+                    .as_ref()
+                    .ok()
+                    .and_then(|pair| pair.sources.get(1).map(|source| Arc::clone(&source.motion)))
+            {
+                let original = traced(&outcome.motion);
+                let numbers = measured(&moved, &[], &[&original], &[&original]);
+                trials.push(self.trial("retarget", "B on the skeleton of A".to_owned(), false, false, pair, |_| numbers));
+            }
+        }
+        let mirrored = first_and_others_mirrored(&mut self);
+        let path_code = self.edited_path();
+        for way in ways(self.drawn, path_code.as_deref()) {
+            for locked in [false, true] {
+                let opened = self.open(|ids| way.link(ids, locked));
+                let beside: Vec<&MotionTrace> = match (way.of, way.lab) {
+                    (Of::First, _) => sources.iter().take(1).collect(),
+                    // Every take plays a second time with left and right exchanged.
+                    (_, "match") => sources.iter().chain(&mirrored).collect(),
+                    _ => sources.iter().collect(),
+                };
+                let plain: Vec<&MotionTrace> = if way.of == Of::First {
+                    sources.iter().take(1).collect()
+                } else {
+                    sources.iter().collect()
+                };
+                let bound = !way.jumps && (is_close || way.lab == "match") && way.lab != "graph";
+                let numbers = |outcome: &Outcome| {
+                    let values: Vec<f64> = outcome.metrics.iter().filter_map(|metric| metric.value).collect();
+                    measured(&outcome.motion, &values, &beside, &plain)
+                };
+                trials.push(self.trial(way.lab, way.method.clone(), locked, bound, opened, numbers));
+            }
+        }
+        trials
+    }
+
+    fn trial(
+        &self,
+        lab: &'static str,
+        method: String,
+        locked: bool,
+        bound: bool,
+        opened: Opened,
+        numbers: impl FnOnce(&Outcome) -> Numbers,
+    ) -> Trial {
+        Trial {
+            lab,
+            method,
+            drawn: self.drawn,
+            takes: self.names(),
+            link: opened.link,
+            locked,
+            bound,
+            secs: opened.secs,
+            came: match opened.made {
+                Ok(outcome) => guarded(|| numbers(&outcome)).map_or_else(Came::Panicked, Came::Made),
+                Err(came) => came,
+            },
+        }
+    }
+
+    /// The word of A's path with its middle moved aside.
+    fn edited_path(&mut self) -> Option<String> {
+        if self.drawn == Drawn::Set {
+            return None;
+        }
+        let fitted = self.open(|ids| format!("lab=path&a={}", encoded(&ids[0]))).made.ok()?;
+        let road = &fitted.path.as_ref()?.road;
+        let spline = road.spline();
+        let points = spline.points();
+        let chord = *points.last()? - *points.first()?;
+        let aside = chord.perp().try_normalize().unwrap_or(glam::DVec2::X) * (BULGE * road.length_m()).min(MOST_BULGE_M);
+        let last = (points.len() - 1) as f64;
+        let moved = points.iter().enumerate().map(|(index, point)| {
+            let share = index as f64 / last;
+            *point + aside * (std::f64::consts::PI * share).sin()
+        });
+        let edited = GroundSpline::with_knots(moved.collect(), spline.inner_knots()).ok()?;
+        Some(edited.to_code())
+    }
+}
+
+/// The takes of a set, mirrored.
+fn first_and_others_mirrored(bench: &mut Bench<'_>) -> Vec<MotionTrace> {
+    if bench.drawn != Drawn::Set {
+        return Vec::new();
+    }
+    let mut traces = Vec::new();
+    for index in 0..bench.takes.len() {
+        let Ok(outcome) = bench.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made else {
+            continue;
+        };
+        let motion = &outcome.motion;
+        traces.extend(mirror(&motion.clip, &motion.roles).map(|clip| MotionTrace::new(&clip, &motion.roles)));
+    }
+    traces
+}
+
+struct Opened {
+    link: String,
+    secs: f64,
+    made: Result<Arc<Outcome>, Came>,
+}
+
+impl Opened {
+    fn without(link: String, made: Result<Arc<Outcome>, Came>) -> Self {
+        Self { link, secs: 0.0, made }
+    }
+}
+
+/// What a link shows when all work is done.
+fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
+    let opened = session.apply(Command::OpenLink(link.to_owned()));
+    opened.map_err(|error| Came::Refused(error.to_string()))?;
+    let start = Instant::now();
+    while session.work() {
+        if start.elapsed().as_secs_f64() > MOST_SECS {
+            return Err(Came::Silent);
+        }
+    }
+    let pane = session.panes().first().ok_or(Came::Silent)?;
+    match (&pane.problem, &pane.outcome) {
+        (Some(sentence), _) if sentence.trim().is_empty() => Err(Came::Silent),
+        (Some(sentence), _) => Err(Came::Refused(sentence.clone())),
+        (None, Some(outcome)) => Ok(Arc::clone(outcome)),
+        (None, None) => Err(Came::Silent),
+    }
+}
+
+fn traced(motion: &Motion) -> MotionTrace {
+    MotionTrace::new(&motion.clip, &motion.roles)
+}
+
+fn is_finite(clip: &Clip) -> bool {
+    let rotations = (0..clip.frames()).flat_map(|frame| clip.rotations(frame)).all(|q| q.is_finite());
+    let moved = clip.translations().iter().flat_map(|joint| &joint.values).all(|t| t.is_finite());
+    rotations && moved && clip.root_translations().iter().all(|t| t.is_finite())
+}
+
+/// A result beside `sources` by how it moves, and beside `feet` by how it skates.
+fn measured(motion: &Motion, values: &[f64], sources: &[&MotionTrace], feet: &[&MotionTrace]) -> Numbers {
+    if !is_finite(&motion.clip) {
+        return Numbers {
+            not_finite: true,
+            ..Numbers::default()
+        };
+    }
+    let trace = traced(motion);
+    let Artefacts {
+        spins,
+        flashes,
+        new_flashes,
+        root_jumps,
+        new_root_jumps,
+    } = trace.beside(sources);
+    let joints = motion.clip.skeleton().joints();
+    let stances: Vec<f64> = feet.iter().flat_map(|source| source.stances_cm()).copied().collect();
+    Numbers {
+        not_finite: values.iter().any(|value| !value.is_finite()),
+        spins,
+        flashes,
+        first_flash: new_flashes
+            .first()
+            .map(|flash| (flash.frame, joints[flash.joint].name.clone(), flash.times)),
+        new_flashes: new_flashes.len(),
+        root_jumps,
+        new_root_jumps,
+        skating: trace.skating_cm_per_sec(),
+        source_skating: feet.iter().filter_map(|source| source.skating_cm_per_sec()).reduce(f64::max),
+        stance_cm: median(trace.stances_cm()),
+        source_stance_cm: median(&stances),
+    }
+}
+
+/// The middle one of some numbers.
+#[must_use]
+pub fn median(values: &[f64]) -> Option<f64> {
+    let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
+    stats::percentile(&values, 0.5).map(f64::from)
+}
+
+impl Way {
+    fn link(&self, ids: &[String], locked: bool) -> String {
+        let takes = match self.of {
+            Of::Both => format!("a={}&b={}", encoded(&ids[0]), encoded(&ids[1])),
+            Of::First => format!("a={}", encoded(&ids[0])),
+            Of::All(key) => format!("{key}={}", encoded(&write_ids(ids))),
+        };
+        let switch = if locked { "on" } else { "off" };
+        format!("lab={}&{takes}&{}&{}={switch}", self.lab, self.query, self.lock)
+    }
+}
+
+fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
+    let mut ways = Vec::new();
+    let mut add = |lab: &'static str, of: Of, method: String, query: String, jumps: bool| {
+        ways.push(Way {
+            lab,
+            method,
+            query,
+            lock: if lab == "match" { "plant_feet" } else { "foot_lock" },
+            of,
+            jumps,
+        });
+    };
+    if drawn == Drawn::Set {
+        for (scenario, jump) in SCENARIOS.into_iter().flat_map(|scenario| JUMPS.map(|jump| (scenario, jump))) {
+            let query = format!("scenario={scenario}&jump_method={jump}");
+            add("match", Of::All("match_clips"), format!("{scenario}, {jump}"), query, false);
+        }
+        for (construction, walk) in CONSTRUCTIONS
+            .into_iter()
+            .flat_map(|construction| WALKS.map(|walk| (construction, walk)))
+        {
+            let query = format!("construction={construction}&walk_method={walk}");
+            add("graph", Of::All("clips"), format!("{construction}, {walk}"), query, false);
+        }
+        return ways;
+    }
+    for law in WEIGHT_LAWS {
+        add("blend", Of::Both, law.to_owned(), format!("weight_law={law}"), false);
+    }
+    for method in TRANSITIONS {
+        add(
+            "transition",
+            Of::Both,
+            method.to_owned(),
+            format!("method={method}"),
+            method == "cut",
+        );
+    }
+    add("speed", Of::Both, "half way".to_owned(), "speed=auto".to_owned(), false);
+    for method in LOOPS {
+        add("loop", Of::First, method.to_owned(), format!("loop_method={method}"), false);
+    }
+    for mode in LAYERS {
+        add("layers", Of::Both, mode.to_owned(), format!("layer_mode={mode}"), false);
+    }
+    for mode in REGISTERED {
+        add("register", Of::Both, mode.to_owned(), format!("warp_mode={mode}"), false);
+    }
+    for keep in KEEPS {
+        let code = path_code.unwrap_or_default();
+        add(
+            "path",
+            Of::First,
+            format!("bent, {keep}"),
+            format!("keep={keep}&path={code}"),
+            false,
+        );
+    }
+    ways
+}

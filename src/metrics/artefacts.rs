@@ -1,0 +1,339 @@
+use crate::clip::Clip;
+use crate::math::{quat, stats, wrap_angle};
+use crate::skeleton::{Role, Roles, Side, WorldPose};
+use glam::{Vec2, Vec3};
+use std::ops::Range;
+
+/// The height that lengths are brought to, metres: the median, over the frames, of the height of all joints and end sites.
+const BODY_M: f32 = 1.7;
+/// What one step in a thousand exceeds is rare; what is above twice that is no part of the motion.
+const RARE: f32 = 0.999;
+/// So many times the rare speed is an artefact.
+const BEYOND: f32 = 2.0;
+/// A turn of a joint below this in one frame is no flash, degrees.
+const LEAST_FLASH_DEG: f32 = 2.0;
+/// Flashes with no more frames than this between them are one.
+const ONE_FLASH_FRAMES: usize = 3;
+/// A spin is looked for in windows of this length, seconds.
+const SPIN_SECS: f64 = 0.2;
+/// A turn below this in such a window is no spin, degrees.
+const LEAST_SPIN_DEG: f32 = 30.0;
+/// A foot is low within this height of the 5th percentile of its heights, metres.
+const LOW_M: f32 = 0.04;
+/// A low foot stands that is so for this long, seconds, at a median speed below [`STANDING_MPS`].
+const LEAST_STANCE_SECS: f64 = 0.1;
+/// See [`LEAST_STANCE_SECS`], metres per second.
+const STANDING_MPS: f32 = 0.6;
+/// Skating counts below this height above the 2nd percentile of the foot's heights, metres.
+const SKATING_M: f32 = 0.025;
+/// A speed counts as higher than another one where it is by more than this share: less is rounding.
+const SAME_SPEED: f32 = 1.01;
+
+/// What the definitions of [`Artefacts`] need of a motion, taken once: how fast its joints turn, its root moves and its heading changes, and what its
+/// feet do. Lengths are those of a body of 1.7 m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionTrace {
+    fps: f64,
+    /// Per joint and step: the angle between its local rotations, degrees.
+    turns_deg: Vec<Vec<f32>>,
+    /// Per joint: the 99.9th percentile of its angular speed, and the largest, degrees per second.
+    rare_dps: Vec<f32>,
+    most_dps: Vec<f32>,
+    /// Per step: the root's speed, metres per second; its 99.9th percentile, and the largest.
+    root_mps: Vec<f32>,
+    rare_mps: f32,
+    most_mps: f32,
+    /// From every frame on: how far the hips turn within 0.2 s, degrees.
+    turned_deg: Vec<f32>,
+    most_turned_deg: f32,
+    stances_cm: Vec<f64>,
+    skating_cm_per_sec: Option<f64>,
+}
+
+impl MotionTrace {
+    /// Measures a clip. O(frames × joints).
+    #[must_use]
+    pub fn new(clip: &Clip, roles: &Roles) -> Self {
+        let (fps, joints) = (clip.fps(), clip.skeleton().len());
+        let steps = clip.frames().saturating_sub(1);
+        let dps = fps as f32;
+        let turn_deg = |joint: usize, frame: usize| {
+            let [from, to] = [frame, frame + 1].map(|frame| clip.rotations(frame)[joint]);
+            quat::angle_between(from, to).to_degrees()
+        };
+        let turns_deg: Vec<Vec<f32>> = (0..joints)
+            .map(|joint| (0..steps).map(|frame| turn_deg(joint, frame)).collect())
+            .collect();
+        let places = Places::of(clip, roles);
+        let root_mps: Vec<f32> = (clip.root_translations().windows(2))
+            .map(|pair| pair[0].distance(pair[1]) * places.scale * dps)
+            .collect();
+        let turned_deg = turned_deg(&places.headings, fps);
+        let rare = |values: &[f32]| stats::percentile(values, RARE).unwrap_or(0.0);
+        let feet: Vec<Foot> = places.toes.iter().map(|path| Foot::new(path, fps)).collect();
+        let skating = feet.iter().map(Foot::skating_cm_per_sec);
+        Self {
+            fps,
+            rare_dps: turns_deg.iter().map(|turns| rare(turns) * dps).collect(),
+            most_dps: turns_deg.iter().map(|turns| largest(turns) * dps).collect(),
+            turns_deg,
+            rare_mps: rare(&root_mps),
+            most_mps: largest(&root_mps),
+            root_mps,
+            most_turned_deg: largest(&turned_deg),
+            turned_deg,
+            stances_cm: feet.iter().flat_map(Foot::stances_cm).collect(),
+            skating_cm_per_sec: (!feet.is_empty()).then(|| skating.sum::<f64>() / feet.len() as f64),
+        }
+    }
+
+    /// For every stance how far the foot moves over the ground, centimetres: the diagonal of the box about the toe joint (the ankle without one) in the
+    /// middle three fifths of a stance. A stance is a run of frames of at least 0.1 s in which the toe is within 4 cm of the 5th percentile of its
+    /// heights, at a median speed below 0.6 m/s.
+    #[must_use]
+    pub fn stances_cm(&self) -> &[f64] {
+        &self.stances_cm
+    }
+
+    /// Skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks", section 7): the mean over the frames and both feet of
+    /// `|v| (2 - 2^(h / H))` for `h < H = 2.5 cm`, v being the velocity of the toe over the ground and h its height above the 2nd percentile of its
+    /// heights. `None` without feet.
+    #[must_use]
+    pub fn skating_cm_per_sec(&self) -> Option<f64> {
+        self.skating_cm_per_sec
+    }
+
+    /// The largest turn of the hips within 0.2 s, degrees.
+    #[must_use]
+    pub fn most_turned_deg(&self) -> f64 {
+        f64::from(self.most_turned_deg)
+    }
+
+    /// What this motion does that none of its sources does. Sources of another number of joints say nothing about joints; where no source has as many as
+    /// the motion, its own speeds stand for theirs. Without a source the motion is its own.
+    #[must_use]
+    pub fn beside(&self, sources: &[&Self]) -> Artefacts {
+        let own = [self];
+        let sources = if sources.is_empty() { &own } else { sources };
+        let like: Vec<&Self> = sources
+            .iter()
+            .copied()
+            .filter(|source| source.turns_deg.len() == self.turns_deg.len())
+            .collect();
+        let like = if like.is_empty() { &own[..] } else { &like };
+        let most = |of: fn(&Self) -> f32| sources.iter().map(|source| of(source)).fold(0.0, f32::max);
+        let (flashes, new_flashes) = self.flashes(like);
+        let (rare_mps, most_mps) = (most(|source| source.rare_mps), most(|source| source.most_mps));
+        let beyond = |limit: f32| self.root_mps.iter().filter(|speed| **speed > limit + 1e-6).count();
+        let turned = LEAST_SPIN_DEG.max(BEYOND * most(|source| source.most_turned_deg));
+        let spins = runs(self.turned_deg.iter().map(|deg| *deg > turned));
+        Artefacts {
+            spins: spins.len(),
+            flashes: flashes.len(),
+            new_flashes,
+            root_jumps: beyond(BEYOND * rare_mps),
+            new_root_jumps: beyond((BEYOND * rare_mps).max(SAME_SPEED * most_mps)),
+        }
+    }
+
+    /// The frames where flashes begin, and those that turn a joint faster than any source ever does.
+    fn flashes(&self, sources: &[&Self]) -> (Vec<usize>, Vec<Flash>) {
+        let dps = self.fps as f32;
+        let of = |values: fn(&Self) -> &[f32], joint: usize| sources.iter().map(|source| values(source)[joint]).fold(0.0, f32::max);
+        let (mut frames, mut new) = (Vec::new(), Vec::new());
+        for (joint, turns) in self.turns_deg.iter().enumerate() {
+            let limit = BEYOND * of(|source| &source.rare_dps, joint);
+            let most = SAME_SPEED * of(|source| &source.most_dps, joint);
+            for (frame, &turn) in turns.iter().enumerate() {
+                let speed = turn * dps;
+                if speed > limit + 1e-6 && turn > LEAST_FLASH_DEG {
+                    frames.push(frame);
+                    if speed > most {
+                        let times = f64::from(2.0 * speed / limit.max(1e-6));
+                        new.push(Flash { frame, joint, times });
+                    }
+                }
+            }
+        }
+        frames.sort_unstable();
+        frames.dedup();
+        new.sort_by_key(|flash| (flash.frame, flash.joint));
+        (apart(frames, |frame| *frame), apart(new, |flash| flash.frame))
+    }
+}
+
+/// Of events in order of time those before which nothing happens for more than [`ONE_FLASH_FRAMES`] frames.
+fn apart<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
+    let mut last = None;
+    let begins = |event: &T| {
+        let now = frame(event);
+        let before: Option<usize> = last.replace(now);
+        before.is_none_or(|before| now - before > ONE_FLASH_FRAMES)
+    };
+    events.into_iter().filter(begins).collect()
+}
+
+/// What a motion does that the motions it was made from do not: what a viewer would point at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Artefacts {
+    /// Times at which the hips begin to turn by more than 30° within 0.2 s, and by more than twice what any source ever turns in such a time.
+    pub spins: usize,
+    /// Times at which a joint's local rotation changes faster than twice the 99.9th percentile of the sources for that joint, and by more than 2° in one
+    /// frame. Frames with no more than three between them are one time.
+    pub flashes: usize,
+    /// Those in which the joint is also faster than it ever is in a source: what plays over a glitch of a source is not counted.
+    pub new_flashes: Vec<Flash>,
+    /// Steps in which the root is faster than twice the 99.9th percentile of the sources.
+    pub root_jumps: usize,
+    /// Those in which it is also faster than it ever is in a source.
+    pub new_root_jumps: usize,
+}
+
+/// A joint that turns faster than it should.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flash {
+    /// The frame before it.
+    pub frame: usize,
+    /// The joint.
+    pub joint: usize,
+    /// Its speed, in 99.9th percentiles of the sources: more than 2.
+    pub times: f64,
+}
+
+fn largest(values: &[f32]) -> f32 {
+    values.iter().copied().fold(0.0, f32::max)
+}
+
+/// Runs of `true`, as ranges.
+fn runs(flags: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (frame, _) in flags.enumerate().filter(|(_, flag)| *flag) {
+        match runs.last_mut() {
+            Some(run) if run.end == frame => run.end += 1,
+            _ => runs.push(frame..frame + 1),
+        }
+    }
+    runs
+}
+
+/// World positions on a body of 1.7 m.
+struct Places {
+    /// To that body.
+    scale: f32,
+    /// Per foot that the skeleton has: the toe joint, frame by frame; the ankle without one.
+    toes: Vec<Vec<Vec3>>,
+    /// Where the line from the right hip joint to the left one points to, radians; empty without these.
+    headings: Vec<f64>,
+}
+
+impl Places {
+    fn of(clip: &Clip, roles: &Roles) -> Self {
+        let skeleton = clip.skeleton();
+        let joint = |role| roles.get_within(role, skeleton.len());
+        let feet: Vec<usize> = (Side::BOTH.into_iter())
+            .filter_map(|side| joint(Role::toe(side)).or(joint(Role::foot(side))))
+            .collect();
+        let hips = joint(Role::thigh(Side::Left)).zip(joint(Role::thigh(Side::Right)));
+        let ends: Vec<(usize, Vec3)> = (skeleton.joints().iter().enumerate())
+            .filter_map(|(index, joint)| Some((index, joint.end_site?)))
+            .collect();
+        let mut places = Self {
+            scale: 1.0,
+            toes: vec![Vec::with_capacity(clip.frames()); feet.len()],
+            headings: Vec::new(),
+        };
+        let (mut heights, mut world) = (Vec::with_capacity(clip.frames()), WorldPose::default());
+        for frame in 0..clip.frames() {
+            clip.world_pose_into(frame, &mut world);
+            let tips = ends.iter().map(|&(joint, end)| world.point(joint, end).y);
+            let (low, high) = (world.positions.iter().map(|p| p.y).chain(tips))
+                .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+            heights.push(high - low);
+            for (path, &foot) in places.toes.iter_mut().zip(&feet) {
+                path.push(world.positions[foot]);
+            }
+            if let Some((left, right)) = hips {
+                let across = world.positions[left] - world.positions[right];
+                places.headings.push(f64::from(across.x).atan2(f64::from(across.z)));
+            }
+        }
+        let height = stats::percentile(&heights, 0.5).unwrap_or(0.0);
+        if height > 0.0 {
+            places.scale = BODY_M / height;
+        }
+        for point in places.toes.iter_mut().flatten() {
+            *point *= places.scale;
+        }
+        places
+    }
+}
+
+fn turned_deg(headings: &[f64], fps: f64) -> Vec<f32> {
+    let window = ((SPIN_SECS * fps).round() as usize).max(1);
+    let mut heading = headings.first().copied().unwrap_or(0.0);
+    let unwrapped: Vec<f64> = headings
+        .iter()
+        .map(|&next| {
+            heading += wrap_angle(next - heading);
+            heading
+        })
+        .collect();
+    let turns = unwrapped.iter().zip(unwrapped.iter().skip(window));
+    turns.map(|(from, to)| (to - from).abs().to_degrees() as f32).collect()
+}
+
+/// The toe of a foot on a body of 1.7 m.
+struct Foot<'a> {
+    path: &'a [Vec3],
+    heights: Vec<f32>,
+    /// Over the ground, into every frame, metres per second; 0 into the first.
+    speeds: Vec<f32>,
+    fps: f64,
+}
+
+impl<'a> Foot<'a> {
+    fn new(path: &'a [Vec3], fps: f64) -> Self {
+        let steps = path.windows(2).map(|pair| flat(pair[0]).distance(flat(pair[1])) * fps as f32);
+        Self {
+            path,
+            heights: path.iter().map(|point| point.y).collect(),
+            speeds: std::iter::once(0.0).chain(steps).take(path.len()).collect(),
+            fps,
+        }
+    }
+
+    fn above(&self, percentile: f32) -> impl Iterator<Item = f32> + '_ {
+        let level = stats::percentile(&self.heights, percentile).unwrap_or(0.0);
+        self.heights.iter().map(move |height| height - level)
+    }
+
+    fn stances_cm(&self) -> Vec<f64> {
+        let low = runs(self.above(0.05).map(|height| height < LOW_M));
+        let stands = |run: &Range<usize>| {
+            let median = stats::percentile(&self.speeds[run.clone()], 0.5);
+            run.len() as f64 / self.fps >= LEAST_STANCE_SECS && median.is_some_and(|speed| speed < STANDING_MPS)
+        };
+        let moved_cm = |run: Range<usize>| {
+            let edge = run.len() / 5;
+            let middle = self.path[run.start + edge..run.end - edge].iter().map(|&point| flat(point));
+            let (low, high) = middle.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+            f64::from((high - low).length()) * 100.0
+        };
+        low.into_iter().filter(stands).map(moved_cm).collect()
+    }
+
+    fn skating_cm_per_sec(&self) -> f64 {
+        let weighed = self.above(0.02).zip(&self.speeds).filter(|(height, _)| *height < SKATING_M);
+        let sum: f64 = weighed
+            .map(|(height, &speed)| f64::from(speed * (2.0 - libm::exp2f(height.max(0.0) / SKATING_M))))
+            .sum();
+        sum / self.path.len().max(1) as f64 * 100.0
+    }
+}
+
+fn flat(point: Vec3) -> Vec2 {
+    Vec2::new(point.x, point.z)
+}
+
+#[cfg(test)]
+mod tests;
