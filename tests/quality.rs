@@ -1,0 +1,87 @@
+//! Every lab on motions that nobody chose: synthesised ones everywhere, captured ones where this machine has them. `cargo xtask quality` does so for any
+//! folder, and prints the numbers.
+
+#[path = "formats_common/mod.rs"]
+mod formats_common;
+#[path = "../examples/quality/trials/mod.rs"]
+mod trials;
+
+use segue::session::{Command, write_ids};
+use trials::folder::{Motions, encoded};
+use trials::trial::{Came, Trial, try_all};
+
+/// Labs whose results on close pairs have no artefact of their own.
+const SMOOTH: [&str; 6] = ["blend", "transition", "speed", "loop", "layers", "register"];
+
+/// What holds for all results; how many there are.
+fn what_holds_everywhere(trials: &[Trial]) -> usize {
+    let mut made = 0;
+    for trial in trials {
+        let faults = trial.faults();
+        let asked: &[&str] = if SMOOTH.contains(&trial.lab) {
+            &["panic", "not finite", "refused without a word", "spin", "flash", "root jump"]
+        } else {
+            &["panic", "not finite", "refused without a word"]
+        };
+        assert!(!faults.iter().any(|fault| asked.contains(fault)), "{faults:?}: {trial:#?}");
+        made += usize::from(matches!(trial.came, Came::Made(_)));
+    }
+    made
+}
+
+/// The mean skating of a lab's results, without and with planted feet, cm/s.
+fn skating(trials: &[Trial], lab: &str) -> [f64; 2] {
+    [false, true].map(|locked| {
+        let own = trials.iter().filter(|trial| trial.lab == lab && trial.locked == locked);
+        let values: Vec<f64> = own
+            .filter_map(|trial| match &trial.came {
+                Came::Made(numbers) => numbers.skating,
+                _ => None,
+            })
+            .collect();
+        assert!(!values.is_empty(), "no result of {lab}");
+        values.iter().sum::<f64>() / values.len() as f64
+    })
+}
+
+#[test]
+fn synthesised_motions_have_no_artefacts_in_any_lab() {
+    let motions = Motions::synthesised(20, 3);
+    assert!(motions.refused.is_empty() && motions.panics.is_empty(), "{motions:?}");
+    let trials = try_all(&motions, 2, 5);
+    let made = what_holds_everywhere(&trials);
+    assert!(made > 200 && made * 10 > trials.len() * 8, "{made} of {}", trials.len());
+    let [free, locked] = skating(&trials, "match");
+    assert!(locked < free, "{free} {locked}");
+}
+
+#[test]
+fn captured_motions_have_no_artefacts_in_any_lab() {
+    let Some(folder) = formats_common::subject_16() else { return };
+    let motions = Motions::of_folder(&folder).expect("the folder can be read");
+    assert!(motions.takes.len() >= 15 && motions.refused.is_empty(), "{:?}", motions.refused);
+    let trials = try_all(&motions, 3, 2);
+    assert!(what_holds_everywhere(&trials) > 150);
+    for lab in ["blend", "transition", "match"] {
+        let [free, locked] = skating(&trials, lab);
+        assert!(locked < 0.9 * free, "{lab}: {free} {locked}");
+    }
+}
+
+#[test]
+fn a_long_walk_through_captured_motion_neither_spins_nor_flashes() {
+    let Some(folder) = formats_common::subject_16() else { return };
+    let motions = Motions::of_folder(&folder).expect("the folder can be read");
+    let all: Vec<usize> = (0..motions.takes.len()).collect();
+    let (mut session, ids) = motions.open(&all).expect("the takes are read");
+    let link = format!("lab=graph&walk_seconds=600&clips={}", encoded(&write_ids(&ids)));
+    session.apply(Command::OpenLink(link)).expect("the link is good");
+    while session.work() {}
+    let outcome = session.main_outcome().expect("there is a walk");
+    let walk = outcome.walk.as_ref().expect("it is a walk");
+    assert!(walk.passed.len() > 60, "{} stays", walk.passed.len());
+    for id in ["spins", "flashes"] {
+        let metric = outcome.metrics.iter().find(|metric| metric.id == id).expect("it is measured");
+        assert_eq!(metric.value, Some(0.0), "{metric:?}");
+    }
+}
