@@ -467,10 +467,7 @@ mod tests {
         assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
         assert!(found.cost <= smooth.cost + CALM_COST, "{found:?} {smooth:?}");
         // A frame that the user names stays.
-        let named = SearchOptions {
-            leave: Region::frame(smooth.leave, a.frames()),
-            ..options
-        };
+        let named = options.leaving_at(smooth.leave, a.frames());
         assert_eq!(search.best(weights, &named).unwrap().leave, smooth.leave);
     }
 
@@ -514,9 +511,8 @@ mod tests {
         );
         let search = search(&a, &b);
         let options = SearchOptions {
-            window: 1,
-            leave: Region::frame(77, 120),
             enter: Region::ALL,
+            ..SearchOptions::new(1).leaving_at(77, 120)
         };
         let found = search.best(PoseWeights::default(), &options).unwrap();
         assert_eq!(found.leave, 77);

@@ -21,8 +21,7 @@ impl Region {
     pub const SECOND_HALF: Self = Self { from: 0.5, to: 1.0 };
 
     /// One frame alone, of a clip of `frames`.
-    #[must_use]
-    pub fn frame(frame: usize, frames: usize) -> Self {
+    fn frame(frame: usize, frames: usize) -> Self {
         // Half a frame to both sides, so that rounding cannot move it to a neighbour.
         let share = |at: f64| at / frames.max(1) as f64;
         Self {
@@ -62,6 +61,26 @@ impl SearchOptions {
             leave: Region::SECOND_HALF,
             enter: Region::FIRST_HALF,
         }
+    }
+
+    /// Leaves an outgoing clip of `frames` at `frame` and nowhere else. The window becomes no longer than what is left of the clip there, so that the
+    /// frame asked for is the one that is compared.
+    #[must_use]
+    pub fn leaving_at(self, frame: usize, frames: usize) -> Self {
+        let (leave, window) = self.fixed_at(frame, frames);
+        Self { window, leave, ..self }
+    }
+
+    /// Enters an incoming clip of `frames` at `frame` and nowhere else; the window is shortened as in [`leaving_at`](Self::leaving_at).
+    #[must_use]
+    pub fn entering_at(self, frame: usize, frames: usize) -> Self {
+        let (enter, window) = self.fixed_at(frame, frames);
+        Self { window, enter, ..self }
+    }
+
+    fn fixed_at(&self, frame: usize, frames: usize) -> (Region, usize) {
+        let frame = frame.min(frames.saturating_sub(1));
+        (Region::frame(frame, frames), self.window.min(frames - frame).max(1))
     }
 
     /// The frames at which an outgoing clip of `frames` may be left, and whether its region had to grow.

@@ -110,6 +110,23 @@ pub struct Transition {
     pub window_frames: usize,
     /// How far apart the two windows are after the best alignment: root mean square per joint, centimetres at a body height of 1.75 m.
     pub distance_cm: f32,
+    /// How the place was searched for; `None` where no search for the best match found it.
+    pub search: Option<MatchSearch>,
+}
+
+/// How the frames at which A is left and B is entered were compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchSearch {
+    /// Whether single poses were compared, and not windows.
+    pub by_pose: bool,
+    /// Frames of the windows.
+    pub window_frames: usize,
+    /// The windows are shorter than asked for: behind a frame set by hand no more is left of its clip.
+    pub is_shortened: bool,
+    /// A clip is too short for its half to hold a window behind it: all of it was searched.
+    pub is_widened: bool,
+    /// The last times at which A can be left and B entered, seconds in each: a dissolve needs its window behind both.
+    pub latest_secs: [f64; 2],
 }
 
 /// How B came onto a skeleton that is not its own.

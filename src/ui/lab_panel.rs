@@ -99,12 +99,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
-    let duration = |slot| {
-        session
-            .slot(slot)
-            .and_then(|entry| entry.motion.as_ref())
-            .map(|motion| motion.clip.duration_secs())
-    };
+    let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.duration_secs());
     let window = session.params().number(Key::BlendWindow);
     let shortest = [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
     let longest_window = if shortest.is_finite() {
@@ -124,19 +119,7 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
         ui,
     );
     compare_ui(Key::BlendWindow, session, out, ui);
-    // What was found is one thing for both: it is said once, below the second.
-    let automatic = |key| session.params().optional(key).is_none();
-    let place = |key, slot, said_below: bool| Detail {
-        max: duration(slot),
-        help: Some(match (automatic(key), said_below) {
-            (false, _) => text::BY_HAND.to_owned(),
-            (true, true) => String::new(),
-            (true, false) => found_sentence(session),
-        }),
-        ..Detail::default()
-    };
-    param_row_ui(Key::LeaveA, &place(Key::LeaveA, Slot::A, automatic(Key::EnterB)), session, out, ui);
-    param_row_ui(Key::EnterB, &place(Key::EnterB, Slot::B, false), session, out, ui);
+    place_rows_ui([Key::LeaveA, Key::EnterB], session, out, ui);
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
@@ -221,24 +204,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     }
     break_it_ui(session, out, ui);
     ui.add_space(space::S);
-    let last_frame = |slot| {
-        let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
-        motion.map(|motion| motion.clip.frames().saturating_sub(1) as f64)
-    };
-    for (key, slot) in [(Key::MixFrameA, Slot::A), (Key::MixFrameB, Slot::B)] {
-        let automatic = params.optional(key).is_none();
-        let said_below = key == Key::MixFrameA && params.optional(Key::MixFrameB).is_none();
-        let detail = Detail {
-            max: last_frame(slot),
-            help: Some(match (automatic, said_below) {
-                (false, _) => text::BY_HAND.to_owned(),
-                (true, true) => String::new(),
-                (true, false) => found_sentence(session),
-            }),
-            ..Detail::default()
-        };
-        param_row_ui(key, &detail, session, out, ui);
-    }
+    place_rows_ui([Key::MixFrameA, Key::MixFrameB], session, out, ui);
     param_row_ui(Key::MatchBy, &Detail::default(), session, out, ui);
     if params.text(Key::MatchBy) == "pose" {
         for key in [Key::MatchPosition, Key::MatchRotation, Key::MatchVelocity] {
@@ -263,16 +229,44 @@ fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
     kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), "frames", ui);
 }
 
+/// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one thing for both: it is said once, below the second
+/// row, or below the one that is left to Segue.
+fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
+    let automatic = keys.map(|key| session.params().optional(key).is_none());
+    let said_below = if automatic == [true, false] { 0 } else { 1 };
+    let transition = session.main_outcome().and_then(|outcome| outcome.transition);
+    let search = transition.and_then(|transition| transition.search);
+    for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {
+        let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
+        let latest_secs = motion.map(|motion| {
+            let end = motion.clip.duration_secs();
+            search.map_or(end, |search| search.latest_secs[index].min(end))
+        });
+        let in_frames = |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip.fps()).round());
+        let max = latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
+        let help = match (said_below == index, automatic[index]) {
+            (true, _) => found_sentence(session, automatic),
+            (false, true) => String::new(),
+            (false, false) => text::BY_HAND.to_owned(),
+        };
+        let detail = Detail {
+            max,
+            used: max.filter(|&max| session.params().optional(key).is_some_and(|given| given > max)),
+            help: Some(help),
+            ..Detail::default()
+        };
+        param_row_ui(key, &detail, session, out, ui);
+    }
+}
+
 /// How the place was found, with its distance where that is known.
-fn found_sentence(session: &Session) -> String {
+fn found_sentence(session: &Session, automatic: [bool; 2]) -> String {
     if session.jobs().iter().any(|job| job.task.is_none()) {
         return format!("{}…", text::MATCHING);
     }
     match session.main_outcome().and_then(|outcome| outcome.transition) {
-        Some(transition) if transition.distance_cm.is_finite() => {
-            format!("{}: best match of both windows, {:.1} cm.", text::FOUND, transition.distance_cm)
-        }
-        _ => format!("{}.", text::FOUND),
+        Some(transition) => text::place_found(&transition, automatic),
+        None => format!("{}.", text::FOUND),
     }
 }
 

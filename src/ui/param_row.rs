@@ -14,6 +14,8 @@ use segue::skeleton::Role;
 pub(crate) struct Detail {
     /// A narrower upper end, where the clips allow no more.
     pub(crate) max: Option<f64>,
+    /// What is used in place of the value that is set, where the clips allow no more.
+    pub(crate) used: Option<f64>,
     /// The rate at which a number of frames is also said in seconds.
     pub(crate) fps: Option<f64>,
     /// A sentence in place of the table's.
@@ -143,6 +145,7 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     // What was set for another motion is brought to what this one can do.
     let value = given.or_else(|| session.automatic_value(key)).unwrap_or(default);
     let value = session.range_of(key).map_or(value, |(min, max)| value.clamp(min, max));
+    let value = detail.used.unwrap_or(value);
     let secondary = in_seconds(value);
     row = row.secondary(&secondary).help(help).source(match (auto, given) {
         (false, _) => Source::Manual,

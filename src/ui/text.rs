@@ -4,7 +4,7 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace};
+use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -103,6 +103,33 @@ pub(crate) const DROP_T_POSE: &str = "Leave out the T-pose";
 pub(crate) const NOBODY: &str = "none";
 pub(crate) const FOUND: &str = "Found automatically";
 pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find the best match again.";
+/// How the place of a transition was found, and how far apart the clips are there. `automatic`: whether A's frame and B's are left to Segue.
+pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> String {
+    let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
+        return format!("{FOUND}.");
+    };
+    let cm = transition.distance_cm;
+    let mut said = vec![match (automatic, search.by_pose) {
+        ([false, false], true) => format!("{BY_HAND} The poses are {cm:.1} cm apart."),
+        ([false, false], false) => format!("{BY_HAND} The windows are {cm:.1} cm apart."),
+        (_, true) => format!("{FOUND}: best match of two poses, {cm:.1} cm."),
+        (_, false) => format!("{FOUND}: best match of both windows, {cm:.1} cm."),
+    }];
+    match automatic {
+        _ if search.is_widened => said.push("A clip is too short for its half to be searched: all of it was.".to_owned()),
+        [true, true] => said.push("Searched: A's second half and B's first half.".to_owned()),
+        [true, false] => said.push("Searched: A's second half.".to_owned()),
+        [false, true] => said.push("Searched: B's first half.".to_owned()),
+        [false, false] => {}
+    }
+    if search.is_shortened && !search.by_pose {
+        said.push(match search.window_frames {
+            1 => "Compared over 1 frame: the clip ends there.".to_owned(),
+            frames => format!("Compared over {frames} frames: the clip ends there."),
+        });
+    }
+    said.join(" ")
+}
 pub(crate) const SMOOTHEST: &str = "smoothest";
 pub(crate) const ROUGHEST: &str = "roughest";
 pub(crate) const WELCOME_HINT: &str =

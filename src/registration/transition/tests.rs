@@ -193,3 +193,33 @@ fn clips_that_do_not_fit_are_refused() {
         Err(RegistrationError::Unfinished { done: 0, .. })
     ));
 }
+
+#[test]
+fn search_with_a_fixed_frame_near_the_end_compares_that_frame_with_a_shorter_window() {
+    let walk = |cadence| {
+        let walk = Walk {
+            frames: 60,
+            cadence,
+            ..Walk::default()
+        };
+        Arc::new(walk.clip())
+    };
+    let (a, b) = (walk(1.0), walk(1.2));
+    let weights = limb_weights(a.skeleton());
+    let asked = SearchOptions::new(25);
+    for leave in [10, 35, 36, 50, 58, 59] {
+        let options = asked.leaving_at(leave, a.frames());
+        assert_eq!(options.window, 25.min(60 - leave));
+        let found = best_transition(&a, &b, &weights, 1.75, &options).unwrap();
+        assert_eq!((found.leave, found.grown), (leave, false));
+        let alignment = exact(&a, leave, &b, found.enter, options.window, &weights).unwrap();
+        let rms = rms_cm(alignment.distance, alignment.weight, 1.75);
+        assert!((found.rms_cm - rms).abs() < 1e-6, "{leave}: {} against {rms}", found.rms_cm);
+        let both = options.entering_at(55, b.frames());
+        assert_eq!(both.window, 5.min(60 - leave));
+        let found = best_transition(&a, &b, &weights, 1.75, &both).unwrap();
+        assert_eq!((found.leave, found.enter, found.grown), (leave, 55, false));
+    }
+    // A frame behind the end counts as the last.
+    assert_eq!(asked.leaving_at(90, 60), asked.leaving_at(59, 60));
+}

@@ -1,11 +1,11 @@
 use super::feet::{slide_before, with_feet};
 use super::pair::Pair;
-use super::{Outcome, Slot, Source, Transition};
+use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::blend::{RootBlend, WeightLaw};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
 use crate::metrics::{Subject, TransitionMetrics};
-use crate::registration::{PoseSearch, PoseWeights, Region, SearchOptions, TransitionSearch, limb_weights};
+use crate::registration::{PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -39,12 +39,15 @@ struct Place {
     leave: usize,
     enter: usize,
     distance_cm: f32,
+    search: Option<MatchSearch>,
 }
 
 /// What a match depends on, besides the two clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wanted {
     window: usize,
+    /// Frames that must be left of a clip at a frame that is set by hand, that frame among them.
+    behind: usize,
     leave: Option<usize>,
     enter: Option<usize>,
     /// Single poses are compared by these, else windows.
@@ -150,11 +153,16 @@ impl Blender {
         } else {
             [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
         };
-        // A dissolve needs its window behind both frames, the other methods one frame of B.
-        let behind = if let Method::Dissolve { window, .. } = method { window } else { 1 };
+        let match_window = match_window.min(frames_a).min(frames_b);
+        // A dissolve needs its window behind both frames, the widest one where several stand side by side, so that all show the same place. The other
+        // methods need one frame of B.
+        let behind = if let Method::Dissolve { window, .. } = method {
+            match_window.max(window)
+        } else {
+            1
+        };
         let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)]
             .map(|(frame, frames)| frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind))));
-        let match_window = match_window.min(frames_a).min(frames_b);
         let weights = (in_transition && params.text(Key::MatchBy) == "pose").then(|| PoseWeights {
             position: params.number(Key::MatchPosition),
             rotation: params.number(Key::MatchRotation),
@@ -162,6 +170,7 @@ impl Blender {
         });
         let wanted = Wanted {
             window: match_window,
+            behind,
             leave,
             enter,
             weights,
@@ -233,6 +242,7 @@ impl Blender {
                 leave: leave.unwrap_or((frames_a * 3 / 4).min(frames_a.saturating_sub(window))),
                 enter: enter.unwrap_or(0),
                 distance_cm: f32::NAN,
+                search: None,
             });
         }
         if let Some((_, place)) = self.found.iter().find(|(asked, _)| *asked == wanted) {
@@ -240,26 +250,34 @@ impl Blender {
         }
         let mut options = SearchOptions::new(window);
         if let Some(frame) = leave {
-            options.leave = Region::frame(frame, frames_a);
+            options = options.leaving_at(frame, frames_a);
         }
         if let Some(frame) = enter {
-            options.enter = Region::frame(frame, frames_b);
+            options = options.entering_at(frame, frames_b);
         }
-        let (best_leave, best_enter, distance_cm) = match (wanted.weights, &self.poses, &self.search) {
+        let (leave, enter, distance_cm, is_widened) = match (wanted.weights, &self.poses, &self.search) {
             (Some(weights), Some(search), _) => {
                 let best = search.best(weights, &options).map_err(|error| error.to_string())?;
-                (best.leave, best.enter, best.position_cm)
+                (best.leave, best.enter, best.position_cm, best.grown)
             }
             (_, _, Some(search)) => {
                 let best = search.best(&options).map_err(|error| error.to_string())?;
-                (best.leave, best.enter, best.rms_cm)
+                (best.leave, best.enter, best.rms_cm, best.grown)
             }
             _ => return Err("there are no clips to match".to_owned()),
         };
+        let latest = |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
         let place = Place {
-            leave: leave.unwrap_or(best_leave),
-            enter: enter.unwrap_or(best_enter),
+            leave,
+            enter,
             distance_cm: distance_cm as f32,
+            search: Some(MatchSearch {
+                by_pose: wanted.weights.is_some(),
+                window_frames: options.window,
+                is_shortened: options.window < window,
+                is_widened,
+                latest_secs: [latest(frames_a), latest(frames_b)],
+            }),
         };
         self.found.truncate(MAX_PANES - 1);
         self.found.push_front((wanted, place));
@@ -313,6 +331,7 @@ impl BlendInputs {
             enter_b_secs: secs(place.enter),
             window_frames: window.len(),
             distance_cm: place.distance_cm,
+            search: place.search,
         };
         let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, made.handover);
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
@@ -361,3 +380,6 @@ impl BlendInputs {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

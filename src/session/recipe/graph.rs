@@ -51,6 +51,7 @@ impl GraphInputs {
                 enter_b_secs: secs(seam.enter.frame),
                 window_frames: seam.frames,
                 distance_cm: walk.jump_cm(entered).unwrap_or(f64::NAN) as f32,
+                search: None,
             });
         }
         Outcome {

@@ -364,6 +364,7 @@ impl RegisterInputs {
             enter_b_secs: entered,
             window_frames: mixed.len(),
             distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
+            search: None,
         });
         let metrics = self.measured(&clip, &free, &beats, &mixed, distance_cm);
         let sources = vec![
