@@ -1,7 +1,7 @@
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BlendError, Concatenation, WeightLaw, align_onto};
 use crate::clip::{Clip, character_frames};
-use crate::math::{Planar, quat, wrap_angle};
+use crate::math::{Planar, nearest_turn, quat, wrap_angle};
 use crate::registration::limb_weights;
 use crate::skeleton::{Roles, Skeleton};
 use glam::{DVec2, Quat, Vec3};
@@ -137,10 +137,11 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
         law: options.law,
     };
     let by_velocity = options.align && options.root == RootBlend::Velocity;
+    let turns = if by_velocity { Vec::new() } else { blend.turns(&aligned_b) };
     let frames_during = if by_velocity {
         blend.integrated()
     } else {
-        blend.between(&aligned_b)
+        blend.between(&aligned_b, &turns)
     };
     let (b_during, world_from_b) = if by_velocity {
         let during: Vec<Planar> = frames_during
@@ -159,7 +160,7 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     let placing = if by_velocity {
         Placing::Character(&frames_during)
     } else {
-        Placing::World(aligned_b)
+        Placing::World(aligned_b, &turns)
     };
     let clip = blend.clip(&placing, &world_from_b)?;
     let mut frames = a.frames[..leave].to_vec();
@@ -233,8 +234,8 @@ struct Blend<'a> {
 enum Placing<'a> {
     /// Blended in the character's frame, then put where the character is.
     Character(&'a [Planar]),
-    /// Blended in the world, with B moved by this.
-    World(Planar),
+    /// Blended in the world, with B moved by this, and turned from A by so much in each frame.
+    World(Planar, &'a [f64]),
 }
 
 impl Blend<'_> {
@@ -261,7 +262,7 @@ impl Blend<'_> {
                     None => self.a.frames[0],
                     Some(here) => {
                         let (a, b) = (self.a.step_into(self.leave + p), self.b.step_into(self.enter + p));
-                        here.after(&mixed(&a, &b, self.weight(p as f64 - 0.5)))
+                        here.after(&mixed(&a, &b, wrap_angle(b.yaw - a.yaw), self.weight(p as f64 - 0.5)))
                     }
                 };
                 here = Some(next);
@@ -270,40 +271,60 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// The character's frames in the window, interpolated in the world.
-    fn between(&self, world_from_b: &Planar) -> Vec<Planar> {
+    /// How far B is turned from A in every frame of the window, radians: the shorter way in the first, and the same way round from then on. Chosen anew in
+    /// every frame, the side would change whenever the two pass half a turn.
+    fn turns(&self, world_from_b: &Planar) -> Vec<f64> {
+        let mut turn = 0.0;
         (0..self.window)
             .map(|p| {
-                mixed(
-                    &self.a.frames[self.leave + p],
-                    &world_from_b.after(&self.b.frames[self.enter + p]),
-                    self.weight(p as f64),
-                )
+                let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw - self.a.frames[self.leave + p].yaw;
+                turn = nearest_turn(yaw, turn);
+                turn
+            })
+            .collect()
+    }
+
+    /// The character's frames in the window, interpolated in the world.
+    fn between(&self, world_from_b: &Planar, turns: &[f64]) -> Vec<Planar> {
+        let in_window = turns.iter().enumerate();
+        in_window
+            .map(|(p, turn)| {
+                let a = &self.a.frames[self.leave + p];
+                let b = world_from_b.after(&self.b.frames[self.enter + p]);
+                mixed(a, &b, *turn, self.weight(p as f64))
             })
             .collect()
     }
 
     /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation.
-    fn root(&self, p: usize, placing: &Placing<'_>) -> (f32, Vec3, Quat) {
+    fn root(&self, p: usize, placing: &Placing<'_>, sides: &mut quat::Hemispheres) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
         let (fa, fb) = (self.leave + p, self.enter + p);
         let (a_from, b_from) = match placing {
             Placing::Character(_) => (self.a.frames[fa].inverse(), self.b.frames[fb].inverse()),
-            Placing::World(world_from_b) => (Planar::IDENTITY, *world_from_b),
+            Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
         };
         let a = a_from.apply(self.a.clip.root_translations()[fa]);
         let b = b_from.apply(self.b.clip.root_translations()[fb]);
         let translation = b.lerp(a, weight);
         let a_rotation = a_from.rotation() * self.a.clip.rotations(fa)[0];
         let b_rotation = b_from.rotation() * self.b.clip.rotations(fb)[0];
-        let rotation = quat::slerp(b_rotation, a_rotation, weight);
+        let a_rotation = match placing {
+            Placing::Character(_) => sides.follow(0, b_rotation, a_rotation),
+            // The body goes the same way round as the character's frames.
+            Placing::World(_, turns) => {
+                let turn = Quat::from_rotation_y(-turns[p] as f32);
+                quat::in_hemisphere_of(a_rotation, turn * b_rotation)
+            }
+        };
+        let rotation = quat::slerp_as_given(b_rotation, a_rotation, weight);
         match placing {
             Placing::Character(frames) => (
                 weight,
                 frames[p].apply(translation),
                 quat::renormalize(frames[p].rotation() * rotation),
             ),
-            Placing::World(_) => (weight, translation, rotation),
+            Placing::World(..) => (weight, translation, rotation),
         }
     }
 
@@ -314,13 +335,14 @@ impl Blend<'_> {
         made.play(a, 0..self.leave);
         let moving = moving_joints(a, b);
         let (mut rotations, mut translations) = (Vec::new(), Vec::new());
+        let mut sides = quat::Hemispheres::default();
         for p in 0..self.window {
             let (fa, fb) = (self.leave + p, self.enter + p);
-            let (weight, translation, rotation) = self.root(p, placing);
+            let (weight, translation, rotation) = self.root(p, placing, &mut sides);
             rotations.clear();
             rotations.push(rotation);
-            let both = a.rotations(fa).iter().zip(b.rotations(fb)).skip(1);
-            rotations.extend(both.map(|(&a, &b)| quat::slerp(b, a, weight)));
+            let both = a.rotations(fa).iter().zip(b.rotations(fb)).enumerate().skip(1);
+            rotations.extend(both.map(|(joint, (&a, &b))| quat::slerp_as_given(b, sides.follow(joint, b, a), weight)));
             translations.clear();
             let between = |&joint: &usize| translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight);
             translations.extend(moving.iter().map(between));
@@ -331,11 +353,11 @@ impl Blend<'_> {
     }
 }
 
-/// `weight` of `a`, the rest of `b`; the turn goes the shorter way.
-fn mixed(a: &Planar, b: &Planar, weight: f64) -> Planar {
+/// `weight` of `a`, the rest of `b`, which is turned from `a` by `turn`.
+fn mixed(a: &Planar, b: &Planar, turn: f64, weight: f64) -> Planar {
     let shift: DVec2 = b.shift + (a.shift - b.shift) * weight;
     Planar {
-        yaw: wrap_angle(a.yaw + wrap_angle(b.yaw - a.yaw) * (1.0 - weight)),
+        yaw: wrap_angle(a.yaw + turn * (1.0 - weight)),
         shift,
     }
 }

@@ -350,6 +350,7 @@ impl<'a> Blend<'a> {
         let mut made = Assembly::of(clips[0], clips.iter().copied(), instants.len());
         let moving = moving_joints_of(clips.iter().copied());
         let way = self.way(instants);
+        let mut sides = vec![quat::Hemispheres::default(); clips.len()];
         for (instant, (here, in_reference, alignments)) in instants.iter().zip(&way) {
             let mut mean = Mean::default();
             for (index, clip) in clips.iter().enumerate() {
@@ -358,7 +359,7 @@ impl<'a> Blend<'a> {
                     .then(|| clip.sample(instant.frames[index] / clip.fps(), Interpolation::Linear))
                     .flatten();
                 if let Some(pose) = pose {
-                    mean.add(weight, clip, &pose, &alignments[index], &moving);
+                    mean.add(weight, clip, &pose, &alignments[index], &moving, &mut sides[index]);
                 }
             }
             let place = here.after(&in_reference.inverse());
@@ -373,7 +374,8 @@ impl<'a> Blend<'a> {
     }
 }
 
-/// A weighted mean of poses, clip by clip: rotations slerp by the shorter way towards each further clip, which for two clips is the slerp between them.
+/// A weighted mean of poses, clip by clip: rotations slerp towards each further clip, by the shorter way at first and the same way from then on. For two
+/// clips it is the slerp between them.
 #[derive(Default)]
 struct Mean {
     sum: f64,
@@ -383,7 +385,7 @@ struct Mean {
 }
 
 impl Mean {
-    fn add(&mut self, weight: f64, clip: &Clip, pose: &Pose, world_from_clip: &Planar, moving: &[usize]) {
+    fn add(&mut self, weight: f64, clip: &Clip, pose: &Pose, world_from_clip: &Planar, moving: &[usize], sides: &mut quat::Hemispheres) {
         self.sum += weight;
         let share = (weight / self.sum) as f32;
         let turn = world_from_clip.rotation();
@@ -404,8 +406,8 @@ impl Mean {
             return;
         }
         self.root = self.root.lerp(root, share);
-        for (mean, q) in self.rotations.iter_mut().zip(rotations) {
-            *mean = quat::slerp(*mean, q, share);
+        for (joint, (mean, q)) in self.rotations.iter_mut().zip(rotations).enumerate() {
+            *mean = quat::slerp_as_given(*mean, sides.follow(joint, *mean, q), share);
         }
         for (mean, value) in self.translations.iter_mut().zip(translations) {
             *mean = mean.lerp(value, share);

@@ -110,7 +110,9 @@ impl SpeedBlend {
         }
         checked("half-life (s)", options.half_life_secs, 60.0)?;
         let moving = moving_joints(first, second);
-        let gaits = [a, b].map(|cycle| Sampled::new(cycle, &moving));
+        let mut gaits = [a, b].map(|cycle| Sampled::new(cycle, &moving));
+        let [a_sampled, b_sampled] = &mut gaits;
+        b_sampled.take_side_of(a_sampled);
         let skeleton = first.skeleton();
         let mut parts = vec![Part::Body; skeleton.len()];
         for side in Side::BOTH {
@@ -243,7 +245,7 @@ impl SpeedBlend {
             } else if weight == 1.0 {
                 b.rotation(joint, at_b)
             } else {
-                quat::slerp(a.rotation(joint, at_a), b.rotation(joint, at_b), t)
+                quat::slerp_as_given(a.rotation(joint, at_a), b.rotation(joint, at_b), t)
             }
         }));
         translations.clear();
@@ -392,6 +394,35 @@ impl Sampled {
             first_phase: cycle.first_phase(),
             speed_mps: cycle.speed_mps(),
             secs: cycle.secs(),
+        }
+    }
+
+    /// Gives the rotations of a joint signs that do not change over the cycle.
+    fn keep_signs(&mut self) {
+        let joints = self.clip.skeleton().len();
+        for at in joints..self.rotations.len() {
+            self.rotations[at] = quat::in_hemisphere_of(self.rotations[at], self.rotations[at - joints]);
+        }
+    }
+
+    /// Lays the rotations of each joint on that side of the other cycle's from which the way between the two is the shorter over most of the cycle: chosen
+    /// for each pose alone, it would change where the two are about half a turn apart.
+    fn take_side_of(&mut self, other: &mut Self) {
+        const SAMPLES: usize = 32;
+        self.keep_signs();
+        other.keep_signs();
+        let joints = self.clip.skeleton().len();
+        for joint in 0..joints {
+            let alike = (0..SAMPLES).map(|sample| {
+                let phase = sample as f64 / SAMPLES as f64;
+                self.rotation(joint, self.place(phase))
+                    .dot(other.rotation(joint, other.place(phase)))
+            });
+            if alike.sum::<f32>() < 0.0 {
+                for rotation in self.rotations.iter_mut().skip(joint).step_by(joints) {
+                    *rotation = -*rotation;
+                }
+            }
         }
     }
 

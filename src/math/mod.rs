@@ -77,4 +77,4 @@ pub mod stats;
 pub use decay::{Decay, Response};
 pub use monotone::MonotoneCurve;
 pub use planar::Planar;
-pub(crate) use planar::wrap_angle;
+pub(crate) use planar::{nearest_turn, wrap_angle};

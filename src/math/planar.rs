@@ -111,6 +111,12 @@ pub(crate) fn wrap_angle(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
+/// `angle` (radians) plus as many whole turns as bring it nearest to `reference`: angles that follow each other are unwrapped by it.
+#[must_use]
+pub(crate) fn nearest_turn(angle: f64, reference: f64) -> f64 {
+    reference + wrap_angle(angle - reference)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

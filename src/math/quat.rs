@@ -61,6 +61,39 @@ pub fn slerp(a: Quat, b: Quat, t: f32) -> Quat {
     }
 }
 
+/// Spherical interpolation by the way that the signs of `a` and `b` stand for, `t` from 0 (`a`) to 1 (`b`): the longer way where they lie in opposite
+/// hemispheres. [`Hemispheres`] keeps the signs from changing while both rotations move.
+#[must_use]
+pub fn slerp_as_given(a: Quat, b: Quat, t: f32) -> Quat {
+    if a.dot(b) < 0.0 {
+        renormalize(exp(log_as_given(b * a.conjugate()) * t) * a)
+    } else {
+        slerp(a, b, t)
+    }
+}
+
+/// The side by which pairs of rotations are interpolated while both move: the shorter way at first, and the same way from then on.
+///
+/// Where the shorter way is chosen anew in every frame, two rotations about half a turn apart change sides whenever they pass it, and what
+/// lies between them flips.
+#[derive(Clone, Debug, Default)]
+pub struct Hemispheres(Vec<Option<Quat>>);
+
+impl Hemispheres {
+    /// Returns `to` with the sign by which [`slerp_as_given`] goes on from the frame before. `index` tells pairs apart; every pair is asked for
+    /// once in a frame, frames in their order.
+    pub fn follow(&mut self, index: usize, from: Quat, to: Quat) -> Quat {
+        if index >= self.0.len() {
+            self.0.resize(index + 1, None);
+        }
+        let between = from.conjugate() * to;
+        let known = self.0[index].unwrap_or(Quat::IDENTITY);
+        let flips = between.dot(known) < 0.0;
+        self.0[index] = Some(if flips { -between } else { between });
+        if flips { -to } else { to }
+    }
+}
+
 /// `cos θ − 1` of quaternions that are 26° apart, rotations by 52°: six terms of the series leave less than 1e-8 there.
 const NEAR: f32 = -0.1;
 
@@ -179,6 +212,25 @@ mod tests {
             let (a, b) = (exp(Vec3::new(x, y, z)), exp(Vec3::new(z, x, y)));
             prop_assume!(a.dot(b).abs() > 1e-3);
             prop_assert!(angle_between(slerp(a, b, t), slerp(a, -b, t)) < 1e-3);
+        }
+    }
+
+    #[test]
+    fn rotations_that_pass_half_a_turn_apart_are_interpolated_without_a_flip() {
+        // `to` sways about a place half a turn from `from`, through the place where the shorter way changes sides.
+        let (mut sides, mut before) = (Hemispheres::default(), None::<Quat>);
+        for step in 0..=40 {
+            let from = Quat::from_rotation_x(0.2);
+            let angle = std::f32::consts::PI + 0.1 * (step as f32 * 0.5).sin() - 0.02;
+            let to = Quat::from_rotation_y(angle) * from;
+            let to = sides.follow(3, from, if step % 3 == 0 { -to } else { to });
+            assert!(angle_between(slerp_as_given(from, to, 1.0), to) < 1e-5);
+            assert!(angle_between(slerp_as_given(from, to, 0.0), from) < 1e-5);
+            let half = slerp_as_given(from, to, 0.5);
+            let expected = Quat::from_rotation_y(0.5 * angle) * from;
+            assert!(angle_between(half, expected) < 1e-5, "step {step}");
+            assert!(before.is_none_or(|before| angle_between(before, half) < 0.03), "step {step}");
+            before = Some(half);
         }
     }
 

@@ -3,7 +3,7 @@ use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
     Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, dissolve, laid_on, moving_joints,
 };
-use crate::math::{Planar, quat, wrap_angle};
+use crate::math::{Planar, nearest_turn, quat, wrap_angle};
 use glam::Vec3;
 
 /// How to go from one clip to another.
@@ -211,7 +211,7 @@ impl Place {
     fn new(a: &Planar, b: &Planar) -> Self {
         let vector = |frame: &Planar, yaw: f64| Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32);
         Self {
-            of_a: vector(a, b.yaw + wrap_angle(a.yaw - b.yaw)),
+            of_a: vector(a, nearest_turn(a.yaw, b.yaw)),
             of_b: vector(b, b.yaw),
             yaw: b.yaw,
         }
@@ -219,7 +219,7 @@ impl Place {
 
     /// The next frame of B as a vector.
     fn follow(&mut self, b: &Planar) -> Vec3 {
-        self.yaw += wrap_angle(b.yaw - self.yaw);
+        self.yaw = nearest_turn(b.yaw, self.yaw);
         Vec3::new(b.shift.x as f32, self.yaw as f32, b.shift.y as f32)
     }
 

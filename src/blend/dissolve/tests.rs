@@ -375,3 +375,58 @@ fn what_cannot_be_blended_is_refused() {
     let empty = Source::new(Arc::new(a.clip().crop(0..0).unwrap()), &Roles::default());
     assert!(dissolve(&empty, 0, &b, 0, &cut).is_err() && dissolve(&b, 0, &empty, 0, &cut).is_err());
 }
+
+/// A character that stands in place and sways about a heading, its left arm turned about its bone likewise.
+fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
+    let still = Walk {
+        frames: 90,
+        speed: 0.0,
+        cadence: 0.0,
+        swing: 0.0,
+        ..Walk::default()
+    };
+    let clip = still.clip();
+    let joints = clip.skeleton().len();
+    let mut rotations: Vec<Quat> = (0..clip.frames()).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    for (frame, pose) in rotations.chunks_mut(joints).enumerate() {
+        let sway = 0.08 * (frame as f32 * 0.5 + phase).sin();
+        pose[0] = Quat::from_rotation_y(heading + sway) * pose[0];
+        pose[joints - 1] = Quat::from_rotation_x(arm + sway) * pose[joints - 1];
+    }
+    let roots = clip.root_translations().to_vec();
+    let swaying = Clip::new("swaying", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
+    let roles = Roles::detect(swaying.skeleton());
+    Source::new(Arc::new(swaying), &roles)
+}
+
+#[test]
+fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
+    for (arm, align) in [(0.0, false), (PI, true), (PI, false)] {
+        let (a, b) = (swaying(0.3, 0.0, 0.0), swaying(if align { 0.3 } else { 0.3 + PI }, 1.5, arm));
+        // Without the sway either way round is half a turn in 39 steps.
+        let options = DissolveOptions {
+            window: 40,
+            align,
+            root: RootBlend::World,
+            law: WeightLaw::Linear,
+        };
+        let out = dissolve(&a, 30, &b, 10, &options).unwrap();
+        let steady = PI / 40.0 + 2.0 * 0.08 * 0.5;
+        let joints = out.clip.skeleton().len();
+        for frame in 1..out.clip.frames() {
+            let [before, here] = [frame - 1, frame].map(|frame| out.clip.rotations(frame));
+            for joint in [0, joints - 1] {
+                let turned = quat::angle_between(before[joint], here[joint]);
+                assert!(
+                    turned < steady,
+                    "arm {arm}, align {align}: joint {joint} turns by {turned} in frame {frame}"
+                );
+            }
+            let yaw = wrap_angle(out.frames[frame].yaw - out.frames[frame - 1].yaw);
+            assert!(yaw.abs() < f64::from(steady), "{frame}: {yaw}");
+            let body = out.clip.rotations(frame)[0] * out.frames[frame].rotation().conjugate();
+            let apart = quat::angle_between(body, out.clip.rotations(0)[0] * out.frames[0].rotation().conjugate());
+            assert!(apart < 0.02, "the body faces where its frame does: {apart}");
+        }
+    }
+}
