@@ -338,20 +338,20 @@ parameters! {
     B "b" "B" Page Kind::Clip, Start::Word("run"), "", "The clip that follows.";
 
     BlendWindow "blend_window" "Blend window" Blend number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
-    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A.";
-    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B.";
+    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half.";
+    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
     WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
-    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how fast the character moves instead of where it is, so that it comes to B's speed sooner.";
+    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
 
     Method "method" "Method" Transition Kind::Choice(METHODS), Start::Word("inertialize"), "", "How A goes over into B.";
-    HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How lazily the difference to A dies away: half of it is left after 1.2 half-lives.";
-    BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left: for cubic, quintic and dead blend.";
+    HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
+    BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
     ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Transition logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
-    MixFrameA "mix_frame_a" "Leave A at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over.";
-    MixFrameB "mix_frame_b" "Enter B at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then.";
+    MixFrameA "mix_frame_a" "Leave A at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half.";
+    MixFrameB "mix_frame_b" "Enter B at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half.";
     MatchBy "match_by" "Match by" Transition Kind::Choice(MATCHES), Start::Word("pose"), "", "What the best match compares: two poses, or windows of the whole body.";
     MatchPosition "match_position" "Weight of positions" Transition number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
     MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
@@ -471,7 +471,7 @@ parameters! {
     FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
     FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.05), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
     Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once: twist a forearm to see the difference.";
-    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does. Linear blend wraps the wrist like a candy, dual quaternions keep it round.";
+    Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does. Linear blend wraps the wrist like a candy wrapper, dual quaternions keep it round.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
     Ghosts "ghosts" "Onion skin" Stage number(0.0, 8.0, 1.0), Start::Number(0.0), "poses", "Poses before and after the present one.";

@@ -404,7 +404,7 @@ pub(crate) fn pins(count: usize) -> String {
 
 /// What the Path lab does.
 pub(crate) const PATH_ABOUT: &str =
-    "The way of the hips is fitted by a curve. Drag its points: the path bends, and the character follows with what the curve left over.";
+    "A curve is fitted to the path of the hips. Drag its points: the path bends, and the character follows with what the curve left over.";
 /// The same over the stage.
 pub(crate) const PATH_HINT: &str = "Drag a point: the path bends, and the character follows. Double-click the path for one more point.";
 /// A button.
