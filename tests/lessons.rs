@@ -200,10 +200,10 @@ const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("atan", "", 1, "spins", "43"),
     (
         "atan",
-        "lab=transition&a=walk&b=run&method=smooth&blend_window=30&compare=mistake:none,atan",
+        "lab=transition&a=walk&b=run&method=smooth&blend_window=30&root_blend=off&compare=mistake:none,atan",
         1,
         "spin_deg",
-        "232°",
+        "173°",
     ),
     ("first_frame", "", 1, "flashes", "8"),
     ("first_frame", "", 1, "spins", "6"),

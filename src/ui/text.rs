@@ -109,12 +109,12 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Stri
         return format!("{FOUND}.");
     };
     let cm = transition.distance_cm;
-    let mut said = vec![match (automatic, search.by_pose) {
-        ([false, false], true) => format!("{BY_HAND} The poses are {cm:.1} cm apart."),
-        ([false, false], false) => format!("{BY_HAND} The windows are {cm:.1} cm apart."),
-        (_, true) => format!("{FOUND}: best match of two poses, {cm:.1} cm."),
-        (_, false) => format!("{FOUND}: best match of both windows, {cm:.1} cm."),
-    }];
+    let mut said = match (automatic, search.by_pose) {
+        ([false, false], true) => vec![BY_HAND.to_owned(), format!("The poses are {cm:.1} cm apart.")],
+        ([false, false], false) => vec![BY_HAND.to_owned(), format!("The windows are {cm:.1} cm apart.")],
+        (_, true) => vec![format!("{FOUND}: best match of two poses, {cm:.1} cm.")],
+        (_, false) => vec![format!("{FOUND}: best match of both windows, {cm:.1} cm.")],
+    };
     match automatic {
         _ if search.is_widened => said.push("A clip is too short for its half to be searched: all of it was.".to_owned()),
         [true, true] => said.push("Searched: A's second half and B's first half.".to_owned()),

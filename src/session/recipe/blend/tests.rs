@@ -77,7 +77,7 @@ fn pose_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
 
 #[test]
 fn panes_with_other_windows_leave_at_the_same_frame() {
-    let session = opened("lab=blend&compare=blend_window:60,10&leave_a=1.9");
+    let session = opened("lab=blend&compare=blend_window:60,10&leave_a=2.5");
     let shown = |pane: usize| session.panes()[pane].outcome.as_ref().unwrap().transition.unwrap();
     let (wide, narrow) = (shown(0), shown(1));
     assert_eq!(wide.leave_a_secs, narrow.leave_a_secs);
