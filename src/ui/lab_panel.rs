@@ -233,7 +233,7 @@ fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
 /// row, or below the one that is left to Segue.
 fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
     let automatic = keys.map(|key| session.params().optional(key).is_none());
-    let said_below = if automatic == [true, false] { 0 } else { 1 };
+    let said_below = usize::from(automatic != [true, false]);
     let transition = session.main_outcome().and_then(|outcome| outcome.transition);
     let search = transition.and_then(|transition| transition.search);
     for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {

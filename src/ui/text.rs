@@ -106,7 +106,11 @@ pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find th
 /// How the place of a transition was found, and how far apart the clips are there. `automatic`: whether A's frame and B's are left to Segue.
 pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> String {
     let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
-        return format!("{FOUND}.");
+        return if automatic == [false, false] {
+            BY_HAND.to_owned()
+        } else {
+            format!("{FOUND}.")
+        };
     };
     let cm = transition.distance_cm;
     let mut said = match (automatic, search.by_pose) {
