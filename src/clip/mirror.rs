@@ -62,6 +62,33 @@ mod tests {
         }
     }
 
+    /// The axes of joints may lie as they like: only where the joints are counts.
+    #[test]
+    fn mirror_image_does_not_depend_on_the_axes_of_joints() {
+        for (rig, skeleton, _) in fixtures::all() {
+            let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 4, 9));
+            let axes: Vec<Quat> = (0..skeleton.len())
+                .map(|joint| Quat::from_scaled_axis(Vec3::new(1.0, -0.4, 0.7) * (1.0 + joint as f32)))
+                .collect();
+            let above = |joint: usize| skeleton.parent(joint).map_or(Quat::IDENTITY, |parent| axes[parent]);
+            let joints = skeleton.joints().iter().enumerate().map(|(index, joint)| Joint {
+                offset: above(index).conjugate() * joint.offset,
+                end_site: joint.end_site.map(|end| axes[index].conjugate() * end),
+                ..joint.clone()
+            });
+            let turned = Arc::new(Skeleton::new(joints.collect()).unwrap());
+            let rotations = (0..clip.frames()).flat_map(|frame| {
+                let turn = |(joint, q): (usize, &Quat)| above(joint).conjugate() * *q * axes[joint];
+                clip.rotations(frame).iter().enumerate().map(turn).collect::<Vec<_>>()
+            });
+            let rewritten = Clip::new("turned", turned, clip.fps(), rotations.collect(), clip.root_translations().to_vec()).unwrap();
+            let (plain, other) = (mirror(&clip, &roles).unwrap(), mirror(&rewritten, &roles).unwrap());
+            let (p, q) = (plain.world_positions(0..4), other.world_positions(0..4));
+            let far = p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+            assert!(far < 1e-3, "{rig}: {far} m");
+        }
+    }
+
     #[test]
     fn a_left_turn_becomes_a_right_turn() {
         let skeleton = fixtures::lafan();

@@ -42,6 +42,9 @@ pub(super) fn assemble(
         if measure.unit_unknown {
             tally.add(WarningKind::UnknownUnit, None);
         }
+        if measure.up_uncertain {
+            tally.add(WarningKind::UncertainUp { up: measure.provenance.up }, None);
+        }
         let clip_name = match raw.joints.first() {
             Some(root) if several => format!("{} ({})", stem(name), root.name),
             _ => stem(name).to_owned(),

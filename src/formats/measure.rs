@@ -2,7 +2,7 @@
 
 use super::raw::RawMotion;
 use crate::clip::{Provenance, UpAxis};
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Role, Roles, Side, Skeleton};
 use glam::Vec3;
 use std::fmt;
 
@@ -29,7 +29,8 @@ const CLEARLY: f32 = 1.25;
 pub struct Measure {
     /// The unit and the up axis that the clip was read with.
     pub provenance: Provenance,
-    /// The height of the character at rest, in the file's units.
+    /// The height of the character standing upright, in the file's units: from the lengths of its bones ([`Roles::body_height`]) where names tell its
+    /// legs, else its extent.
     pub height_units: f64,
     /// Whether the unit was found by the height, or by the word of the file where that fits the height, rather than given.
     pub unit_detected: bool,
@@ -37,10 +38,12 @@ pub struct Measure {
     pub unit_unknown: bool,
     /// Whether the up axis was found by the stance rather than given.
     pub up_detected: bool,
+    /// Whether what speaks for the up axis that was found hardly outweighs what speaks against it, as for a body that lies in every frame.
+    pub up_uncertain: bool,
 }
 
 impl Measure {
-    /// The height of the character at rest, metres.
+    /// The height of the character standing upright, metres.
     #[must_use]
     pub fn height_metres(&self) -> f64 {
         self.height_units * self.provenance.metres_per_unit
@@ -91,31 +94,24 @@ impl fmt::Display for Measure {
 }
 
 /// Measures a motion in file units and axes. What is given is taken as it is.
+///
+/// Where names tell the legs, nothing depends on the rest pose, which in some files means nothing: the height follows from bone lengths, and up is
+/// where limbs and head point over all frames, and on whose floor the body moves ([`Evidence`]).
 pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<UpAxis>) -> Measure {
     let rest = Body::of(&raw.rest_points());
-    let frames = sampled_frames(raw);
-    let found_up = up.unwrap_or_else(|| up_axis(&raw.rest_points(), &rest, &frames));
-    let axis = index(found_up);
-    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames do.
-    let upright = rest.extent()[axis] > 0.35 * rest.extent().max_element();
-    let mut heights: Vec<f32> = frames.iter().map(|body| body.extent()[axis]).collect();
-    heights.sort_by(f32::total_cmp);
-    let height = match heights.get(heights.len() / 2) {
-        Some(&median) if !upright => median,
-        _ => {
-            let height = rest.extent()[axis];
-            // No legs: the root's height stands for them.
-            let has_legs = rest.low[axis] < -0.2 * height;
-            let offset = raw.joints.first().map_or(0.0, |root| root.offset[axis]);
-            let root = if offset == 0.0 {
-                raw.root_translations.first().map_or(0.0, |root| root[axis])
-            } else {
-                offset
-            };
-            if has_legs { height } else { height + root.max(0.0) }
-        }
+    let skeleton = Skeleton::new(raw.joints.clone()).ok();
+    let frames = skeleton.as_ref().map(|skeleton| sampled_frames(raw, skeleton)).unwrap_or_default();
+    let by_shape = || up_axis(&raw.rest_points(), &rest, &frames);
+    let named = skeleton.as_ref().and_then(|skeleton| Named::of(skeleton));
+    let (found_up, up_uncertain) = match (up, &named) {
+        (Some(up), _) => (up, false),
+        (None, Some(named)) => named.up_axis(raw, by_shape),
+        (None, None) => (by_shape(), false),
     };
-    let height = f64::from(height);
+    let height = match &named {
+        Some(named) => named.height,
+        None => f64::from(extent_along(index(found_up), raw, &rest, &frames)),
+    };
     let given = metres_per_unit.filter(|unit| unit.is_finite() && *unit > 0.0);
     let detected = UNITS
         .iter()
@@ -130,8 +126,117 @@ pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<
         unit_detected: given.is_none(),
         unit_unknown: given.is_none() && detected.is_none(),
         up_detected: up.is_none(),
+        up_uncertain,
     }
 }
+
+/// The height of a body whose joints no name tells: that of its rest pose, or of the median frame where the rest pose lies flat.
+fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f32 {
+    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames do.
+    let upright = rest.extent()[axis] > 0.35 * rest.extent().max_element();
+    let mut heights: Vec<f32> = frames.iter().map(|body| body.extent()[axis]).collect();
+    heights.sort_by(f32::total_cmp);
+    match heights.get(heights.len() / 2) {
+        Some(&median) if !upright => median,
+        _ => {
+            let height = rest.extent()[axis];
+            // No legs: the root's height stands for them.
+            let has_legs = rest.low[axis] < -0.2 * height;
+            let offset = raw.joints.first().map_or(0.0, |root| root.offset[axis]);
+            let root = if offset == 0.0 {
+                raw.root_translations.first().map_or(0.0, |root| root[axis])
+            } else {
+                offset
+            };
+            if has_legs { height } else { height + root.max(0.0) }
+        }
+    }
+}
+
+/// A body whose legs are told by their joints' names.
+struct Named<'a> {
+    skeleton: &'a Skeleton,
+    roles: Roles,
+    /// File units.
+    height: f64,
+}
+
+/// What speaks for an axis as the one that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Evidence {
+    /// How far limbs and head point along it, −1 to 1: from feet to hips, from hands to shoulders, from hips to head.
+    limbs: f32,
+    /// 0 to 1: the lowest point of the body stays at one level, and near 0, as on a floor.
+    floor: f32,
+}
+
+impl Evidence {
+    fn sum(self) -> f32 {
+        self.limbs + self.floor
+    }
+}
+
+/// Less evidence than this for one axis over the other leaves it to the rest pose, and is told.
+const CERTAIN: f32 = 0.6;
+/// A floor is level and near 0 within this share of the body's height.
+const FLOOR_SHARE: f32 = 0.15;
+
+impl<'a> Named<'a> {
+    fn of(skeleton: &'a Skeleton) -> Option<Self> {
+        let roles = Roles::by_name(skeleton);
+        roles.leg_length(skeleton)?;
+        let height = f64::from(roles.body_height(skeleton));
+        (height.is_finite() && height > 0.0).then_some(Self { skeleton, roles, height })
+    }
+
+    /// The up axis, and whether that is uncertain.
+    fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, bool) {
+        let [y, z] = self.evidence(raw).map(Evidence::sum);
+        if (y - z).abs() < CERTAIN {
+            return (by_shape(), true);
+        }
+        (if z > y { UpAxis::Z } else { UpAxis::Y }, false)
+    }
+
+    /// For Y and for Z.
+    fn evidence(&self, raw: &RawMotion) -> [Evidence; 2] {
+        let frames = raw.frames();
+        let samples = UP_SAMPLES.min(frames);
+        let (mut limbs, mut lows) = (Vec3::ZERO, Vec::with_capacity(samples));
+        for i in 0..samples {
+            let points = raw.world_points(self.skeleton, i * frames / samples);
+            if let Some(direction) = self.limb_direction(&points) {
+                limbs += direction / samples as f32;
+            }
+            lows.push(Body::of(&points).low);
+        }
+        let floor = |axis: usize| {
+            let mut levels: Vec<f32> = lows.iter().map(|low| low[axis]).collect();
+            levels.sort_by(f32::total_cmp);
+            let at = |share: f32| levels.get((share * levels.len() as f32) as usize).copied().unwrap_or(0.0);
+            let near = |distance: f32| (1.0 - distance.abs() / (FLOOR_SHARE * self.height as f32)).clamp(0.0, 1.0);
+            0.5 * near(at(0.9) - at(0.1)) + 0.5 * near(at(0.5))
+        };
+        [1, 2].map(|axis| Evidence {
+            limbs: limbs[axis],
+            floor: floor(axis),
+        })
+    }
+
+    /// Where limbs and head point in a frame, each counted by its length; unit length.
+    fn limb_direction(&self, points: &[Vec3]) -> Option<Vec3> {
+        let at = |role| self.roles.get(role).and_then(|joint| points.get(joint).copied());
+        let between = |from: Role, to: Role| Some(at(to)? - at(from)?).filter(|v| v.is_finite());
+        let legs = Side::BOTH.map(|side| between(Role::foot(side), Role::thigh(side)));
+        let arms = Side::BOTH.map(|side| between(Role::hand(side), Role::upper_arm(side)));
+        let trunk = between(Role::Hips, Role::Head);
+        let sum: Vec3 = legs.into_iter().chain(arms).chain([trunk]).flatten().sum();
+        sum.try_normalize()
+    }
+}
+
+/// Frames that are looked at for the up axis, spread over the clip.
+const UP_SAMPLES: usize = 32;
 
 fn index(up: UpAxis) -> usize {
     match up {
@@ -173,14 +278,11 @@ impl Body {
 }
 
 /// Up to eight frames spread over the clip.
-fn sampled_frames(raw: &RawMotion) -> Vec<Body> {
+fn sampled_frames(raw: &RawMotion, skeleton: &Skeleton) -> Vec<Body> {
     const SAMPLES: usize = 8;
     let frames = raw.frames();
-    let Ok(skeleton) = Skeleton::new(raw.joints.clone()) else {
-        return Vec::new();
-    };
     (0..SAMPLES.min(frames))
-        .map(|i| Body::of(&raw.world_points(&skeleton, i * frames / SAMPLES.min(frames))))
+        .map(|i| Body::of(&raw.world_points(skeleton, i * frames / SAMPLES.min(frames))))
         .collect()
 }
 
@@ -325,6 +427,70 @@ mod tests {
         );
         assert!(!found.unit_detected && !found.up_detected);
         assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
+    }
+
+    /// The same person with joints that are named, in a motion of three frames, each moved and turned.
+    fn named(frames: [(Vec3, Quat); 3]) -> RawMotion {
+        let mut raw = person(|v| v * 100.0, Vec3::ZERO);
+        let names = [
+            "Hips",
+            "LeftUpLeg",
+            "LeftLeg",
+            "LeftFoot",
+            "RightUpLeg",
+            "RightLeg",
+            "RightFoot",
+            "Head",
+            "LeftArm",
+            "LeftHand",
+            "RightArm",
+            "RightHand",
+        ];
+        for (joint, name) in raw.joints.iter_mut().zip(names) {
+            joint.name = name.into();
+        }
+        raw.rotations = vec![Quat::IDENTITY; 3 * raw.joints.len()];
+        raw.root_translations = frames.iter().map(|(at, _)| *at * 100.0).collect();
+        for (frame, (_, turn)) in frames.iter().enumerate() {
+            raw.rotations[frame * names.len()] = *turn;
+        }
+        raw
+    }
+
+    #[test]
+    fn up_of_named_joints_is_where_the_body_points_whatever_the_rest_pose() {
+        let quarter = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+        let walks = [0.0, 1.0, 2.0].map(|way| (Vec3::new(way, 0.94, 0.3 * way), Quat::from_rotation_y(way)));
+        assert_eq!(measure(&named(walks), None, None).provenance.up, UpAxis::Y);
+        // The rest pose stands along Y, and the motion is in a world where Z is up.
+        let turned = walks.map(|(at, turn)| (quarter * at, quarter * turn));
+        let found = measure(&named(turned), None, None);
+        assert_eq!((found.provenance.up, found.up_uncertain), (UpAxis::Z, false));
+        // A runner whose way goes along both axes of the ground.
+        let runs = turned.map(|(at, turn)| (at + Vec3::new(0.0, 9.0 * at.x, 0.0), turn));
+        assert_eq!(measure(&named(runs), None, None).provenance.up, UpAxis::Z);
+    }
+
+    #[test]
+    fn body_that_lies_leaves_up_to_the_rest_pose_and_says_so() {
+        let lies = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+        let found = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, None);
+        assert_eq!((found.provenance.up, found.up_uncertain), (UpAxis::Y, true));
+        let given = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, Some(UpAxis::Z));
+        assert!(!given.up_uncertain && given.provenance.up == UpAxis::Z);
+    }
+
+    #[test]
+    fn height_of_named_joints_is_that_of_their_bones() {
+        let mut raw = named([(STANDING, Quat::IDENTITY); 3]);
+        let height = measure(&raw, None, None).height_units;
+        assert!((height - 83.0 / 0.491).abs() < 0.01, "{height}");
+        // The same bones, each in a frame of its own: a rest pose that means nothing.
+        for (index, joint) in raw.joints.iter_mut().enumerate() {
+            let turn = Quat::from_scaled_axis(Vec3::new(index as f32, 1.0, -0.7 * index as f32));
+            joint.offset = turn * joint.offset;
+        }
+        assert!((measure(&raw, None, None).height_units - height).abs() < 0.01);
     }
 
     #[test]

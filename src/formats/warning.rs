@@ -1,4 +1,5 @@
 use super::text::position;
+use crate::clip::UpAxis;
 use std::fmt;
 
 /// A kind of oddity that a file was read in spite of, or a note on how it was read.
@@ -134,6 +135,11 @@ pub enum WarningKind {
     },
     /// No unit of length makes this skeleton the size of a person: centimetres are taken.
     UnknownUnit,
+    /// Neither the limbs nor the floor tell which axis points up, as for a body that lies: this one is taken.
+    UncertainUp {
+        /// The axis that was taken.
+        up: UpAxis,
+    },
     /// Images of materials: the colour without them is taken.
     Textures,
     /// Meshes that change their shape by morph targets: they keep the one they have.
@@ -293,6 +299,13 @@ impl fmt::Display for ImportWarning {
             WarningKind::MorphTargets => write!(f, "{} with morph targets; they keep their shape", n("surface")),
             WarningKind::BrokenMesh { why } => {
                 write!(f, "{} left out; the first has {why}", n("surface"))
+            }
+            WarningKind::UncertainUp { up } => {
+                let axis = match up {
+                    UpAxis::Y => "Y",
+                    UpAxis::Z => "Z",
+                };
+                write!(f, "the motion does not tell which axis points up; {axis} is taken")
             }
             WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
         }

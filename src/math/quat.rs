@@ -171,10 +171,96 @@ pub fn between_directions(from: Vec3, to: Vec3) -> Quat {
     }
 }
 
+/// The rotation that brings directions nearest to those that they belong to: the sum of the squared distances is least. Longer ones count
+/// more. `None` where that leaves a turn open, as for a single direction.
+///
+/// The greatest eigenvector of a symmetric 4 × 4 matrix (Horn 1987, "Closed-form solution of absolute orientation using unit quaternions",
+/// section 4), found by squaring the matrix.
+#[must_use]
+pub fn best_fit(pairs: &[(Vec3, Vec3)]) -> Option<Quat> {
+    /// Directions within this of one line leave the turn about it open: the sine of 3°.
+    const ON_A_LINE: f32 = 0.05;
+    /// Squared so often, even a neighbouring eigenvalue is gone.
+    const SQUARINGS: usize = 40;
+    let &(longest, _) = pairs.iter().max_by(|a, b| a.0.length().total_cmp(&b.0.length()))?;
+    let axis = longest.try_normalize()?;
+    if pairs
+        .iter()
+        .all(|(from, _)| from.cross(axis).length() <= ON_A_LINE * longest.length())
+    {
+        return None;
+    }
+    let mut sums = glam::DMat3::ZERO;
+    for (from, to) in pairs {
+        let (from, to) = (from.as_dvec3(), to.as_dvec3());
+        sums += glam::DMat3::from_cols(from * to.x, from * to.y, from * to.z);
+    }
+    // `s(a, b)` is the sum of component a of the first times component b of the second.
+    let s = |a: usize, b: usize| sums.col(b)[a];
+    let matrix = glam::DMat4::from_cols_array(&[
+        s(0, 0) + s(1, 1) + s(2, 2),
+        s(1, 2) - s(2, 1),
+        s(2, 0) - s(0, 2),
+        s(0, 1) - s(1, 0),
+        s(1, 2) - s(2, 1),
+        s(0, 0) - s(1, 1) - s(2, 2),
+        s(0, 1) + s(1, 0),
+        s(2, 0) + s(0, 2),
+        s(2, 0) - s(0, 2),
+        s(0, 1) + s(1, 0),
+        s(1, 1) - s(0, 0) - s(2, 2),
+        s(1, 2) + s(2, 1),
+        s(0, 1) - s(1, 0),
+        s(2, 0) + s(0, 2),
+        s(1, 2) + s(2, 1),
+        s(2, 2) - s(0, 0) - s(1, 1),
+    ]);
+    let size = |m: &glam::DMat4| m.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+    // No eigenvalue is less than minus the largest row sum: none is negative now, and the greatest stays the greatest.
+    let mut power = matrix + glam::DMat4::IDENTITY * (4.0 * size(&matrix));
+    for _ in 0..SQUARINGS {
+        power = power * (1.0 / size(&power));
+        power = power * power;
+    }
+    let column = (0..4)
+        .map(|i| power.col(i))
+        .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
+    let q = column.try_normalize()?.as_vec4();
+    Some(shorter_way(Quat::from_xyzw(q.y, q.z, q.w, q.x)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn best_fit_of_one_direction_is_open() {
+        assert_eq!(best_fit(&[]), None);
+        assert_eq!(best_fit(&[(Vec3::X, Vec3::Y)]), None);
+        assert_eq!(best_fit(&[(Vec3::X, Vec3::Y), (Vec3::X * -2.0, Vec3::NEG_Y)]), None);
+        assert_eq!(best_fit(&[(Vec3::ZERO, Vec3::Y), (Vec3::ZERO, Vec3::Z)]), None);
+    }
+
+    proptest! {
+        /// Turned directions are turned back; what is added to them in equal parts to either side changes nothing.
+        #[test]
+        fn best_fit_finds_the_turn(x in -1.8f32..1.8, y in -1.8f32..1.8, z in -1.8f32..1.8, long in 0.2f32..5.0) {
+            let turn = exp(Vec3::new(x, y, z));
+            let from = [Vec3::X * long, Vec3::new(0.1, 1.0, -0.3), Vec3::new(-0.4, -0.2, 0.5)];
+            let pairs = from.map(|v| (v, turn * v));
+            prop_assert!(angle_between(best_fit(&pairs).unwrap(), turn) < 1e-3);
+            // No rotation near it is nearer.
+            let noisy = [(from[0], turn * (from[0] + Vec3::Y * 0.3)), (from[1], turn * (from[1] - Vec3::Z * 0.2)), pairs[2]];
+            let cost = |q: Quat| noisy.iter().map(|(u, v)| (q * *u).distance_squared(*v)).sum::<f32>();
+            let best = best_fit(&noisy).unwrap();
+            for axis in Vec3::AXES {
+                for angle in [-0.02, 0.02] {
+                    prop_assert!(cost(Quat::from_axis_angle(axis, angle) * best) >= cost(best) - 1e-5);
+                }
+            }
+        }
+    }
 
     proptest! {
         #[test]

@@ -5,6 +5,10 @@ use glam::{Quat, Vec3};
 
 /// An axis of the rest pose this near to the skeleton's left-right axis is meant to be it: cos 15°.
 const NEARLY_AN_AXIS: f32 = 0.966;
+/// Corrections below this are none, radians.
+const SAME_RADIANS: f32 = 1e-4;
+/// What lies nearer to the line of a bone than this share of its length says nothing about turns about it.
+const BESIDE_BONE: f32 = 0.05;
 /// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this share of its distance.
 const SHAPE_TOLERANCE: f32 = 0.35;
 
@@ -19,9 +23,11 @@ pub struct NoSides;
 /// How a skeleton looks in a mirror: which joint stands for which, and how their frames differ.
 ///
 /// With S the reflection `x → -x` of the world and M that of the rest pose in its own plane of symmetry, a joint `j` with the
-/// counterpart `p` gets the world rotation `S · R(p) · M · C(j)`, where `C(j)` takes the bone of `j` at rest to the mirror image of that of `p`. With
-/// a symmetric skeleton C is the identity; with one that is not, the bones' directions are those of the mirror image all the same, and
-/// only their lengths are the skeleton's own. Mirroring twice gives the original back, because `C(p) = M · C(j)⁻¹ · M`.
+/// counterpart `p` gets the world rotation `S · R(p) · M · C(j)`, where `C(j)` takes the bones that start at `j` to the mirror images of those that start
+/// at `p`, each in its own joint's frame: the one bone of a limb exactly, several (hips, chest, hand) as nearly as a rotation can. With a
+/// symmetric rest pose C is the identity. With any other the bones' directions are those of the mirror image all the same, and only their
+/// lengths are the skeleton's own: nothing depends on how the file lays the joints' axes. Mirroring twice gives the original back, because
+/// `C(p) = M · C(j)⁻¹ · M`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mirror {
     /// Unit normal of the rest pose's plane of symmetry.
@@ -57,18 +63,35 @@ impl Mirror {
             offsets: skeleton.joints().iter().map(|j| j.offset).collect(),
             corrections: vec![Quat::IDENTITY; skeleton.len()],
         };
-        for joint in 1..skeleton.len() {
+        for joint in 0..skeleton.len() {
             let Some(other) = mirror.counterparts[joint] else { continue };
+            let bones = mirror.bones_below(joint);
             mirror.corrections[joint] = match (pairing.bone(joint), pairing.bone(other)) {
                 // The second of a pair is made from the first, so that both undo each other to the last bit.
                 _ if other < joint => mirror.reflected_rotation(mirror.corrections[other].conjugate()),
-                (Some(bone), Some(others)) => quat::between_directions(bone, mirror.reflected(others)),
-                // What has no bone follows its parent, except in the middle: a chest is the mirror image of itself.
-                _ if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
-                _ => Quat::IDENTITY,
+                (Some(bone), Some(others)) => turned_about_bone(bone, mirror.reflected(others), &bones),
+                _ => match quat::best_fit(&bones) {
+                    Some(turn) => turn,
+                    // What has no bones follows its parent, except in the middle: there it is the mirror image of itself.
+                    None if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
+                    None => Quat::IDENTITY,
+                },
             };
+            if quat::angle_between(mirror.corrections[joint], Quat::IDENTITY) < SAME_RADIANS {
+                mirror.corrections[joint] = Quat::IDENTITY;
+            }
         }
         Ok(mirror)
+    }
+
+    /// The bones that start at a joint, each with the mirror image of the one that starts at its counterpart and ends at theirs.
+    fn bones_below(&self, joint: usize) -> Vec<(Vec3, Vec3)> {
+        let below = (joint + 1..self.parents.len()).filter(|&child| self.parents[child] == Some(joint));
+        let pair = |child: usize| {
+            let other = self.counterparts[child].filter(|&other| self.parents[other] == self.counterparts[joint])?;
+            Some((self.offsets[child], self.reflected(self.offsets[other])))
+        };
+        below.filter_map(pair).collect()
     }
 
     /// The joint that moves in a mirror as this one does: itself in the middle of the body; `None` for a joint without counterpart.
@@ -90,7 +113,8 @@ impl Mirror {
                 // S · R · M = (S · R · S) · (S · M), and two reflections are the product of their normals as pure quaternions.
                 let q = local(joint);
                 let (x, n) = (Quat::from_xyzw(1.0, 0.0, 0.0, 0.0), self.normal);
-                quat::renormalize(Quat::from_xyzw(q.x, -q.y, -q.z, q.w) * (x * Quat::from_xyzw(n.x, n.y, n.z, 0.0)))
+                let reflections = x * Quat::from_xyzw(n.x, n.y, n.z, 0.0);
+                quat::renormalize(Quat::from_xyzw(q.x, -q.y, -q.z, q.w) * reflections * self.corrections[joint])
             }
             (None, Some(_)) => local(joint),
         });
@@ -133,6 +157,24 @@ impl Mirror {
         let v = -self.reflected(Vec3::new(q.x, q.y, q.z));
         Quat::from_xyzw(v.x, v.y, v.z, q.w)
     }
+}
+
+/// The rotation that takes a bone to another, turned about that so that what else starts at the joint comes as near as it can to where it belongs.
+fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)]) -> Quat {
+    let turn = quat::between_directions(from, to);
+    let Some(axis) = to.try_normalize() else { return turn };
+    let (mut sin, mut cos, mut size) = (0.0, 0.0, 0.0_f32);
+    for &(bone, wanted) in bones {
+        let across = |v: Vec3| v - axis * axis.dot(v);
+        let (bone, wanted) = (across(turn * bone), across(wanted));
+        sin += axis.dot(bone.cross(wanted));
+        cos += bone.dot(wanted);
+        size = size.max(bone.length().min(wanted.length()));
+    }
+    if size < BESIDE_BONE * from.length() {
+        return turn;
+    }
+    quat::renormalize(Quat::from_axis_angle(axis, sin.atan2(cos)) * turn)
 }
 
 /// From the right to the left of the rest pose, unit length: by roles, else by names.

@@ -1,6 +1,7 @@
 """Golden values for the dissolve of two clips: `python3 dissolve.py` writes dissolve.json.
 
-Two joints: a root, which turns every way and faces its own +Z, and an arm on it. Rotations are SciPy's, alignment is SciPy's least squares (align.py);
+Two joints: a root, which turns every way, and an arm on it. The root faces its own +Z in the first frame; from there on its heading is how far it has
+turned about +Y since (the twist of R(f) R(0)⁻¹). Rotations are SciPy's, alignment is SciPy's least squares (align.py);
 nothing is shared with the program but the definition: weight of A in frame p of k is 1 - s((p + 1) / k), s(t) = 3t² - 2t³, steps of the
 character are blended at the weight of their middle.
 """
@@ -33,8 +34,9 @@ def motion(frames, seed):
 
 
 def facing(rotations):
-    z = rotations.apply([0, 0, 1])
-    return np.arctan2(z[:, 0], z[:, 2])
+    z = rotations[0].apply([0, 0, 1])
+    since = (rotations * rotations[0].inv()).as_quat()
+    return wrapped(np.arctan2(z[0], z[2]) + 2 * np.arctan2(since[:, 1], since[:, 3]))
 
 
 def turn(yaw):

@@ -5,7 +5,7 @@ use crate::clip::fixtures::wander;
 use crate::clip::{Clip, JointTranslations};
 use crate::formats::{ImportError, ImportOptions, Imported};
 use crate::math::quat;
-use crate::skeleton::fixtures;
+use crate::skeleton::{Above, fixtures};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::{DMat4, DQuat, DVec3, Quat, Vec3};
@@ -554,7 +554,10 @@ proptest! {
                 }
             }
         }
-        let names: Vec<&str> = imported.clips.iter().flat_map(|found| found.clip.skeleton().joints()).map(|joint| joint.name.as_str()).collect();
+        let skeletons = imported.clips.iter().map(|found| found.clip.skeleton());
+        let kept = skeletons.clone().flat_map(|skeleton| skeleton.joints());
+        let folded = skeletons.filter_map(|skeleton| skeleton.above()).flat_map(Above::joints);
+        let names: Vec<&str> = kept.chain(folded).map(|joint| joint.name.as_str()).collect();
         prop_assert!(joints.iter().all(|joint| names.contains(&format!("n{joint}").as_str())), "{names:?}");
     }
 

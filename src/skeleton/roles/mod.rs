@@ -84,6 +84,12 @@ impl Roles {
         roles
     }
 
+    /// Finds the roles that joints' names tell, whatever the rest pose. See [`Self::detect`].
+    #[must_use]
+    pub fn by_name(skeleton: &Skeleton) -> Self {
+        names::detect(skeleton)
+    }
+
     /// Takes over what is missing, where it does not contradict what is there.
     fn fill(&mut self, skeleton: &Skeleton, other: &Self) {
         for role in Role::ALL {
@@ -191,34 +197,63 @@ impl Roles {
         foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
     }
 
-    /// The length of a leg from hip joint over knee to ankle, metres: the mean of both sides. `None` without a whole leg.
+    /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both sides. `None` without a whole leg. Adds up the bones
+    /// between, so that it does not depend on the rest pose.
     #[must_use]
     pub fn leg_length(&self, skeleton: &Skeleton) -> Option<f32> {
-        let rest = skeleton.rest_positions();
-        let at = |role| self.get(role).and_then(|joint| rest.get(joint).copied());
+        let joint = |role| self.get_within(role, skeleton.len());
         let legs: Vec<f32> = Side::BOTH
             .into_iter()
             .filter_map(|side| {
-                let (hip, knee, ankle) = (at(Role::thigh(side))?, at(Role::shin(side))?, at(Role::foot(side))?);
-                Some(hip.distance(knee) + knee.distance(ankle))
+                let (hip, knee, ankle) = (joint(Role::thigh(side))?, joint(Role::shin(side))?, joint(Role::foot(side))?);
+                Some(length_between(skeleton, hip, knee)? + length_between(skeleton, knee, ankle)?)
             })
             .filter(|&length| length > 0.0)
             .collect();
         (!legs.is_empty()).then(|| legs.iter().sum::<f32>() / legs.len() as f32)
     }
 
-    /// The character's height standing upright, metres: thigh and shin are 0.491 of it (Winter, "Biomechanics and Motor Control of Human
-    /// Movement", table 4.1). Without legs the diameter of the skeleton at rest, and without any extent 1.
+    /// Returns the character's height standing upright, metres: thigh and shin are 0.491 of it (Winter, "Biomechanics and Motor Control of Human
+    /// Movement", table 4.1). Without legs the longest way through the skeleton along its bones, and without any length 1. Only bone lengths
+    /// count, which no rest pose changes.
     #[must_use]
     pub fn body_height(&self, skeleton: &Skeleton) -> f32 {
         if let Some(leg) = self.leg_length(skeleton) {
             return leg / 0.491;
         }
-        let rest = skeleton.rest_positions();
-        let (low, high) = rest.iter().fold((rest[0], rest[0]), |(low, high), &p| (low.min(p), high.max(p)));
-        let diameter = (high - low).max_element();
-        if diameter > 0.0 { diameter } else { 1.0 }
+        let longest = longest_way(skeleton);
+        if longest > 0.0 { longest } else { 1.0 }
     }
+}
+
+/// The lengths of the bones from a joint down to one below it, added up; `None` where it is not below.
+fn length_between(skeleton: &Skeleton, above: usize, below: usize) -> Option<f32> {
+    let mut length = 0.0;
+    let mut joint = below;
+    while joint != above {
+        length += skeleton.joints().get(joint)?.offset.length();
+        joint = skeleton.parent(joint)?;
+    }
+    Some(length)
+}
+
+/// The longest way from one end of the tree to another along its bones.
+fn longest_way(skeleton: &Skeleton) -> f32 {
+    let mut deepest = vec![0.0_f32; skeleton.len()];
+    let mut longest = 0.0_f32;
+    // Children come behind their parents: seen from the back, what is below a joint is known.
+    for (index, joint) in skeleton.joints().iter().enumerate().rev() {
+        if let Some(end) = joint.end_site {
+            longest = longest.max(deepest[index] + end.length());
+            deepest[index] = deepest[index].max(end.length());
+        }
+        if let Some(parent) = joint.parent {
+            let branch = deepest[index] + joint.offset.length();
+            longest = longest.max(deepest[parent] + branch);
+            deepest[parent] = deepest[parent].max(branch);
+        }
+    }
+    longest
 }
 
 /// Whether `joint` lies below `above` in the tree, and is not that joint itself.

@@ -153,6 +153,32 @@ fn body_measures_come_from_the_legs() {
     let wanted = Vec3::new(0.0, 0.41, 0.01).length() + Vec3::new(0.0, 0.41, 0.03).length();
     assert!((leg - wanted).abs() < 1e-5);
     assert!((roles.body_height(&skeleton) - leg / 0.491).abs() < 1e-5);
-    // Without roles the extent at rest: arms stretched out from -0.83 to 0.83 m end at the wrists at 0.7 m.
-    assert!((Roles::default().body_height(&skeleton) - 1.51).abs() < 1e-4);
+    // Without roles the longest way along bones: of all pairs of joints and ends, the lengths up to where their ways to the root meet.
+    let mut ways: Vec<Vec<(usize, f32)>> = Vec::new();
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        let mut way = vec![(index, 0.0)];
+        let (mut at, mut length) = (index, 0.0);
+        while let Some(parent) = skeleton.parent(at) {
+            length += skeleton.joints()[at].offset.length();
+            way.push((parent, length));
+            at = parent;
+        }
+        ways.extend(
+            joint
+                .end_site
+                .map(|end| way.iter().map(|&(joint, far)| (joint, far + end.length())).collect()),
+        );
+        ways.push(way);
+    }
+    let between = |a: &[(usize, f32)], b: &[(usize, f32)]| {
+        let meeting = a
+            .iter()
+            .find_map(|&(joint, far)| Some(far + b.iter().find(|(other, _)| *other == joint)?.1));
+        meeting.unwrap_or(0.0)
+    };
+    let longest = ways
+        .iter()
+        .flat_map(|a| ways.iter().map(move |b| between(a, b)))
+        .fold(0.0, f32::max);
+    assert!((Roles::default().body_height(&skeleton) - longest).abs() < 1e-4);
 }
