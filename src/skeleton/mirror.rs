@@ -5,6 +5,8 @@ use glam::{Quat, Vec3};
 
 /// An axis of the rest pose this near to the skeleton's left-right axis is meant to be it: cos 15°.
 const NEARLY_AN_AXIS: f32 = 0.966;
+/// Joints nearer to each other are at one place, metres.
+const LEAST_BONE_M: f32 = 1e-6;
 /// Corrections below this are none, radians.
 const SAME_RADIANS: f32 = 1e-4;
 /// What lies nearer to the line of a bone than this share of its length says nothing about turns about it.
@@ -66,16 +68,20 @@ impl Mirror {
         for joint in 0..skeleton.len() {
             let Some(other) = mirror.counterparts[joint] else { continue };
             let bones = mirror.bones_below(joint);
-            mirror.corrections[joint] = match (pairing.bone(joint), pairing.bone(other)) {
+            // Where several bones start that lead nowhere in common, the longest stands for them: all may lie on one line.
+            let longest = bones.iter().copied().max_by(|a, b| a.0.length().total_cmp(&b.0.length()));
+            let bone = match (pairing.bone(joint), pairing.bone(other)) {
+                (Some(bone), Some(others)) => Some((bone, mirror.reflected(others))),
+                _ => longest.filter(|(bone, _)| bone.length() > LEAST_BONE_M),
+            };
+            mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
                 // The second of a pair is made from the first, so that both undo each other to the last bit.
                 _ if other < joint => mirror.reflected_rotation(mirror.corrections[other].conjugate()),
-                (Some(bone), Some(others)) => turned_about_bone(bone, mirror.reflected(others), &bones),
-                _ => match quat::best_fit(&bones) {
-                    Some(turn) => turn,
-                    // What has no bones follows its parent, except in the middle: there it is the mirror image of itself.
-                    None if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
-                    None => Quat::IDENTITY,
-                },
+                (_, Some(turn)) if pairing.bone(joint).is_none() => turn,
+                (Some((bone, others)), _) => turned_about_bone(bone, others, &bones),
+                // What has no bones follows its parent, except in the middle: there it is the mirror image of itself.
+                _ if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
+                _ => Quat::IDENTITY,
             };
             if quat::angle_between(mirror.corrections[joint], Quat::IDENTITY) < SAME_RADIANS {
                 mirror.corrections[joint] = Quat::IDENTITY;
@@ -313,7 +319,7 @@ impl<'a> Pairing<'a> {
         loop {
             let children = &self.children[at];
             let next = match children.as_slice() {
-                [] => return self.skeleton.joints()[at].end_site.filter(|end| end.length() > 1e-6),
+                [] => return self.skeleton.joints()[at].end_site.filter(|end| end.length() > LEAST_BONE_M),
                 [only] => *only,
                 several => {
                     let mut leading = several.iter().filter(|&&child| self.roles_below[child] != 0);
@@ -321,7 +327,7 @@ impl<'a> Pairing<'a> {
                 }
             };
             let offset = self.skeleton.joints()[next].offset;
-            if offset.length() > 1e-6 {
+            if offset.length() > LEAST_BONE_M {
                 return Some(offset);
             }
             at = next;
