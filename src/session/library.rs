@@ -253,13 +253,16 @@ pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
 /// Name, SHA-256 prefix (empty where there is none) and index of a reference.
 #[must_use]
 pub fn split_reference(reference: &str) -> (&str, &str, usize) {
-    let Some((name, rest)) = reference.rsplit_once('~') else {
-        return (reference, "", 0);
-    };
-    match rest.split_once('.') {
-        Some((sha, number)) => (name, sha, number.parse::<usize>().map_or(0, |n| n.saturating_sub(1))),
-        None => (name, rest, 0),
-    }
+    let split = reference.rsplit_once('~').and_then(|(name, rest)| {
+        let (sha, index) = match rest.split_once('.') {
+            Some((sha, number)) => (sha, number.parse::<usize>().ok()?.saturating_sub(1)),
+            None => (rest, 0),
+        };
+        // The recipe of a result names files, too, and is none.
+        let is_sha = !sha.is_empty() && sha.bytes().all(|digit| digit.is_ascii_hexdigit());
+        is_sha.then_some((name, sha, index))
+    });
+    split.unwrap_or((reference, "", 0))
 }
 
 /// A file's name without folders and ending.
@@ -318,7 +321,9 @@ mod tests {
     #[test]
     fn references_come_apart() {
         assert_eq!(split_reference("a~b~12.3"), ("a~b", "12", 2));
-        assert_eq!(split_reference("walk"), ("walk", "", 0));
+        for whole in ["walk", "blend(a:walk,b:spider~12ab34cd.2,enter_b:0.5)", "tilde~", "a~2 b~x"] {
+            assert_eq!(split_reference(whole), (whole, "", 0));
+        }
         assert_eq!(file_stem("x/y.z/.hidden"), ".hidden");
     }
 }
