@@ -466,6 +466,24 @@ fn frame_number(token: &[u8]) -> Option<f64> {
     (is_digits(token) || f64::is_finite(number)).then_some(number)
 }
 
+/// Why the beginning of a file is no motion: there is no first frame, or no value in it.
+pub(super) fn first_fault(text: &[u8]) -> Option<Fault> {
+    if first_frame(text).iter().any(|(_, values)| *values > 0) {
+        return None;
+    }
+    let mut at = skip_blank(text, 0);
+    while text.get(at) == Some(&b':') {
+        at = skip_blank(text, line_end(text, at));
+    }
+    let token_at = |at: usize| text.get(at..token_end(text, at)).unwrap_or_default();
+    let first = token_at(at);
+    if !is_digits(first) {
+        return Some(Fault::at_token(at, first, "the number of a frame"));
+    }
+    at = skip_blank(text, at + first.len());
+    Some(Fault::at_token(at, token_at(at), "a bone and its values"))
+}
+
 /// The bones of the first frame and how many values each has, as far as the beginning of a file tells.
 pub(super) fn first_frame(text: &[u8]) -> Vec<(String, usize)> {
     let mut bones: Vec<(String, usize)> = Vec::new();

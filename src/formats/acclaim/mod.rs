@@ -18,7 +18,7 @@ mod pairing;
 mod read;
 mod skeleton;
 
-pub use pairing::{best_skeleton, bone_names, goes_by_name};
+pub use pairing::{best_skeleton, bone_names, check_motion, goes_by_name, matching_bones};
 pub(super) use pairing::{starts_like_amc, starts_like_asf};
 pub use read::{DEFAULT_FPS, read_motion, read_motion_with_progress, skeleton_clip};
 pub use skeleton::{AcclaimSkeleton, read_skeleton};

@@ -1,7 +1,8 @@
-use super::amc::first_frame;
+use super::amc::{first_fault, first_frame};
 use super::asf::is_section;
 use super::lexer::{Lexer, is_digits};
 use super::skeleton::AcclaimSkeleton;
+use crate::formats::error::ImportError;
 use crate::formats::stem;
 use crate::formats::text::decode;
 
@@ -31,6 +32,27 @@ pub fn bone_names(amc_bytes: &[u8]) -> Vec<(String, usize)> {
     first_frame(&decode(amc_bytes.get(..HEAD).unwrap_or(amc_bytes)))
 }
 
+/// Whether an AMC file has a motion at all, whatever its skeleton: a first frame with the values of a bone. Looks at the first 64 KB.
+///
+/// # Errors
+/// [`ImportError`] with the place where that frame should be.
+pub fn check_motion(amc_name: &str, amc_bytes: &[u8]) -> Result<(), ImportError> {
+    let text = decode(amc_bytes.get(..HEAD).unwrap_or(amc_bytes));
+    first_fault(&text).map_or(Ok(()), |fault| Err(fault.locate(amc_name, &text)))
+}
+
+/// How many bones of a motion a skeleton has with as many values, and how many bones the motion has.
+#[must_use]
+pub fn matching_bones(amc_bytes: &[u8], skeleton: &AcclaimSkeleton) -> (usize, usize) {
+    let bones = bone_names(amc_bytes);
+    (fitting(&bones, skeleton), bones.len())
+}
+
+fn fitting(bones: &[(String, usize)], skeleton: &AcclaimSkeleton) -> usize {
+    let fits = |(name, values): &&(String, usize)| skeleton.find(name).is_some_and(|joint| skeleton.values(joint) == *values);
+    bones.iter().filter(fits).count()
+}
+
 /// Which of several skeletons a motion belongs to, by index. `None` where it has half of the motion's bones or fewer for none of them.
 ///
 /// What counts, most important first: how many bones have the name and the number of values that the skeleton says; the file names (equal, or
@@ -39,12 +61,8 @@ pub fn bone_names(amc_bytes: &[u8]) -> Vec<(String, usize)> {
 #[must_use]
 pub fn best_skeleton(amc_name: &str, amc_bytes: &[u8], skeletons: &[(&str, &AcclaimSkeleton)]) -> Option<usize> {
     let bones = bone_names(amc_bytes);
-    let fit = |skeleton: &AcclaimSkeleton| {
-        let fits = |(name, values): &&(String, usize)| skeleton.find(name).is_some_and(|joint| skeleton.values(joint) == *values);
-        bones.iter().filter(fits).count()
-    };
     let ranked = skeletons.iter().enumerate().filter_map(|(index, (asf_name, skeleton))| {
-        let fit = fit(skeleton);
+        let fit = fitting(&bones, skeleton);
         let rank = (fit, kinship(amc_name, asf_name), std::cmp::Reverse(index));
         (2 * fit > bones.len()).then_some((rank, index))
     });
@@ -108,6 +126,25 @@ mod tests {
         }
         for text in ["", "1", "1 2 3", "HIERARCHY", "1\nroot\n2"] {
             assert!(!starts_like_amc(text.as_bytes()), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_file_without_a_frame_is_no_motion() {
+        for text in [":DEGREES\n1\nroot 1 2 3\n", "# by hand\n:FULLY-SPECIFIED\n7\nroot (1,\n2)\n"] {
+            assert_eq!(check_motion("a.amc", text.as_bytes()), Ok(()), "{text}");
+        }
+        for (text, error) in [
+            ("", "a.amc:1:1: found the end of the file, expected the number of a frame"),
+            (":DEGREES\n", "a.amc:2:1: found the end of the file, expected the number of a frame"),
+            ("<html>\n", "a.amc:1:1: found `<html>`, expected the number of a frame"),
+            (
+                ":DEGREES\n1\n",
+                "a.amc:3:1: found the end of the file, expected a bone and its values",
+            ),
+            ("1\nroot x\n", "a.amc:2:1: found `root`, expected a bone and its values"),
+        ] {
+            assert_eq!(check_motion("a.amc", text.as_bytes()).unwrap_err().to_string(), error, "{text}");
         }
     }
 

@@ -264,7 +264,11 @@ impl One<'_> {
                 let named: Vec<(&str, &AcclaimSkeleton)> = skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
                 let best = acclaim::best_skeleton(name, bytes, &named).and_then(|index| skeletons.get(index));
                 match best {
-                    None => Ok(None),
+                    // It is one that waits for its skeleton, where it is one at all.
+                    None => acclaim::check_motion(name, bytes).map(|()| {
+                        warnings.extend(misfit(name, bytes, skeletons));
+                        None
+                    }),
                     Some((own, skeleton)) => {
                         companion = Some((*own).clone());
                         if !acclaim::goes_by_name(name, &own.name) {
@@ -303,6 +307,18 @@ impl One<'_> {
             }),
         })
     }
+}
+
+/// What is to be said where there are skeletons, and none is that of the motion: of the one that is most like it.
+fn misfit(name: &str, bytes: &[u8], skeletons: &[(&Companion, AcclaimSkeleton)]) -> Option<String> {
+    let fits = skeletons
+        .iter()
+        .map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
+    let (own, (fitting, bones)) = fits.max_by_key(|(own, (fitting, _))| (acclaim::goes_by_name(name, &own.name), *fitting))?;
+    Some(format!(
+        "the skeleton of {} does not fit: {fitting} of {bones} bones have its names and degrees of freedom",
+        own.name
+    ))
 }
 
 impl ReadClips {
