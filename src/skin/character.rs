@@ -3,11 +3,13 @@
 use super::{RigidTransform, SkinnedMesh};
 use crate::clip::Clip;
 use crate::math::stats;
-use crate::skeleton::{Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use crate::skeleton::{JointMap, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
 use std::sync::Arc;
 
 /// Frames of a clip that are looked at for where its ground is.
 const SAMPLES: usize = 48;
+/// So many parts of limbs make a figure that others' clips move.
+const LEAST_LIMBS: usize = 2;
 /// Vertices of the sole that are looked at.
 const SOLE_VERTICES: usize = 32;
 /// The lowest point of a clip's feet lies within this share of the leg's length of the ground where the clip stands on it.
@@ -27,6 +29,32 @@ pub struct Character {
 }
 
 impl Character {
+    /// Whether it has limbs that clips of other bodies can move: parts of two, such as thigh and shin.
+    #[must_use]
+    pub fn has_limbs(&self) -> bool {
+        self.limbs().count() >= LEAST_LIMBS
+    }
+
+    /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of limbs in common, or one that moves half of its joints
+    /// by their names. A figure that only has its hips carried about stands stiffly where the motion is.
+    #[must_use]
+    pub fn is_moved_by(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> bool {
+        if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
+            return true;
+        }
+        let map = JointMap::between(&self.skeleton, &self.roles, skeleton, roles);
+        let limbs = self.limbs().filter(|joint| map.source_of(*joint).is_some()).count();
+        limbs >= LEAST_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
+    }
+
+    fn limbs(&self) -> impl Iterator<Item = usize> + '_ {
+        let of_side = |side| [Role::thigh(side), Role::shin(side), Role::upper_arm(side), Role::forearm(side)];
+        Side::BOTH
+            .into_iter()
+            .flat_map(of_side)
+            .filter_map(|role| self.roles.get_within(role, self.skeleton.len()))
+    }
+
     /// Returns how many times as large the character is as a body of another skeleton, as [`Retargeting::scale`] measures it; `None` where the two
     /// have no joint in common.
     #[must_use]
@@ -34,7 +62,10 @@ impl Character {
         if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
             return Some(1.0);
         }
-        Some(Retargeting::new(skeleton, roles, &self.skeleton, &self.roles)?.scale())
+        let way = self
+            .is_moved_by(skeleton, roles)
+            .then(|| Retargeting::new(skeleton, roles, &self.skeleton, &self.roles));
+        Some(way??.scale())
     }
 
     /// Returns the character with all lengths multiplied by `factor`.
@@ -84,11 +115,14 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Prepares the way from the skeleton of `clip` to the character; `None` when they have no joint in common. Some frames of the clip are looked at,
+    /// Prepares the way from the skeleton of `clip` to the character; `None` when it is not moved by it ([`Character::is_moved_by`]). Some frames of the clip are looked at,
     /// so that the character's soles stand where the clip's feet stand: on the ground. The clip may be any that is like those to come.
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles, character: &Character) -> Option<Self> {
         let (source, target) = (clip.skeleton(), &character.skeleton);
+        if !character.is_moved_by(source, roles) {
+            return None;
+        }
         let way = if Arc::ptr_eq(source, target) || source == target {
             None
         } else {
