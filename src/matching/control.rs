@@ -46,6 +46,12 @@ impl Control {
         DVec2::new(f64::from(self.velocity[0]), f64::from(self.velocity[1])) * SPEED_STEP
     }
 
+    /// Whether it asks to stand still.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.velocity == [0, 0]
+    }
+
     /// The yaw to face, radians from 0 to 2π; `None` faces where it goes.
     #[must_use]
     pub fn facing(&self) -> Option<f64> {

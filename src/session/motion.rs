@@ -1,6 +1,7 @@
 use crate::clip::{Clip, ContactOptions, Contacts, CurveKind, character_frames};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A clip with what is derived from it once and used everywhere.
@@ -14,6 +15,8 @@ pub struct Motion {
     pub contacts: Contacts,
     /// Where the character stands and what it faces, one frame of reference per frame of the clip.
     pub ground_frames: Vec<Planar>,
+    /// The frames in which one clip goes over into the next, in order: where a result was joined from clips.
+    pub seams: Vec<Range<usize>>,
 }
 
 impl Motion {
@@ -28,7 +31,36 @@ impl Motion {
             roles,
             contacts,
             ground_frames,
+            seams: Vec::new(),
         }
+    }
+
+    /// The first frame from which on nothing is joined any more; 0 where nothing is.
+    #[must_use]
+    pub fn behind_seams(&self) -> usize {
+        let last = self.clip.frames().saturating_sub(1);
+        self.seams.iter().map(|seam| seam.end).max().unwrap_or(0).min(last)
+    }
+
+    /// The last frame up to which nothing is joined yet; that of the clip where nothing is.
+    #[must_use]
+    pub fn before_seams(&self) -> usize {
+        let last = self.clip.frames().saturating_sub(1);
+        self.seams.iter().map(|seam| seam.start).min().unwrap_or(last).min(last)
+    }
+
+    /// The seams as they lie in a motion that plays the same at another pace: `frame` says where one of this motion's frames plays there.
+    pub(super) fn seams_at(&self, frame: impl Fn(usize) -> usize) -> Vec<Range<usize>> {
+        self.seams.iter().map(|seam| frame(seam.start)..frame(seam.end)).collect()
+    }
+
+    /// The seams of a motion that is this one up to `own` and `next` behind it, whose frame `enters` plays where `own` begins.
+    pub(super) fn seams_joined(&self, own: &Range<usize>, next: &Self, enters: usize) -> Vec<Range<usize>> {
+        let before = self.seams.iter().filter(|seam| seam.start < own.start);
+        let before = before.map(|seam| seam.start..seam.end.min(own.start));
+        let behind = next.seams.iter().filter(|seam| seam.start >= enters);
+        let behind = behind.map(|seam| seam.start - enters + own.start..seam.end - enters + own.start);
+        before.chain([own.clone()]).chain(behind).collect()
     }
 
     /// The same with roles that were corrected by hand. Such as name joints that the skeleton has not, as those of another version's clip may, are
@@ -38,7 +70,10 @@ impl Motion {
         let joints = self.clip.skeleton().len();
         let fits = |roles: &&Roles| Role::ALL.into_iter().filter_map(|role| roles.get(role)).all(|joint| joint < joints);
         match by_hand.filter(fits) {
-            Some(roles) if *roles != self.roles => Self::analyze(Arc::unwrap_or_clone(self.clip), Some(roles.clone())),
+            Some(roles) if *roles != self.roles => Self {
+                seams: self.seams,
+                ..Self::analyze(Arc::unwrap_or_clone(self.clip), Some(roles.clone()))
+            },
             _ => self,
         }
     }

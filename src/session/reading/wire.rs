@@ -392,6 +392,7 @@ impl Arrays {
                 roles: head.roles,
                 contacts: Contacts::from_flags(self.contacts),
                 ground_frames: self.ground_frames,
+                seams: Vec::new(),
             },
             about: head.about,
             mesh,

@@ -40,6 +40,8 @@ struct Place {
     enter: usize,
     distance_cm: f32,
     search: Option<MatchSearch>,
+    /// Whether one of the frames only stands for the best match, which is being looked for.
+    is_guess: bool,
 }
 
 /// What a match depends on, besides the two clips.
@@ -99,6 +101,26 @@ fn method_of(params: &Params, window: usize) -> Method {
     }
 }
 
+/// Where to look for what is left to Segue: A is left in its second half, B entered in its first, and no seam of a kept clip is left out. The window fits
+/// behind the last one of A.
+fn open_search(pair: &Pair, window: usize) -> SearchOptions {
+    let mut options = SearchOptions::new(window);
+    let share = |frame: f64, motion: &Motion| frame / motion.clip.frames().max(1) as f64;
+    if !pair.a.seams.is_empty() {
+        let (frames, behind) = (pair.a.clip.frames(), pair.a.behind_seams());
+        let half = frames.div_ceil(2);
+        let from = if half + window <= frames { behind.max(half) } else { behind };
+        options.leave.from = share(from as f64 - 0.5, &pair.a);
+    }
+    if !pair.incoming.seams.is_empty() {
+        options.enter.to = options
+            .enter
+            .to
+            .min(share(pair.incoming.before_seams() as f64 + 0.5, &pair.incoming));
+    }
+    options
+}
+
 fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
     let skeleton = pair.a.clip.skeleton();
     let search = PoseSearch::new(
@@ -132,8 +154,24 @@ impl Blender {
     pub(in crate::session) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params, match_window: usize) -> Result<BlendInputs, String> {
         self.meet(pair)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
-        let window = (params.number(Key::BlendWindow) as usize).min(frames_a).min(frames_b);
         let in_transition = params.text(Key::Lab) == "transition";
+        let fps = pair.a.clip.fps();
+        let given = if in_transition {
+            [
+                params.optional(Key::MixFrameA),
+                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip.fps() * fps),
+            ]
+        } else {
+            [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
+        };
+        // Left to Segue, A is left behind its last seam.
+        let room_in_a = if given[0].is_none() {
+            frames_a - pair.a.behind_seams().min(frames_a)
+        } else {
+            frames_a
+        };
+        let most = room_in_a.min(frames_b);
+        let window = (params.number(Key::BlendWindow) as usize).min(most);
         let method = if in_transition {
             method_of(params, window)
         } else {
@@ -144,16 +182,7 @@ impl Blender {
             };
             Method::Dissolve { window, law }
         };
-        let fps = pair.a.clip.fps();
-        let given = if in_transition {
-            [
-                params.optional(Key::MixFrameA),
-                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip.fps() * fps),
-            ]
-        } else {
-            [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
-        };
-        let match_window = match_window.min(frames_a).min(frames_b);
+        let match_window = match_window.min(most);
         // A dissolve needs its window behind both frames, the widest one where several stand side by side, so that all show the same place. The other
         // methods need one frame of B.
         let behind = if let Method::Dissolve { window, .. } = method {
@@ -239,16 +268,17 @@ impl Blender {
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         if self.is_searching() {
             return Ok(Place {
-                leave: leave.unwrap_or((frames_a * 3 / 4).min(frames_a.saturating_sub(window))),
+                leave: leave.unwrap_or((frames_a * 3 / 4).max(pair.a.behind_seams()).min(frames_a.saturating_sub(window))),
                 enter: enter.unwrap_or(0),
                 distance_cm: f32::NAN,
                 search: None,
+                is_guess: leave.is_none() || enter.is_none(),
             });
         }
         if let Some((_, place)) = self.found.iter().find(|(asked, _)| *asked == wanted) {
             return Ok(*place);
         }
-        let mut options = SearchOptions::new(window);
+        let mut options = open_search(pair, window);
         if let Some(frame) = leave {
             options = options.leaving_at(frame, frames_a);
         }
@@ -278,6 +308,7 @@ impl Blender {
                 is_widened,
                 latest_secs: [latest(frames_a), latest(frames_b)],
             }),
+            is_guess: false,
         };
         self.found.truncate(MAX_PANES - 1);
         self.found.push_front((wanted, place));
@@ -305,6 +336,11 @@ impl Blender {
 }
 
 impl BlendInputs {
+    /// Whether the best match is still being looked for.
+    pub(in crate::session) fn awaits_place(&self) -> bool {
+        self.place.is_guess
+    }
+
     /// The blend.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let Self {
@@ -343,6 +379,7 @@ impl BlendInputs {
             roles,
             contacts,
             ground_frames: made.frames,
+            seams: pair.a.seams_joined(&window, &pair.incoming, place.enter),
         };
         let measured = |result: &Clip| {
             TransitionMetrics::measure(&Subject {

@@ -29,6 +29,11 @@ impl PartialEq for GraphInputs {
 }
 
 impl GraphInputs {
+    /// Whether it goes the best way that was found so far, while a better one is searched for.
+    pub(in crate::session) fn awaits_path(&self) -> bool {
+        self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
+    }
+
     /// The walk as a result. A single transition has its two clips as sources.
     pub(in crate::session) fn run(&self) -> Outcome {
         let walk = &self.0;

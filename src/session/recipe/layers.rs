@@ -281,6 +281,7 @@ impl LayerInputs {
             clip,
             roles,
             contacts,
+            seams: a.seams.clone(),
         };
         let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {

@@ -49,7 +49,12 @@ pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, O
     }
     let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
     let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
-    Ok((Arc::new(Motion::analyze(clip, Some(roles))), retargeted))
+    let (rate, rate_b) = (a.clip.fps(), b.clip.fps());
+    let motion = Motion {
+        seams: b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize),
+        ..Motion::analyze(clip, Some(roles))
+    };
+    Ok((Arc::new(motion), retargeted))
 }
 
 /// A motion as what is blended.

@@ -232,6 +232,11 @@ fn motion_on(inputs: &PathInputs, foot_lock: Option<FootLockOptions>) -> Result<
 }
 
 impl PathInputs {
+    /// Whether its feet are to be planted, and are not yet.
+    pub(in crate::session) fn awaits_feet(&self) -> bool {
+        matches!(self.feet, Feet::Awaited)
+    }
+
     /// The motion on the path.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         let lock = matches!(self.feet, Feet::AtOnce).then(FootLockOptions::default);
@@ -298,11 +303,14 @@ impl PathInputs {
                 "The fitted path from its start to its end.",
             ));
         }
+        let (frames, before) = (made.clip.frames(), fitted.motion.clip.frames().max(1));
+        let seams = fitted.motion.seams_at(|frame| frame * frames / before);
         let motion = Motion {
             clip: Arc::new(made.clip),
             roles: fitted.motion.roles.clone(),
             contacts: made.contacts,
             ground_frames: made.characters,
+            seams,
         };
         Ok(Outcome {
             sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],

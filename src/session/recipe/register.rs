@@ -251,12 +251,40 @@ impl RegisterInputs {
         })
     }
 
-    /// From and to in frames of A: what was asked for, inside of what is registered; the middle half of it where nothing was.
+    /// Where the seams of A and B lie in the result, and its own, where it is a join.
+    fn seams(&self, beats: &[Beat], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
+        let plays = |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
+        let [of_a, of_b] = [&self.pair.a, &self.pair.incoming];
+        let of_a = of_a.seams_at(|frame| plays(0, frame)).into_iter();
+        let of_b = of_b.seams_at(|frame| plays(1, frame)).into_iter();
+        let Some(own) = own else { return of_a.chain(of_b).collect() };
+        let before = of_a.filter(|seam| seam.start < own.start);
+        let behind = of_b.filter(|seam| seam.start >= own.start);
+        before.chain([own.clone()]).chain(behind).collect()
+    }
+
+    /// From and to in frames of A: what was asked for, inside of what is registered; the middle half of it where nothing was, so that no seam of
+    /// a kept clip is left out: behind the last one of A, before the first one of B.
     fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], String> {
         let [from, to] = self.span();
         let fps = self.pair.a.clip.fps();
+        let Pair { a, incoming, .. } = &*self.pair;
+        let mut room = [from, to];
+        if !a.seams.is_empty() {
+            room[0] = from.max(a.behind_seams() as f64);
+        }
+        if !incoming.seams.is_empty() {
+            room[1] = to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
+        }
+        if part_secs.contains(&None) && room != [from, to] && room[0] + 2.0 > room[1] {
+            return Err(format!(
+                "Behind the last seam of A, at {:.2} s, and before the first one of B, at {:.2} s of A, there is no room to go over: set by hand where the join begins and ends.",
+                room[0] / fps,
+                room[1] / fps
+            ));
+        }
         let asked = |secs: Option<f64>, share: f64| {
-            let frame = secs.map_or(from + share * (to - from), |secs| secs * fps);
+            let frame = secs.map_or(room[0] + share * (room[1] - room[0]), |secs| secs * fps);
             (frame.round() as usize).clamp(from.ceil() as usize, (to.floor() as usize).max(from.ceil() as usize))
         };
         let [leave, arrive] = [asked(part_secs[0], 0.25), asked(part_secs[1], 0.75)];
@@ -367,6 +395,7 @@ impl RegisterInputs {
             search: None,
         });
         let metrics = self.measured(&clip, &free, &beats, &mixed, distance_cm);
+        let seams = self.seams(&beats, is_join.then_some(&mixed));
         let sources = vec![
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
@@ -386,6 +415,7 @@ impl RegisterInputs {
                 roles,
                 contacts,
                 ground_frames: frames,
+                seams,
             }),
             sources,
             transition,

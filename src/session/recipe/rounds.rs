@@ -50,6 +50,7 @@ pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: 
             clip: Arc::new(clip),
             roles: roles.clone(),
             contacts: repeated(contacts, &(cycle_frames..2 * cycle_frames), frames),
+            seams: Vec::new(),
         },
         slides,
     })

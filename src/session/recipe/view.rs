@@ -32,6 +32,11 @@ impl PartialEq for ViewInputs {
 }
 
 impl ViewInputs {
+    /// Whether nothing is known of it yet but the clip itself.
+    pub(in crate::session) fn awaits_numbers(&self) -> bool {
+        self.viewed.is_none()
+    }
+
     /// The clip, with what is known of it by now.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
         match &self.viewed {

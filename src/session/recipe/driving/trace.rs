@@ -152,6 +152,7 @@ impl Tracer {
             roles: database.roles().clone(),
             contacts: self.contacts(),
             ground_frames: self.moments.iter().map(|moment| moment.root).collect(),
+            seams: Vec::new(),
         };
         let driven = Driven {
             database: Arc::clone(database),

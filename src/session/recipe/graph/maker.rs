@@ -398,6 +398,8 @@ impl Maker {
             contacts: Contacts::from_flags(planted),
             roles: roles.unwrap_or_default(),
             ground_frames,
+            // A walk is left anywhere: all of it is transitions.
+            seams: Vec::new(),
             clip: Arc::new(clip),
         })
     }
