@@ -441,11 +441,11 @@ impl Segue {
             },
             Action::SavePicture => {
                 if let Some(stage) = self.picture.place() {
-                    platform::save_picture(&api::file_name(&self.result_name(), "png"), stage, &self.inbox);
+                    platform::save_picture(&api::file_name(&self.stage_name(), "png"), stage, &self.inbox);
                 }
             }
             Action::Record => match self.film.take() {
-                Some(film) => film.save(&self.result_name(), &self.inbox),
+                Some(film) => film.save(&self.stage_name(), &self.inbox),
                 None => {
                     if let Err(reason) = self.begin_film() {
                         self.session.say(Level::Error, format!("The page could not be recorded: {reason}."));
@@ -505,7 +505,7 @@ impl Segue {
         if self.keeper.is_waiting() {
             ctx.request_repaint();
         }
-        if self.session.params().is_on(Key::Play) {
+        if self.session.is_playing() {
             self.animate(ctx);
         }
     }

@@ -12,7 +12,7 @@ use segue::scene::pose_at;
 use segue::session::export::{ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
 use segue::session::reading::Content;
 use segue::session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Motion, Outcome, PARAMS, Pane, Param, ReportFacts, Value, frame_at, report,
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, frame_at, report,
 };
 use segue::skeleton::Side;
 use serde::Serialize;
@@ -101,8 +101,8 @@ pub(crate) struct Stats {
 enum Subject<'a> {
     /// A clip of the library.
     Clip(&'a Arc<Motion>),
-    /// What a pane shows.
-    Result(&'a Pane, &'a Outcome),
+    /// The result of a pane.
+    Result(&'a Pane, Made<'a>),
 }
 
 /// A file to hand to the user.
@@ -246,13 +246,13 @@ impl Segue {
     }
 
     /// What is shown, in Markdown. `picture` is an address, such as one that is the picture itself.
-    pub(crate) fn report(&self, picture: Option<&str>) -> String {
+    pub(crate) fn report(&self, picture: Option<&str>) -> Result<String, String> {
         let facts = ReportFacts {
             link: &self.url(),
             picture,
             backend: self.window.backend,
         };
-        report(&self.session, &facts)
+        report(&self.session, &facts).map_err(|reason| reason.to_string())
     }
 
     /// Plays or pauses.
@@ -291,11 +291,9 @@ impl Segue {
         let pane = panes
             .get(index)
             .ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
-        match (&pane.outcome, &pane.problem) {
-            (Some(outcome), _) => Ok(Subject::Result(pane, outcome)),
-            (None, Some(problem)) => Err(format!("there is no result: {problem}")),
-            (None, None) => Err("there is no result yet".to_owned()),
-        }
+        pane.result()
+            .map(|made| Subject::Result(pane, made))
+            .map_err(|reason| reason.to_string())
     }
 
     /// Puts a result into the library. Returns the id of the new clip.
@@ -310,7 +308,7 @@ impl Segue {
     fn motion(&self, which: &str) -> Result<Arc<Motion>, String> {
         Ok(match self.subject(which)? {
             Subject::Clip(motion) => Arc::clone(motion),
-            Subject::Result(_, outcome) => Arc::clone(&outcome.motion),
+            Subject::Result(_, made) => Arc::clone(&made.outcome.motion),
         })
     }
 
@@ -329,23 +327,17 @@ impl Segue {
         })
     }
 
-    /// The artefacts of what is shown, by name.
-    pub(crate) fn metrics(&self) -> BTreeMap<&'static str, MetricInfo> {
+    /// The artefacts of the results, by name.
+    pub(crate) fn metrics(&self) -> Result<BTreeMap<&'static str, MetricInfo>, String> {
         let panes = self.session.panes();
         let of_pane = |pane: &Pane, id| {
-            pane.outcome
-                .as_ref()?
-                .metrics
-                .iter()
-                .find(|metric| metric.id == id)
-                .and_then(|metric| metric.value)
+            let metrics = &pane.result().ok()?.outcome.metrics;
+            metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
         };
-        let Some(main) = self.session.main_outcome() else {
-            return BTreeMap::new();
-        };
+        let main = self.session.first_result().map_err(|reason| reason.to_string())?;
         let info = |metric: &Metric| MetricInfo {
             label: metric.label,
-            value: metric.value,
+            value: panes.first().and_then(|pane| of_pane(pane, metric.id)),
             unit: metric.unit,
             panes: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
             better: match metric.better {
@@ -355,7 +347,7 @@ impl Segue {
             },
             help: metric.help,
         };
-        main.metrics.iter().map(|metric| (metric.id, info(metric))).collect()
+        Ok(main.outcome.metrics.iter().map(|metric| (metric.id, info(metric))).collect())
     }
 
     /// A motion as a file of that format. `which` as in [`Self::pose`].
@@ -378,13 +370,13 @@ impl Segue {
         let params = self.session.params();
         let (motion, curves, stem) = match self.subject(which)? {
             Subject::Clip(motion) => (motion, plotted_of_clip(motion, params), motion.clip.name().to_owned()),
-            Subject::Result(pane, outcome) => {
+            Subject::Result(pane, made) => {
                 let value = pane.variant.as_ref().map(|(key, value)| {
                     let param = key.param();
                     format!(" {} {}", param.format(value), param.unit)
                 });
-                let stem = self.result_name() + &value.unwrap_or_default();
-                (&outcome.motion, plotted_of_result(outcome, params), stem)
+                let stem = result_name(made.params) + &value.unwrap_or_default();
+                (&made.outcome.motion, plotted_of_result(made.outcome, params), stem)
             }
         };
         Ok(ExportedFile {
@@ -394,19 +386,10 @@ impl Segue {
         })
     }
 
-    /// What a result is called as a file: what it was made from.
-    pub(super) fn result_name(&self) -> String {
-        let params = self.session.params();
-        match params.text(Key::Lab) {
-            "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
-            "make" => params.text(Key::Gait).to_owned(),
-            "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
-            "loop" => format!("{} loop", params.text(Key::A)),
-            "path" => format!("{} on a path", params.text(Key::A)),
-            "graph" => "walk".to_owned(),
-            "match" => "drive".to_owned(),
-            _ => params.text(Key::A).to_owned(),
-        }
+    /// What a picture or a film of the stage is called as a file: what is seen.
+    pub(super) fn stage_name(&self) -> String {
+        let seen = self.session.panes().first().and_then(Pane::made_from);
+        result_name(seen.unwrap_or(self.session.params()))
     }
 
     /// What is under way.
@@ -440,6 +423,20 @@ impl Segue {
     /// Where the stage is on the page, in points; none before it was drawn.
     pub(crate) fn stage_place(&self) -> Option<eframe::egui::Rect> {
         self.picture.place()
+    }
+}
+
+/// What a result is called as a file: what it was made from.
+fn result_name(params: &Params) -> String {
+    match params.text(Key::Lab) {
+        "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
+        "make" => params.text(Key::Gait).to_owned(),
+        "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
+        "loop" => format!("{} loop", params.text(Key::A)),
+        "path" => format!("{} on a path", params.text(Key::A)),
+        "graph" => "walk".to_owned(),
+        "match" => "drive".to_owned(),
+        _ => params.text(Key::A).to_owned(),
     }
 }
 
@@ -572,11 +569,44 @@ mod tests {
     #[test]
     fn metrics_have_a_number_for_every_pane() {
         let segue = open("compare=blend_window:30,15,10");
-        let metrics = segue.metrics();
+        let metrics = segue.metrics().unwrap();
         assert!(!metrics.is_empty());
         for (name, metric) in metrics {
             assert_eq!(metric.panes.len(), 3, "{name}");
             assert_eq!(metric.panes[0], metric.value, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_made_is_refused_with_its_sentence_by_every_call() {
+        for (good, bad, part) in [
+            ("lab=speed", json!({ "a": "idle" }), "cycle"),
+            ("lab=loop&loop_to=1.5", json!({ "loop_from": 1.5 }), "cycle"),
+            ("lab=path&a=walk", json!({ "a": "idle" }), "stays within"),
+            (
+                "lab=match&match_clips=walk,run",
+                json!({ "ahead_near": 1, "ahead_far": 0.5 }),
+                "must rise",
+            ),
+        ] {
+            let mut segue = open(good);
+            let name = segue.stage_name();
+            assert!(segue.metrics().is_ok() && segue.export("result", "bvh").is_ok() && segue.report(None).is_ok());
+            segue.set(&object(bad)).unwrap();
+            while segue.pump() || segue.is_busy() {}
+            let kept = segue.clips().len();
+            let refused = [
+                segue.pose("result", 0.0).map(drop),
+                segue.metrics().map(drop),
+                segue.export("result", "bvh").map(drop),
+                segue.report(None).map(drop),
+                segue.keep("result").map(drop),
+            ];
+            let sentence = segue.session.panes()[0].problem.clone().unwrap();
+            assert!(sentence.contains(part), "{good}: {sentence}");
+            assert_eq!(refused, [const { () }; 5].map(|()| Err(sentence.clone())), "{good}");
+            assert_eq!(segue.clips().len(), kept);
+            assert!(segue.stage_name() != name || !good.contains("path"), "{name}");
         }
     }
 

@@ -15,9 +15,16 @@ impl Segue {
             }
             Incoming::Reading { task, news } => self.hear_of_reading(task, news),
             Incoming::Picture(picture) => {
-                self.copied = ui::REPORT_COPIED;
-                if let Some(ctx) = self.inbox.ctx() {
-                    platform::copy_text(self.report(picture.as_deref()), &ctx, &self.inbox);
+                let Some(ctx) = self.inbox.ctx() else { return };
+                match self.report(picture.as_deref()) {
+                    Ok(report) => {
+                        self.copied = ui::REPORT_COPIED;
+                        platform::copy_text(report, &ctx, &self.inbox);
+                    }
+                    Err(reason) => {
+                        let reason = reason.trim_end_matches('.');
+                        self.session.say(Level::Error, format!("The report could not be made: {reason}."));
+                    }
                 }
             }
             Incoming::Copied => self.session.say(Level::Info, self.copied),

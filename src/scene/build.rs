@@ -140,13 +140,21 @@ impl Director {
                 if index == 0 {
                     self.draw_crowd(session, &shown, &look, colors, pane);
                 }
-                self.aim(index, &shown, params, dt_secs, pane);
+                let rest = resting_point(outcome, &shown.place);
+                let followed = self.followed_point(&shown, params);
+                self.aim(index, followed, rest, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
                     && let body = self.body(&outcome.motion)
                     && let Some(&at) = body.seen_pose(&shown.world).positions.get(body.seen_joint(joint))
                 {
                     add_mark(at, colors.result, look.edge, pane);
+                }
+            } else if let Some(refused) = session.panes().get(index) {
+                self.draw_stand_ins(refused, now, colors, pane);
+                if let Some(first) = refused.sources.first() {
+                    let rest = resting_place(&first.motion, &first.world_from_clip);
+                    self.aim(index, None, rest, params, dt_secs, pane);
                 }
             }
         }
@@ -471,16 +479,30 @@ impl Director {
         })
     }
 
-    /// Brings the pane's camera to where the parameters want it, after the followed joint.
-    fn aim(&mut self, index: usize, shown: &Shown<'_>, params: &Params, dt_secs: f32, pane: &mut Pane) {
-        let followed = self.followed_point(shown, params);
+    /// The clips that a result could not be made of, in its place.
+    fn draw_stand_ins(&mut self, refused: &session::Pane, now: f64, colors: &Colors, pane: &mut Pane) {
+        for source in &refused.sources {
+            let color = match source.slot {
+                Slot::A => colors.a,
+                Slot::B => colors.b,
+            };
+            let at = now.min(source.motion.clip.duration_secs());
+            if let Some(world) = pose_at(&source.motion, at, &source.world_from_clip) {
+                let body = self.body(&source.motion);
+                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha));
+            }
+        }
+    }
+
+    /// Brings the pane's camera to where the parameters want it: after the followed point, or to where it rests.
+    fn aim(&mut self, index: usize, followed: Option<Vec3>, rest: Vec3, params: &Params, dt_secs: f32, pane: &mut Pane) {
         let pan = Vec3::new(
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
         ) / self.shown_size;
         let goal = Camera {
-            target: followed.unwrap_or_else(|| resting_point(shown.outcome, &shown.place)) + pan,
+            target: followed.unwrap_or(rest) + pan,
             ..camera_of(params, self.shown_size)
         };
         let Some(rig) = self.rigs.get_mut(index) else { return };
@@ -611,8 +633,13 @@ pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
 #[must_use]
 pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
     let motion = outcome.path.as_ref().map_or(&outcome.motion, |path| path.fitted.motion());
+    resting_place(motion, place).with_y(middle_height(&outcome.motion))
+}
+
+/// Where a motion begins, at the height of the middle of the body.
+fn resting_place(motion: &Motion, place: &Planar) -> Vec3 {
     let start = motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
-    place.apply(start).with_y(middle_height(&outcome.motion))
+    place.apply(start).with_y(middle_height(motion))
 }
 
 /// The height in the middle of the picture: a little below the body's own, because the panes' numbers lie over the lower edge.

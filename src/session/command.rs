@@ -1,3 +1,4 @@
+use super::document::NoResult;
 use super::lesson::Source;
 use super::library::Sample;
 use super::params::{Key, Value, ValueError};
@@ -85,6 +86,9 @@ pub enum CommandError {
     /// A clip that is not there.
     #[error("there is no clip `{0}` in the library")]
     NoClip(String),
+    /// A pane without a result to keep.
+    #[error(transparent)]
+    NoResult(#[from] NoResult),
     /// Not possible with this clip.
     #[error("{0}")]
     NotPossible(&'static str),

@@ -38,11 +38,11 @@ impl NumberTable {
         let panes = session.panes();
         let name = |pane: &Pane| session.variant_name(pane).unwrap_or_else(|| RESULT.to_owned());
         let of_pane = |pane: &Pane, id: &str| {
-            let outcome = pane.outcome.as_ref().filter(|_| pane.problem.is_none())?;
-            outcome.metrics.iter().find(|metric| metric.id == id)?.value
+            let made = pane.result().ok()?;
+            made.outcome.metrics.iter().find(|metric| metric.id == id)?.value
         };
-        let first = panes.iter().find_map(|pane| pane.outcome.as_ref());
-        let metrics = first.map_or(&[][..], |outcome| outcome.metrics.as_slice());
+        let first = panes.iter().find_map(|pane| pane.result().ok());
+        let metrics = first.map_or(&[][..], |made| made.outcome.metrics.as_slice());
         let row = |metric: &Metric| NumberRow {
             label: metric.label,
             unit: metric.unit,
@@ -51,7 +51,7 @@ impl NumberTable {
             values: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
         };
         let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
-        let walk = |pane: &Pane| pane.outcome.as_ref().and_then(|outcome| outcome.walk.clone());
+        let walk = |pane: &Pane| pane.result().ok()?.outcome.walk.clone();
         if panes.iter().any(|pane| walk(pane).is_some()) {
             let built = panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();
             rows.push(NumberRow {

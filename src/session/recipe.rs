@@ -85,7 +85,7 @@ pub struct Source {
 }
 
 impl Source {
-    fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
+    pub(super) fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
         Self {
             slot,
             motion: Arc::clone(motion),

@@ -1,6 +1,6 @@
 //! What is shown, written down for others: a homework, a bug, a note.
 
-use super::document::Session;
+use super::document::{NoResult, Session};
 use super::library::{Entry, Origin};
 use super::numbers::{NumberTable, cell};
 use super::params::{Key, Kind, Value, format_number};
@@ -18,9 +18,14 @@ pub struct ReportFacts<'a> {
     pub backend: &'a str,
 }
 
-/// The state as Markdown: a heading, the picture, the link, the clips, what was set, the numbers of all panes, and the versions.
-#[must_use]
-pub fn report(session: &Session, facts: &ReportFacts<'_>) -> String {
+/// The state as Markdown: a heading, the picture, the link, the clips, what was set, the numbers of all panes, and the versions. Of panes whose
+/// result cannot be made it says why.
+///
+/// # Errors
+/// [`NoResult`] where no pane has a result, and while one of them is computed.
+pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoResult> {
+    // Nothing is under way then, and every pane is of the parameters as they are.
+    session.first_result()?;
     let params = session.params();
     let lab = Key::Lab.param().spoken(params.get(Key::Lab));
     let mut out = String::new();
@@ -67,8 +72,14 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> String {
     } else {
         format!(" · {}", facts.backend)
     };
+    for pane in session.panes() {
+        if let Err(reason) = pane.result() {
+            let name = session.variant_name(pane).unwrap_or_default();
+            say(format!("No result for {}: {}\n", cell(&name), cell(&reason.to_string())));
+        }
+    }
     say(format!("Segue {}{backend}", env!("CARGO_PKG_VERSION")));
-    out
+    Ok(out)
 }
 
 /// A clip by its name, and what tells it from another one of that name: the check sum of its file, or the recipe.
@@ -106,7 +117,8 @@ mod tests {
                 picture: Some("data:image/jpeg;base64,AAAA"),
                 backend: "webgpu",
             },
-        );
+        )
+        .unwrap();
         for part in [
             "## Segue: Blend",
             "](data:image/jpeg;base64,AAAA)",
@@ -127,7 +139,7 @@ mod tests {
     #[test]
     fn two_clips_side_by_side_have_the_same_table() {
         let session = open("lab=view&compare=a:walk,run(turn_rate:20)");
-        let report = report(&session, &ReportFacts::default());
+        let report = report(&session, &ReportFacts::default()).unwrap();
         let head = report.lines().find(|line| line.starts_with("| | ")).unwrap();
         assert!(head.starts_with("| | Walk | "), "{head}");
         let slide = report.lines().find(|line| line.starts_with("| Foot slide, cm |")).unwrap();

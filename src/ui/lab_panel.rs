@@ -19,7 +19,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::{made_number, toggle_compare};
 use eframe::egui::{self, Ui};
 use segue::math::spring;
-use segue::session::{Command, Group, Key, PARAMS, Session, Slot, Value, split_reference};
+use segue::session::{Command, Group, Key, NoResult, PARAMS, Session, Slot, Value, split_reference};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -50,7 +50,7 @@ fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     let is_held = session.params().is_on(Key::FootLock);
     if is_held {
-        keep_ui(0, out, ui);
+        keep_ui(0, session, out, ui);
     }
     if let Some(entry) = session.slot(Slot::A) {
         let saved = if is_held { "result:0" } else { entry.id.as_str() };
@@ -140,14 +140,27 @@ pub(super) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
             state.saved_pane = pane;
         }
     }
-    keep_ui(state.saved_pane, out, ui);
+    keep_ui(state.saved_pane, session, out, ui);
     ui.add_space(space::S);
-    save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
+    let has_result = panes.get(state.saved_pane).is_some_and(|pane| pane.result().is_ok());
+    ui.add_enabled_ui(has_result, |ui| {
+        save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
+    });
 }
 
-pub(super) fn keep_ui(pane: usize, out: &mut Out, ui: &mut Ui) {
-    if kit::button_ui(Button::new(text::KEEP).icon(Icon::Plus).outlined(), ui).clicked() {
+/// Keeps the result of a pane. Where there is none, it says why.
+pub(super) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let missing = session.panes().get(pane).and_then(|pane| pane.result().err());
+    let button = Button::new(text::KEEP).icon(Icon::Plus).outlined();
+    let kept = ui.add_enabled_ui(missing.is_none(), |ui| kit::button_ui(button, ui).clicked());
+    if kept.inner {
         out.commands.push(Command::Keep(pane));
+    }
+    match missing {
+        // The sentence stands on the stage.
+        Some(NoResult::Refused(_)) => kit::note_ui(text::NOTHING_TO_KEEP, palette_of(ui).muted, ui),
+        Some(NoResult::Awaited) => kit::note_ui(text::STILL_COMPUTED, palette_of(ui).muted, ui),
+        None => {}
     }
 }
 

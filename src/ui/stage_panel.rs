@@ -13,7 +13,7 @@ use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point, shown_size};
-use segue::session::{CycleMade, Key, Kind, Outcome, Pane, Session, Value, Walk, write_path};
+use segue::session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -73,6 +73,8 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
+    } else if let Some(note) = session.character_note().filter(|_| roomy) {
+        kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
     } else if let Some(hint) = hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone) {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
@@ -122,12 +124,10 @@ struct Verdicts {
     worst: Option<usize>,
 }
 
-fn value_of(outcome: Option<&Outcome>, id: &str) -> Option<f64> {
-    outcome?
-        .metrics
-        .iter()
-        .find(|metric| metric.id == id)
-        .and_then(|metric| metric.value)
+/// A number of a pane's result. One of an earlier result is compared with nothing.
+fn metric_of<'a>(pane: &'a Pane, id: &str) -> Option<&'a segue::metrics::Metric> {
+    let made = pane.result().ok()?;
+    made.outcome.metrics.iter().find(|metric| metric.id == id)
 }
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
@@ -159,11 +159,9 @@ fn ranking(panes: &[Pane], id: &str) -> Verdicts {
     let values: Vec<(usize, f64)> = panes
         .iter()
         .enumerate()
-        .filter_map(|(index, pane)| Some((index, value_of(pane.outcome.as_deref(), id)?)))
+        .filter_map(|(index, pane)| Some((index, metric_of(pane, id)?.value?)))
         .collect();
-    let metric = panes
-        .iter()
-        .find_map(|pane| pane.outcome.as_deref()?.metrics.iter().find(|metric| metric.id == id));
+    let metric = panes.iter().find_map(|pane| metric_of(pane, id));
     // What only describes has no best.
     let Some(metric) = metric.filter(|metric| metric.better == Better::Lower) else {
         return Verdicts::default();
@@ -184,7 +182,13 @@ fn ranking(panes: &[Pane], id: &str) -> Verdicts {
 fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, rect: Rect, ui: &mut Ui) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let words = pane_words(pane, session);
-    let (chip, mood) = if verdicts.best == Some(index) {
+    if pane.is_outdated() {
+        // What is seen is not what is asked for.
+        ui.painter().rect_filled(rect, 0.0, palette.stage.sky.gamma_multiply(0.55));
+    }
+    let (chip, mood) = if pane.is_outdated() {
+        (text::OUTDATED, Mood::Warning)
+    } else if verdicts.best == Some(index) {
         (text::SMOOTHEST, Mood::Good)
     } else if verdicts.worst == Some(index) {
         (text::ROUGHEST, Mood::Bad)
@@ -204,21 +208,7 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     };
     kit::pane_header_ui(&title, rect, ui);
     if let Some(problem) = &pane.problem {
-        let builder = UiBuilder::new().max_rect(Rect::from_center_size(
-            rect.center(),
-            vec2((rect.width() - 2.0 * space::L).min(360.0), 80.0),
-        ));
-        ui.scope_builder(builder, |ui| {
-            // On a plate: the last good result goes on behind it.
-            let plate = Frame::new()
-                .fill(palette.panel_raised)
-                .corner_radius(radius::L)
-                .inner_margin(space::M);
-            plate.show(ui, |ui| {
-                let words = egui::RichText::new(tr(problem, ui)).font(theme.font(Type::Body));
-                ui.vertical_centered(|ui| ui.label(words.color(palette.warning)));
-            });
-        });
+        return problem_ui(problem, rect, ui);
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.to_owned(), text::under_way);
@@ -267,6 +257,31 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
+/// Why a pane has no result, on a plate where its numbers would be: the clips above it are to be seen. Returns where it begins.
+fn problem_ui(problem: &str, rect: Rect, ui: &mut Ui) -> f32 {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
+    let place = Rect::from_min_max(
+        pos2(rect.center().x - 0.5 * width, rect.top()),
+        pos2(rect.center().x + 0.5 * width, rect.bottom() - space::L),
+    );
+    let builder = UiBuilder::new()
+        .id_salt(("problem", rect.min.x.to_bits()))
+        .max_rect(place)
+        .layout(egui::Layout::bottom_up(egui::Align::Center));
+    let plate = Frame::new()
+        .fill(palette.panel_raised)
+        .corner_radius(radius::L)
+        .inner_margin(space::M);
+    let shown = ui.scope_builder(builder, |ui| {
+        plate.show(ui, |ui| {
+            let words = egui::RichText::new(tr(problem, ui)).font(theme.font(Type::Body));
+            ui.add(egui::Label::new(words.color(palette.warning)).wrap());
+        })
+    });
+    shown.inner.response.rect.top()
+}
+
 /// Whether a gait was asked for a speed that neither clip nor anything between them has.
 fn is_beyond(pane: &Pane) -> bool {
     let cycle = pane.outcome.as_ref().and_then(|outcome| outcome.cycle);
@@ -300,7 +315,9 @@ struct Words {
 /// What a pane says of itself: the value in which it differs, or what it shows.
 fn pane_words(pane: &Pane, session: &Session) -> Words {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
-    if let Some((key, value)) = &pane.variant {
+    // What is on the stage, if it is of earlier parameters; else what is asked for.
+    let params = pane.made_from().unwrap_or(session.params());
+    if let Some((key, value)) = pane.compared() {
         let param = key.param();
         if matches!(param.kind, Kind::Clip) {
             return Words {
@@ -324,19 +341,19 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
     let name = |key| {
         session
             .library()
-            .find(session.params().text(key))
+            .find(params.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     };
-    match session.params().text(Key::Lab) {
+    match params.text(Key::Lab) {
         "blend" => Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
-            secondary: format!("{} frames", session.params().number(Key::BlendWindow)),
+            secondary: format!("{} frames", params.number(Key::BlendWindow)),
         },
         "transition" => Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
-            secondary: Key::Method.param().spoken(session.params().get(Key::Method)),
+            secondary: Key::Method.param().spoken(params.get(Key::Method)),
         },
         "speed" => Words {
             strong: name(Key::A),
@@ -349,7 +366,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         "loop" => Words {
             strong: name(Key::A),
             text: String::new(),
-            secondary: Key::LoopMethod.param().spoken(session.params().get(Key::LoopMethod)),
+            secondary: Key::LoopMethod.param().spoken(params.get(Key::LoopMethod)),
         },
         "path" => Words {
             strong: name(Key::A),
@@ -359,11 +376,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         "layers" => Words {
             strong: name(Key::A),
             text: format!("+ {}", name(Key::B)),
-            secondary: Key::Mask.param().spoken(session.params().get(Key::Mask)),
+            secondary: Key::Mask.param().spoken(params.get(Key::Mask)),
         },
         "register" => Words {
             strong: name(Key::A),
-            text: if session.params().text(Key::WarpMode) == "join" {
+            text: if params.text(Key::WarpMode) == "join" {
                 format!("→ {}", name(Key::B))
             } else {
                 let also = session.also_blended();
@@ -372,7 +389,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 let others: Vec<String> = std::iter::once(name(Key::B)).chain(others).collect();
                 format!("+ {}", others.join(" + "))
             },
-            secondary: Key::WarpWith.param().spoken(session.params().get(Key::WarpWith)),
+            secondary: Key::WarpWith.param().spoken(params.get(Key::WarpWith)),
         },
         "graph" => {
             let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
@@ -382,20 +399,20 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             Words {
                 strong: at.map(|(walk, at)| name((walk, at.place.clip))).unwrap_or_default(),
                 text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
-                secondary: format!("seed {}", session.params().number(Key::Seed)),
+                secondary: format!("seed {}", params.number(Key::Seed)),
             }
         }
         "match" => Words {
             strong: if session.is_driven() {
                 text::LIVE.to_owned()
             } else {
-                Key::Scenario.param().spoken(session.params().get(Key::Scenario))
+                Key::Scenario.param().spoken(params.get(Key::Scenario))
             },
             text: String::new(),
-            secondary: Key::Hysteresis.param().spoken(session.params().get(Key::Hysteresis)),
+            secondary: Key::Hysteresis.param().spoken(params.get(Key::Hysteresis)),
         },
         "make" => Words {
-            strong: session.params().text(Key::Gait).to_owned(),
+            strong: params.text(Key::Gait).to_owned(),
             text: String::new(),
             secondary: String::new(),
         },

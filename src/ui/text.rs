@@ -139,6 +139,11 @@ pub(crate) const ROUGHEST: &str = "roughest";
 pub(crate) const WELCOME_HINT: &str =
     "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
+/// On a pane that still shows an earlier result.
+pub(crate) const OUTDATED: &str = "computing the new one";
+/// Below a button that keeps and rows that save.
+pub(crate) const NOTHING_TO_KEEP: &str = "There is no result to keep or save.";
+pub(crate) const STILL_COMPUTED: &str = "The result is still being computed.";
 
 /// What is being worked on, and how much of it is done.
 pub(crate) fn under_way(job: &Job) -> String {

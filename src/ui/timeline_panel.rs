@@ -94,10 +94,11 @@ pub(crate) fn timeline_panel_ui(
             },
         })
         .collect();
+    let made_from = session.panes().first().and_then(Pane::made_from).unwrap_or(params);
     let names = [Key::A, Key::B].map(|key| {
         session
             .library()
-            .find(params.text(key))
+            .find(made_from.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     });
     let names = match &outcome.walk {
@@ -108,13 +109,13 @@ pub(crate) fn timeline_panel_ui(
         }),
         None => names,
     };
-    let made = params.text(Key::Lab) == "make";
+    let made = made_from.text(Key::Lab) == "make";
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered.is_some() {
         // The feet of both say more than their bars.
         Vec::new()
     } else if made {
-        vec![whole_track(Part::Result, params.text(Key::Gait), outcome)]
+        vec![whole_track(Part::Result, made_from.text(Key::Gait), outcome)]
     } else if outcome.cycle.is_some() {
         vec![whole_track(Part::Result, &round, outcome)]
     } else {

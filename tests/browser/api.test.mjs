@@ -95,3 +95,17 @@ onBothBackends("what is exported can be loaded", async ({ open }) => {
   assert.deepEqual([exported.clips[0].frames, exported.clips[0].joints], [clip.frames, joints]);
   for (const t of [0, 0.7, 2.4]) assert.ok(apart(await segue("pose", clip.id, t), await segue("pose", exported.clips[0].id, t)) < 1e-4, `at ${t} s`);
 });
+
+// Fails when an earlier result is handed on under the names of clips that it was not made from.
+onBothBackends("what cannot be made is refused with its sentence, by every call", async ({ open }) => {
+  const { segue } = await open("lab=path&a=walk&play=off", SMALL);
+  await until(async () => Object.keys(await segue("metrics")).length > 0);
+  const clips = (await segue("clips")).length;
+  await segue("set", { a: "idle" });
+  for (const call of [["pose", "result", 0], ["metrics"], ["export", "result", "bvh"], ["report"], ["keep", "result"]]) {
+    await assert.rejects(segue(...call), /stays within/, call[0]);
+  }
+  assert.equal((await segue("clips")).length, clips);
+  await segue("set", { a: "walk" });
+  assert.ok((await segue("pose", "result", 0)).joints.length > 10);
+});

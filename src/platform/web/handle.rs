@@ -190,9 +190,9 @@ impl SegueHandle {
         to_js(&self.borrow()?.pose(which, seconds).map_err(error)?)
     }
 
-    /// The artefacts of what is shown, by name.
+    /// The artefacts of the results, by name.
     pub fn metrics(&self) -> Result<JsValue, JsValue> {
-        to_js(&self.borrow()?.metrics())
+        to_js(&self.borrow()?.metrics().map_err(error)?)
     }
 
     /// Stops reading or fetching a file.
@@ -227,7 +227,9 @@ impl SegueHandle {
     pub async fn report(&self) -> Result<String, JsValue> {
         let canvas = self.canvas.borrow().clone();
         let picture = inline_picture(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await?;
-        Ok(self.borrow()?.report(Some(&picture)))
+        self.borrow()?
+            .report(Some(&picture))
+            .map_err(|reason| error(format!("report: {reason}")))
     }
 
     /// Begins to film the page.

@@ -102,21 +102,14 @@ impl Session {
         self.set_unchecked(Key::Others, Value::Text(write_ids(&ids)));
     }
 
-    /// What a pane shows, as an entry of the library.
+    /// The result of a pane, as an entry of the library.
     fn made_by(&self, pane: usize) -> Result<Entry, CommandError> {
-        let nothing = CommandError::NotPossible("there is no result to put on the stage");
-        let pane = self
-            .panes
-            .get(pane)
-            .filter(|pane| pane.problem.is_none())
-            .ok_or_else(|| nothing.clone())?;
-        let outcome = pane.outcome.as_ref().ok_or_else(|| nothing.clone())?;
-        let params = self.params_of(pane);
-        let id = recipe_id(&params, outcome, [1.0; 2]).ok_or(nothing)?;
-        let name = recipe_name(&params);
+        let made = self.pane(pane)?.recipe()?;
+        let id =
+            recipe_id(made.params, made.outcome, [1.0; 2]).ok_or(CommandError::NotPossible("there is no result to put on the stage"))?;
         Ok(Entry {
-            motion: (!outcome.awaits_feet()).then(|| Arc::clone(&outcome.motion)),
-            ..Entry::new(id, name, Origin::Made)
+            motion: (!made.outcome.awaits_feet()).then(|| Arc::clone(&made.outcome.motion)),
+            ..Entry::new(id, recipe_name(made.params), Origin::Made)
         })
     }
 

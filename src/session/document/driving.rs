@@ -1,12 +1,12 @@
 //! The character of the Match lab at the user's hand: it goes on by itself while time runs, and everything that it was told is written down.
 
 use super::Session;
-use super::panes::{Inputs, Pane};
-use crate::matching::{Control, Database, RATE, Recording};
+use super::panes::{Answer, Inputs, Pane};
+use crate::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use crate::metrics::Metric;
 use crate::session::command::CommandError;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, Outcome, filter_of, options_of, read_ids, read_tags, recording_of};
+use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, filter_of, options_of, read_ids, read_tags, recording_of};
 use crate::skeleton::Pose;
 use std::sync::Arc;
 
@@ -18,7 +18,8 @@ const MOST_TICKS: usize = 20;
 /// What the user drives: one character in each pane, all with the same input.
 #[derive(Debug, Default)]
 pub(super) struct Driving {
-    lives: Vec<Live>,
+    /// One for each pane; `None` in one whose database is not there yet.
+    lives: Vec<Option<Live>>,
     crowd: Option<Crowd>,
     /// What is asked for now.
     control: Control,
@@ -41,7 +42,13 @@ impl Session {
     /// Whether a character is driven now: it goes on with time, and has no end.
     #[must_use]
     pub fn is_driven(&self) -> bool {
-        !self.driving.lives.is_empty()
+        let is_one = |(pane, live): (&Pane, &Option<Live>)| pane.problem.is_none() && live.is_some();
+        self.panes.iter().zip(&self.driving.lives).any(is_one)
+    }
+
+    /// The first character that there is.
+    fn main_live(&self) -> Option<&Live> {
+        self.driving.lives.iter().flatten().next()
     }
 
     /// What the character is asked for now.
@@ -71,12 +78,17 @@ impl Session {
 
     /// The time in what was seen last that is shown now: one tick behind, so that it is smooth at any rate of the screen.
     pub(super) fn driven_secs(&self) -> Option<f64> {
-        let live = self.driving.lives.first()?;
+        let live = self.main_live().filter(|_| self.is_driven())?;
         Some((live.kept_secs() - TICK_SECS + self.driving.left_secs).max(0.0))
     }
 
+    /// What the character is asked for from now on. Whoever begins to push wants it to move: time runs then.
     pub(super) fn steer(&mut self, control: Control) {
-        self.driving.control = control;
+        let before = std::mem::replace(&mut self.driving.control, control);
+        if self.is_driven() && before.is_at_rest() && !control.is_at_rest() && !self.params.is_on(Key::Play) {
+            self.set_unchecked(Key::Play, Value::Switch(true));
+            self.revision += 1;
+        }
     }
 
     /// The characters stand at the origin again, and nothing is written down.
@@ -142,15 +154,16 @@ impl Session {
         for _ in 0..ticks {
             // A recording that is full holds the first half hour.
             recording.push(control);
-            for live in lives.iter_mut() {
+            for live in lives.iter_mut().flatten() {
                 live.tick(&control);
             }
-            if let (Some(crowd), Some(live)) = (crowd.as_mut(), lives.first()) {
+            if let (Some(crowd), Some(live)) = (crowd.as_mut(), lives.iter().flatten().next()) {
                 crowd.tick(&live.root());
             }
         }
         if ticks > 0 {
             for (pane, live) in self.panes.iter_mut().zip(lives) {
+                let Some(live) = live else { continue };
                 let timed = Metric::fact(
                     "match_tick_ms",
                     "time per tick",
@@ -158,13 +171,11 @@ impl Session {
                     "ms",
                     "How long a sixtieth of a second of all characters takes to compute, searches included.",
                 );
-                show(
-                    pane,
-                    live.outcome().map(|mut outcome| {
-                        outcome.metrics.push(timed);
-                        outcome
-                    }),
-                );
+                // One that cannot be told of stays as it was: its next moment can.
+                if let Ok(mut outcome) = live.outcome() {
+                    outcome.metrics.push(timed);
+                    pane.go_on(outcome);
+                }
             }
         }
     }
@@ -175,49 +186,48 @@ impl Session {
             self.restart_driving();
             return;
         }
-        self.driving.lives.truncate(self.panes.len());
-        let mut panes = std::mem::take(&mut self.panes);
+        let wanted: Vec<Params> = self.panes.iter().map(|pane| self.params_of(pane)).collect();
+        let wanted: Vec<(Arc<Params>, Result<Option<Arc<Database>>, String>)> = wanted
+            .into_iter()
+            .map(|params| {
+                let database = self.match_database(&params);
+                (Arc::new(params), database)
+            })
+            .collect();
+        let Driving { lives, recording, .. } = &mut self.driving;
+        lives.resize_with(wanted.len(), || None);
+        let is_begun = |(live, (_, database)): (&Option<Live>, &(_, Result<Option<Arc<Database>>, String>))| match database {
+            Ok(Some(database)) => live.as_ref().is_some_and(|live| live.plays(database)),
+            _ => true,
+        };
+        // Panes are driven by the same input from the same start: where one begins, all do.
+        if !lives.iter().zip(&wanted).all(is_begun) {
+            lives.fill_with(|| None);
+            *recording = Recording::new();
+        }
         let mut main = None;
-        for (index, pane) in panes.iter_mut().enumerate() {
-            let params = self.params_of(pane);
-            match self.match_database(&params) {
+        for (index, (params, database)) in wanted.into_iter().enumerate() {
+            let (Some(pane), Some(live)) = (self.panes.get_mut(index), self.driving.lives.get_mut(index)) else {
+                continue;
+            };
+            let answer = match database {
                 // The old one is played until the new one is there.
-                Ok(None) => pane.problem = None,
+                Ok(None) => Answer::Awaited,
                 Ok(Some(database)) => {
                     let options = options_of(&params);
-                    let known = self.driving.lives.get_mut(index).filter(|live| live.plays(&database));
-                    let live = match known {
-                        Some(live) => live.change(&database, options).map(|changed| (changed, live)),
-                        None => Live::new(&database, options).map(|live| {
-                            // Others begin together with the first.
-                            self.driving.lives.truncate(index);
-                            self.driving.recording = Recording::new();
-                            self.driving.lives.push(live);
-                            (true, &mut self.driving.lives[index])
-                        }),
-                    };
-                    match live {
-                        Ok((changed, live)) => {
-                            pane.problem = None;
-                            if changed || !is_shown(pane, &database) {
-                                show(pane, live.outcome());
-                            }
-                        }
-                        Err(problem) => pane.problem = Some(problem),
-                    }
-                    main = main.or(Some((database, options)));
+                    main = main.or(Some((Arc::clone(&database), options)));
+                    driven(live, pane, &database, options).unwrap_or_else(Answer::Refused)
                 }
-                Err(problem) => pane.problem = Some(problem),
-            }
-            pane.inputs = None::<Inputs>;
+                Err(problem) => Answer::Refused(problem),
+            };
+            pane.take(answer, &params);
         }
-        self.panes = panes;
         let count = self.params.number(Key::Crowd) as usize - 1;
         self.driving.crowd = match (self.driving.crowd.take(), main) {
             (_, Some(_)) if count == 0 => None,
             (Some(mut crowd), Some((database, options))) if crowd.is_of(&database, count) => crowd.change(options).is_ok().then_some(crowd),
             (_, Some((database, options))) => {
-                let about = self.driving.lives.first().map(Live::root).unwrap_or_default();
+                let about = self.main_live().map(Live::root).unwrap_or_default();
                 Crowd::new(&database, options, &about, count).ok()
             }
             (crowd, None) => crowd,
@@ -278,12 +288,18 @@ fn is_shown(pane: &Pane, database: &Arc<Database>) -> bool {
     driven.is_some_and(|driven| driven.is_live && Arc::ptr_eq(&driven.database, database))
 }
 
-fn show(pane: &mut Pane, outcome: Result<Outcome, String>) {
-    match outcome {
-        Ok(outcome) => {
-            pane.outcome = Some(Arc::new(outcome));
-            pane.problem = None;
-        }
-        Err(problem) => pane.problem = Some(problem),
+/// What a pane shows of its character, which is told what has changed, and begins where there is none.
+fn driven(live: &mut Option<Live>, pane: &Pane, database: &Arc<Database>, options: ControllerOptions) -> Result<Answer, String> {
+    let (changed, live) = match live {
+        Some(live) => (live.change(database, options)?, live),
+        None => (true, live.insert(Live::new(database, options)?)),
+    };
+    if !changed && is_shown(pane, database) {
+        return Ok(Answer::Same { is_draft: false });
     }
+    Ok(Answer::Made {
+        outcome: Arc::new(live.outcome()?),
+        is_draft: false,
+        inputs: None,
+    })
 }

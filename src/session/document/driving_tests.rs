@@ -114,6 +114,58 @@ fn time_of_any_rate_makes_whole_ticks_and_a_pause_stands() {
 }
 
 #[test]
+fn whoever_pushes_the_stick_lets_time_run() {
+    let mut session = open(&format!("{SMALL}&play=off"));
+    assert!(session.is_driven() && !session.tick(0.5));
+    ask(&mut session, 0.0, 1.4);
+    assert!(session.params().is_on(Key::Play) && session.tick(0.5));
+    let ticks = session.recording().ticks();
+    assert!(ticks > 10);
+    // Paused with the stick held, it stays so until it is pushed anew.
+    session.apply(Command::TogglePlay).unwrap();
+    ask(&mut session, 0.5, 1.4);
+    assert!(!session.params().is_on(Key::Play) && session.recording().ticks() == ticks);
+    ask(&mut session, 0.0, 0.0);
+    assert!(!session.params().is_on(Key::Play));
+    ask(&mut session, 0.0, 1.4);
+    assert!(session.params().is_on(Key::Play));
+    // From the Graph lab, which has nothing to show at first, it plays on.
+    let mut session = Session::new();
+    for lab in ["lab=graph", "lab=match"] {
+        session.apply(Command::OpenLink(lab.into())).unwrap();
+        session.tick(0.1);
+        assert!(session.params().is_on(Key::Play), "{lab}");
+    }
+}
+
+#[test]
+fn a_character_comes_to_a_pane_whose_neighbour_waits() {
+    // The second database is known, the first is not.
+    let mut session = open(&format!("{SMALL}&ahead_far=1.2"));
+    session.apply(Command::OpenLink("lab=view".into())).unwrap();
+    session
+        .apply(Command::OpenLink(format!("{SMALL}&compare=ahead_far:1.1,1.2")))
+        .unwrap();
+    assert!(session.panes()[0].result().is_err() && session.panes()[1].result().is_ok());
+    while session.work() {}
+    assert!(session.panes().iter().all(|pane| pane.result().is_ok()));
+    ask(&mut session, 0.0, 1.4);
+    session.tick(0.2);
+    let moments = |pane: usize| {
+        session.panes()[pane]
+            .outcome
+            .as_ref()
+            .unwrap()
+            .driven
+            .as_ref()
+            .unwrap()
+            .moments
+            .len()
+    };
+    assert_eq!(moments(0), moments(1), "both begin together");
+}
+
+#[test]
 fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
     let mut session = open(&format!("{SMALL}&compare=hysteresis:none,bias,votes"));
     ask(&mut session, 0.7, 1.2);

@@ -312,10 +312,10 @@ fn ends_are_found_or_set_by_hand() {
         (from - 0.2).abs() < 0.01 && (to - 0.5).abs() < 0.01,
         "the other way round: {from} {to}"
     );
-    // What cannot be is said, and the last good loop stays.
+    // What cannot be is said, and no earlier loop stands for it.
     set(&mut session, Key::LoopTo, 0.5);
     assert!(session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("cycle")));
-    assert!(session.main_outcome().is_some());
+    assert!(session.main_outcome().is_none());
     session.apply(Command::Reset(Key::LoopFrom)).unwrap();
     session.apply(Command::Reset(Key::LoopTo)).unwrap();
     assert_eq!(now(&session), (from_secs, to_secs));

@@ -280,6 +280,11 @@ impl Session {
                     t_poses += usize::from(entries.iter().any(has_t_pose));
                     loaded.warnings.extend(warnings);
                     let first = entries.iter().find(|entry| entry.mesh.is_some());
+                    if first.and_then(Entry::character).is_some_and(|character| !character.has_limbs()) {
+                        loaded
+                            .warnings
+                            .push("its figure has no limbs that are known: only its own clips move it".to_owned());
+                    }
                     if let Some(first) = first.filter(|entry| self.takes_character(entry, came)) {
                         self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
                     }
@@ -373,7 +378,13 @@ impl Session {
 
     /// Whether a file with a skin becomes the character. One that the link fetches does not when it was here before, or the link names another.
     fn takes_character(&self, entry: &Entry, came: Came) -> bool {
-        came == Came::ByHand || (self.library.get(&entry.id).is_none() && self.params.text(Key::Character).is_empty())
+        let is_free = self.params.text(Key::Character).is_empty();
+        // One that only its own clips move is no character for all the others.
+        let replaces = entry.character().is_some_and(|character| character.has_limbs());
+        match came {
+            Came::ByHand => is_free || replaces,
+            Came::ByLink => is_free && self.library.get(&entry.id).is_none(),
+        }
     }
 
     /// Gives the clips that are in the library what was read anew. One that is to be read otherwise by now waits for that.
@@ -489,10 +500,21 @@ impl Session {
                 ..file.clone()
             };
             match self.read_anew(&file, awaits.then_some(came)) {
-                Ok(true) if awaits => self.offer_moving(&entry.id, came),
+                Ok(true) if awaits => {
+                    self.offer_moving(&entry.id, came);
+                    self.tell_misfit(&entry.id);
+                }
                 Ok(_) => {}
                 Err(error) => self.say(Level::Error, error.to_string()),
             }
+        }
+    }
+
+    /// Says why a motion still waits though a skeleton has come.
+    fn tell_misfit(&mut self, id: &str) {
+        if let Some(entry) = self.library.get(id).filter(|entry| entry.awaits_skeleton()) {
+            let told: Vec<String> = entry.warnings.iter().map(|warning| sentence(warning)).collect();
+            self.notices.miss(id, told.join(" "));
         }
     }
 

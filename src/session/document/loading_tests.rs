@@ -1,5 +1,6 @@
 //! Files that lean on others: motions and their skeletons, archives.
 
+use super::tests::settle;
 use super::*;
 use crate::session::reading::Content;
 use std::io::Write as _;
@@ -444,12 +445,39 @@ fn zip(files: &[(&str, &str)]) -> Vec<u8> {
 
 /// A person in a file of another program: a mesh with a skin, and `frames` frames of a walk.
 fn person(frames: usize) -> Arc<[u8]> {
-    use crate::formats::gltf::{GlbOptions, write_glb};
     let walk = crate::synth::synthesize(&crate::synth::Params::new(crate::synth::Action::Walk))
         .unwrap()
         .clip;
+    figure(&walk.crop(0..frames).unwrap())
+}
+
+/// A creature of eight legs, none of which a person has.
+fn spider() -> Arc<[u8]> {
+    let leg = |number: u32| {
+        let angle = f64::from(number) * std::f64::consts::FRAC_PI_4 + 0.4;
+        let (x, z) = (20.0 * angle.sin(), 20.0 * angle.cos());
+        format!(
+            "  JOINT segment_{number}_a\n  {{\n    OFFSET {x:.3} 4 {z:.3}\n    CHANNELS 3 Zrotation Xrotation Yrotation\n    JOINT segment_{number}_b\n    {{\n      OFFSET {x:.3} 10 {z:.3}\n      CHANNELS 3 Zrotation Xrotation Yrotation\n      End Site\n      {{\n        OFFSET {x:.3} -40 {z:.3}\n      }}\n    }}\n  }}\n"
+        )
+    };
+    let legs: String = (0..8).map(leg).collect();
+    let row = |frame: u32| {
+        let turns: Vec<String> = (0..48).map(|channel| (5 * ((channel + frame) % 3)).to_string()).collect();
+        format!("0 30 {frame} 0 0 0 {}\n", turns.join(" "))
+    };
+    let rows: String = (0..40).map(row).collect();
+    let text = format!(
+        "HIERARCHY\nROOT trunk\n{{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n{legs}}}\nMOTION\nFrames: 40\nFrame Time: 0.033333\n{rows}"
+    );
+    let read = crate::formats::import("spider.bvh", text.as_bytes(), &crate::formats::ImportOptions::default());
+    figure(&read.unwrap().clips[0].clip)
+}
+
+/// A clip in a file of another program, with a mesh around its bones.
+fn figure(clip: &crate::clip::Clip) -> Arc<[u8]> {
+    use crate::formats::gltf::{GlbOptions, write_glb};
     let mut bytes = write_glb(
-        &walk.crop(0..frames).unwrap(),
+        clip,
         &GlbOptions {
             smooth: true,
             ..GlbOptions::default()
@@ -497,6 +525,92 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
     assert!(session.character().is_some());
     session.apply(Command::Remove(loaded.ids[0].clone())).unwrap();
     assert!(session.character().is_none() && session.params().text(Key::Character).is_empty());
+}
+
+#[test]
+fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
+    // Alone, it is there for its own clips. What cannot move it has its own body, and that is said.
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=blend".into())).unwrap();
+    let loaded = session.load("spider.glb", spider()).unwrap();
+    assert!(
+        loaded.warnings.iter().any(|warning| warning.contains("only its own clips move it")),
+        "{:?}",
+        loaded.warnings
+    );
+    let spider_id = loaded.ids[0].clone();
+    let character = session.character().unwrap();
+    let show = |session: &mut Session, a: &str| {
+        let link = format!("lab=view&a={a}&character={spider_id}");
+        session.apply(Command::OpenLink(link)).unwrap();
+        settle(session);
+        let motion = Arc::clone(&session.main_outcome().unwrap().motion);
+        let drive = crate::skin::Drive::new(&motion.clip, &motion.roles, &character);
+        (drive.is_some(), session.character_note())
+    };
+    assert_eq!(show(&mut session, &spider_id), (true, None));
+    let (is_moved, note) = show(&mut session, "walk");
+    assert!(!is_moved && note.is_some_and(|note| note.contains("cannot be moved by this clip")));
+
+    // A person that was there stays.
+    let mut session = Session::new();
+    let person_id = session.load("person.glb", person(0)).unwrap().ids.remove(0);
+    session.load("spider.glb", spider()).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+    // And takes the place of a spider.
+    let mut session = Session::new();
+    session.load("spider.glb", spider()).unwrap();
+    session.load("person.glb", person(0)).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+}
+
+#[test]
+fn a_motion_file_without_a_motion_waits_for_nothing() {
+    for text in ["", ":FULLY-SPECIFIED\n:DEGREES\n", "<html>not found</html>", ":DEGREES\n1\n"] {
+        let mut session = Session::new();
+        let before = session.library().entries().len();
+        let error = session.load("01_02.amc", bytes(text)).unwrap_err();
+        assert!(error.to_string().starts_with("01_02.amc:"), "{error}");
+        assert_eq!(session.library().entries().len(), before, "{text}");
+        assert!(
+            session.notices().list().iter().all(|notice| !notice.text.contains("waits")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_skeleton_that_does_not_fit_is_named() {
+    let other = ASF.replace("thigh", "leg").replace("spine", "trunk");
+    let said = |session: &Session| {
+        session
+            .notices()
+            .list()
+            .iter()
+            .map(|notice| notice.text.clone())
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    for files in [
+        [("01_02.amc", AMC), ("01.asf", other.as_str())],
+        [("01.asf", other.as_str()), ("01_02.amc", AMC)],
+    ] {
+        let mut session = Session::new();
+        for (name, text) in files {
+            session.load(name, bytes(text)).unwrap();
+        }
+        let said = said(&session);
+        assert!(said.contains("The skeleton of 01.asf does not fit: 1 of 3 bones"), "{said}");
+        // The one that fits is taken when it comes.
+        session.load("02.asf", bytes(ASF)).unwrap();
+        let motions = files_with_motion(&session);
+        assert_eq!(motions, ["01_02"], "{said}");
+    }
+}
+
+fn files_with_motion(session: &Session) -> Vec<String> {
+    let with_motion = files(session).into_iter().filter(|(.., frames)| *frames > 0);
+    with_motion.map(|(name, ..)| name).collect()
 }
 
 #[test]

@@ -14,7 +14,7 @@ pub use company::Companion;
 pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
-pub use panes::{Pane, Shown};
+pub use panes::{Made, NoResult, Pane, Shown};
 use slots::forget_places;
 pub use teaching::{Lesson, LessonPage};
 
@@ -203,6 +203,27 @@ impl Session {
         &self.panes
     }
 
+    /// The first result that there is, for what tells of all panes at once.
+    ///
+    /// # Errors
+    /// [`NoResult`] where no pane has one, and while one of them is computed.
+    pub fn first_result(&self) -> Result<Made<'_>, NoResult> {
+        let (mut found, mut refused) = (None, None);
+        for result in self.panes.iter().map(Pane::result) {
+            match result {
+                Ok(made) => found = found.or(Some(made)),
+                Err(NoResult::Awaited) => return Err(NoResult::Awaited),
+                Err(problem) => refused = refused.or(Some(problem)),
+            }
+        }
+        found.ok_or(refused.unwrap_or(NoResult::Awaited))
+    }
+
+    /// A pane by its number, counted from 0.
+    pub(super) fn pane(&self, index: usize) -> Result<&Pane, CommandError> {
+        self.panes.get(index).ok_or(CommandError::NotPossible("there is no such pane"))
+    }
+
     /// The bundled takes.
     #[must_use]
     pub fn samples() -> &'static [Sample] {
@@ -256,19 +277,20 @@ impl Session {
         Compare::parse(self.params.text(Key::Compare)).ok()
     }
 
-    /// The pane that stands for all where only one can: the first.
+    /// What is on the stage in the pane that stands for all where only one can: the first. As [`Pane::outcome`], it may be of earlier parameters.
     #[must_use]
     pub fn main_outcome(&self) -> Option<&Arc<Outcome>> {
         self.panes.first().and_then(|pane| pane.outcome.as_ref())
     }
 
-    /// The duration of the longest result, or of who plays along with it, seconds.
+    /// The duration of the longest result, of the clips that stand in for one that cannot be made, or of who plays along, seconds.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
-        self.panes
-            .iter()
-            .filter_map(|pane| pane.outcome.as_ref())
+        let results = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
+        let sources = self.panes.iter().flat_map(|pane| &pane.sources);
+        results
             .map(|outcome| outcome.duration_secs())
+            .chain(sources.map(|source| source.motion.clip.duration_secs()))
             .chain(self.company.iter().filter_map(Companion::duration_secs))
             .fold(0.0, f64::max)
     }
@@ -292,6 +314,23 @@ impl Session {
         self.library.find(self.params.text(Key::Character))?.character()
     }
 
+    /// Why the chosen character is not to be seen, in a sentence: what is on the stage cannot move it. `None` where it can, or none is chosen.
+    #[must_use]
+    pub fn character_note(&self) -> Option<String> {
+        let entry = self.library.find(self.params.text(Key::Character))?;
+        let character = entry.character()?;
+        let shown = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
+        let mut motions = shown.map(|outcome| &outcome.motion);
+        let moves = |motion: &Arc<Motion>| character.is_moved_by(motion.clip.skeleton(), &motion.roles);
+        let is_left_out = motions.any(|motion| !moves(motion));
+        is_left_out.then(|| {
+            format!(
+                "{} cannot be moved by this clip: they have no limbs in common. The clip has a body of its own.",
+                entry.name
+            )
+        })
+    }
+
     /// The clip in a slot.
     #[must_use]
     pub fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
@@ -309,7 +348,7 @@ impl Session {
         let mut changed = self.notices.tick(dt_secs);
         if self.params.is_on(Key::Play) && self.drive_on(dt_secs * self.params.number(Key::Rate)) {
             changed = true;
-        } else if self.params.is_on(Key::Play) && !self.is_own_drive() {
+        } else if self.is_playing() && !self.is_own_drive() {
             let (span, before, rate) = (self.span(), self.now_secs(), self.params.number(Key::Rate));
             let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
             let rounds = span.rounds(before, dt_secs, rate);
@@ -325,6 +364,12 @@ impl Session {
         }
         let gait_secs = dt_secs * self.params.number(Key::Rate);
         self.glide(gait_secs) || changed
+    }
+
+    /// Whether time moves anything. Where nothing is there yet, playing is not over: what comes then plays.
+    #[must_use]
+    pub fn is_playing(&self) -> bool {
+        self.params.is_on(Key::Play) && (self.is_driven() || self.duration_secs() > 0.0)
     }
 
     /// Sets a value that is known to fit.
@@ -453,7 +498,7 @@ impl Session {
         }
         let pane = self.panes.first()?;
         let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered.as_ref());
-        let shown = shown.filter(|_| pane.problem.is_none()).map(|registered| &registered.map);
+        let shown = shown.map(|registered| &registered.map);
         shown.or_else(|| self.registrars.last_map())
     }
 
@@ -665,10 +710,8 @@ impl Session {
 
     /// Puts a pane's result into the library.
     fn keep(&mut self, pane: usize) -> Result<(), CommandError> {
-        let nothing = CommandError::NotPossible("there is no result to keep");
-        let pane = self.panes.get(pane).ok_or_else(|| nothing.clone())?;
-        let params = self.with_recording(self.params_of(pane));
-        let outcome = pane.outcome.clone().ok_or(nothing)?;
+        let made = self.pane(pane)?.recipe()?;
+        let (params, outcome) = (self.with_recording(made.params.clone()), Arc::clone(made.outcome));
         if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
             return Err(CommandError::NotPossible(
                 "this walk goes like the one in the first pane: open it alone to keep it",
@@ -680,11 +723,19 @@ impl Session {
             motion.map_or(1.0, |motion| motion.clip.fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
-        let id = recipe_id(&params, &outcome, fps).ok_or_else(|| known.clone())?;
+        if params.text(Key::Lab) == "view" && !params.is_on(Key::FootLock) {
+            return Err(known);
+        }
+        let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(
+            "what was found lies beyond what a link can say: use shorter clips",
+        ))?;
         if self.library.find(&id).is_some() {
             return Err(known);
         }
-        let name = recipe_name(&recipe_params(&id).unwrap_or(params));
+        let recipe = recipe_params(&id).ok_or(CommandError::NotPossible(
+            "it is made of results of results, more than a link can hold: save it as a file, and open that",
+        ))?;
+        let name = recipe_name(&recipe);
         self.remember(None);
         let said = format!("{name} is in the library now: choose it as A or B.");
         self.library.put(Entry {
@@ -757,9 +808,13 @@ mod going_round_tests;
 #[cfg(test)]
 mod graphing_tests;
 #[cfg(test)]
+mod keeping_tests;
+#[cfg(test)]
 mod loading_tests;
 #[cfg(test)]
 mod path_tests;
+#[cfg(test)]
+mod refusal_tests;
 #[cfg(test)]
 mod registering_tests;
 #[cfg(test)]

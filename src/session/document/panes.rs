@@ -9,7 +9,7 @@ use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{
-    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, SpeedInputs,
+    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source, SpeedInputs,
     ViewInputs,
 };
 use crate::session::recipe::{
@@ -18,21 +18,82 @@ use crate::session::recipe::{
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
+///
+/// What is shown and what is handed on are not the same: while a result is computed, an older one may stay on the stage. Whatever hands a
+/// result on (as a clip, a file, a number, a report) takes it from [`Pane::result`].
 #[derive(Clone, Debug, Default)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
     pub variant: Option<(Key, Value)>,
-    /// The last good result.
+    /// What is on the stage: the result, or, while that is computed, an earlier one ([`Pane::is_outdated`]). Always `None` beside a
+    /// [`problem`](Self::problem).
     pub outcome: Option<Arc<Outcome>>,
-    /// Why there is no newer one: what is missing and what to do.
+    /// Why the result cannot be made: what is missing and what to do.
     pub problem: Option<String>,
+    /// The clips that the result would have been made of, as they lie on the stage in its place. Empty where there is no problem.
+    pub sources: Vec<Source>,
+    /// What `outcome` was made from.
+    made_from: Option<Arc<Params>>,
+    standing: Standing,
     pub(super) inputs: Option<Inputs>,
-    /// The lab that the result is of.
-    lab: Option<Value>,
     /// Where a result that goes round has got to: it lies there in the world that is shown.
     pub(super) place: Planar,
     /// A gait that has not yet the speed of the result.
     pub(super) glide: Option<Glide>,
+}
+
+/// What the outcome of a pane is to what the parameters ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Standing {
+    /// It is of earlier parameters; that of the present ones is being computed.
+    #[default]
+    Earlier,
+    /// It is of the present parameters, and not finished: its place is not found yet, or its feet are not planted.
+    Draft,
+    /// It is the result.
+    Finished,
+}
+
+impl Standing {
+    fn of(is_draft: bool) -> Self {
+        if is_draft { Self::Draft } else { Self::Finished }
+    }
+}
+
+/// What becomes of a pane.
+pub(super) enum Answer {
+    /// The result, or a draft of it.
+    Made {
+        outcome: Arc<Outcome>,
+        is_draft: bool,
+        inputs: Option<Inputs>,
+    },
+    /// What it shows is the result of the present parameters, too, or a draft of it.
+    Same { is_draft: bool },
+    /// The result is being computed.
+    Awaited,
+    /// The result cannot be made, for the reason that the sentence tells.
+    Refused(String),
+}
+
+/// A result, and what it was made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Made<'a> {
+    /// The result.
+    pub outcome: &'a Arc<Outcome>,
+    /// The parameters under which it is made again.
+    pub params: &'a Params,
+}
+
+/// Why a pane has no result to hand on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoResult {
+    /// It cannot be made: what is missing and what to do.
+    #[error("{0}")]
+    Refused(String),
+    /// It is not there yet.
+    #[error("the result is still being computed")]
+    Awaited,
 }
 
 /// What a pane has on the stage at some time.
@@ -47,6 +108,90 @@ pub struct Shown<'a> {
 }
 
 impl Pane {
+    /// The result of the present parameters, to be kept, saved, measured or told of.
+    ///
+    /// # Errors
+    /// [`NoResult`] where it cannot be made, and while it is computed: what is on the stage then is of earlier parameters, or a draft.
+    pub fn result(&self) -> Result<Made<'_>, NoResult> {
+        if let Some(problem) = &self.problem {
+            return Err(NoResult::Refused(problem.clone()));
+        }
+        self.made().filter(|_| self.standing == Standing::Finished).ok_or(NoResult::Awaited)
+    }
+
+    /// As [`Pane::result`], for what makes it anew from its parameters: its feet may still have to be planted.
+    pub(super) fn recipe(&self) -> Result<Made<'_>, NoResult> {
+        let drafted = self
+            .made()
+            .filter(|made| self.standing == Standing::Draft && made.outcome.awaits_feet());
+        drafted.map_or_else(|| self.result(), Ok)
+    }
+
+    /// What is on the stage, and what it was made from.
+    fn made(&self) -> Option<Made<'_>> {
+        let (outcome, params) = (self.outcome.as_ref()?, self.made_from.as_deref()?);
+        Some(Made { outcome, params })
+    }
+
+    /// What the result on the stage was made from; `None` where there is none.
+    #[must_use]
+    pub fn made_from(&self) -> Option<&Params> {
+        self.made().map(|made| made.params)
+    }
+
+    /// The compared parameter and its value in what is on the stage; without anything there, in what is asked for.
+    #[must_use]
+    pub fn compared(&self) -> Option<(Key, &Value)> {
+        let (key, value) = self.variant.as_ref()?;
+        Some((*key, self.made_from().map_or(value, |from| from.get(*key))))
+    }
+
+    /// Whether the result on the stage is of earlier parameters: that of the present ones is being computed.
+    #[must_use]
+    pub fn is_outdated(&self) -> bool {
+        self.outcome.is_some() && self.standing == Standing::Earlier
+    }
+
+    /// Takes the answer to what `params` ask for. Every lab's comes here: where there is no result, no earlier one stands for it.
+    pub(super) fn take(&mut self, answer: Answer, params: &Arc<Params>) {
+        self.problem = None;
+        self.sources.clear();
+        match answer {
+            Answer::Made { outcome, is_draft, inputs } => {
+                self.outcome = Some(outcome);
+                self.inputs = inputs;
+                self.made_from = Some(Arc::clone(params));
+                self.standing = Standing::of(is_draft);
+            }
+            Answer::Same { is_draft } => {
+                self.made_from = Some(Arc::clone(params));
+                self.standing = Standing::of(is_draft);
+            }
+            Answer::Awaited => {
+                self.standing = Standing::Earlier;
+                // An earlier result stays until there is a newer one, but for that of another lab.
+                if self.made_from().is_some_and(|from| from.get(Key::Lab) != params.get(Key::Lab)) {
+                    self.clear();
+                }
+            }
+            Answer::Refused(problem) => {
+                self.clear();
+                self.problem = Some(problem);
+            }
+        }
+    }
+
+    /// What is driven goes on: the same character, a moment later.
+    pub(super) fn go_on(&mut self, outcome: Outcome) {
+        self.outcome = Some(Arc::new(outcome));
+    }
+
+    fn clear(&mut self) {
+        (self.outcome, self.made_from, self.inputs, self.glide) = (None, None, None, None);
+        self.place = Planar::IDENTITY;
+        self.standing = Standing::Earlier;
+    }
+
     /// What is shown at a time of the timeline; nothing while there is no result. A result that goes round and is shorter than the timeline begins
     /// again, and walks on from where it is.
     #[must_use]
@@ -264,12 +409,11 @@ impl Session {
         }
         let mut pane = Pane::default();
         self.grapher.guide_by(None);
-        self.refresh_pane(&mut pane, params, widest_window(params, None));
-        // One that is being dragged may be seen before its feet are planted, and one that is kept may not.
-        let is_whole = |outcome: &Arc<Outcome>| !outcome.awaits_feet();
-        match (pane.outcome.filter(is_whole), pane.problem) {
-            (Some(outcome), _) => Ok(Arc::clone(&outcome.motion)),
-            (None, problem) => Err(problem.unwrap_or_else(|| format!("{} is being made.", recipe_name(params)))),
+        self.refresh_pane(&mut pane, &Arc::new(params.clone()), widest_window(params, None));
+        match pane.result() {
+            Ok(made) => Ok(Arc::clone(&made.outcome.motion)),
+            Err(NoResult::Refused(problem)) => Err(problem),
+            Err(NoResult::Awaited) => Err(format!("{} is being made.", recipe_name(params))),
         }
     }
 
@@ -287,7 +431,7 @@ impl Session {
     /// to compare.
     #[must_use]
     pub fn variant_name(&self, pane: &Pane) -> Option<String> {
-        let (key, value) = pane.variant.as_ref()?;
+        let (key, value) = pane.compared()?;
         let param = key.param();
         Some(match (param.kind, value) {
             (Kind::Clip, Value::Text(id)) => self
@@ -337,7 +481,7 @@ impl Session {
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
-            let params = self.params_of(&pane);
+            let params = Arc::new(self.params_of(&pane));
             if !self.is_own_drive() {
                 self.refresh_pane(&mut pane, &params, match_window);
             }
@@ -347,7 +491,27 @@ impl Session {
             self.panes.push(pane);
         }
         self.refresh_driving();
+        self.stand_in();
         self.refresh_company();
+    }
+
+    /// Where a result cannot be made, the clips that it was to be made of stand in its place, as far as they are there.
+    fn stand_in(&mut self) {
+        for index in 0..self.panes.len() {
+            let Some(pane) = self.panes.get(index).filter(|pane| pane.problem.is_some()) else {
+                continue;
+            };
+            let params = self.params_of(pane);
+            let slots = [Slot::A, Slot::B].into_iter().filter(|slot| self.uses(*slot));
+            let slots: Vec<Slot> = slots.collect();
+            let found = slots
+                .into_iter()
+                .filter_map(|slot| Some((slot, self.motion_of(params.text(slot.key())).ok()?)));
+            let found = beside_each_other(found.collect());
+            if let Some(pane) = self.panes.get_mut(index) {
+                pane.sources = found;
+            }
+        }
     }
 
     /// The clips of the graph, with what a person calls them.
@@ -406,49 +570,68 @@ impl Session {
         inputs.map(Some)
     }
 
-    fn refresh_pane(&mut self, pane: &mut Pane, params: &Params, match_window: usize) {
-        match self.inputs(params, match_window) {
-            Ok(None) => {
-                pane.problem = None;
-                // The last good result stays until there is a newer one, but for that of another lab.
-                if pane.lab.as_ref() != Some(params.get(Key::Lab)) {
-                    pane.outcome = None;
-                    pane.inputs = None;
-                }
-            }
-            Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {}
-            Ok(Some(inputs)) => {
-                let outcome = match &inputs {
-                    Inputs::View(view) => view.run(),
-                    Inputs::Make(_) => make(params),
-                    Inputs::Blend(blend) => blend.run(),
-                    Inputs::Speed(speed) => speed.run(),
-                    Inputs::Loop(cycle) => cycle.run(),
-                    Inputs::Layers(layers) => layers.run(),
-                    Inputs::Register(register) => register.run(),
-                    Inputs::Path(path) => path.run(),
-                    Inputs::Graph(graph) => Ok(graph.run()),
-                    Inputs::Match(replay) => Ok(replay.run()),
-                };
-                match outcome {
-                    Ok(outcome) => {
-                        pane.outcome = Some(Arc::new(outcome));
-                        pane.lab = Some(params.get(Key::Lab).clone());
-                        pane.problem = None;
-                        pane.inputs = Some(inputs);
-                    }
-                    Err(problem) => {
-                        pane.problem = Some(problem);
-                        pane.inputs = None;
-                    }
-                }
-            }
-            Err(problem) => {
-                pane.problem = Some(problem);
-                pane.inputs = None;
-            }
+    fn refresh_pane(&mut self, pane: &mut Pane, params: &Arc<Params>, match_window: usize) {
+        let answer = match self.inputs(params, match_window) {
+            Ok(None) => Answer::Awaited,
+            Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => Answer::Same {
+                is_draft: inputs.is_draft(),
+            },
+            Ok(Some(inputs)) => match inputs.run(params) {
+                Ok(outcome) => Answer::Made {
+                    outcome: Arc::new(outcome),
+                    is_draft: inputs.is_draft(),
+                    inputs: Some(inputs),
+                },
+                Err(problem) => Answer::Refused(problem),
+            },
+            Err(problem) => Answer::Refused(problem),
+        };
+        pane.take(answer, params);
+    }
+}
+
+impl Inputs {
+    fn run(&self, params: &Params) -> Result<Outcome, String> {
+        match self {
+            Self::View(view) => view.run(),
+            Self::Make(_) => make(params),
+            Self::Blend(blend) => blend.run(),
+            Self::Speed(speed) => speed.run(),
+            Self::Loop(cycle) => cycle.run(),
+            Self::Layers(layers) => layers.run(),
+            Self::Register(register) => register.run(),
+            Self::Path(path) => path.run(),
+            Self::Graph(graph) => Ok(graph.run()),
+            Self::Match(replay) => Ok(replay.run()),
         }
     }
+
+    /// Whether what they give is shown while more of it is computed: it will be another motion then, or have numbers.
+    fn is_draft(&self) -> bool {
+        match self {
+            Self::View(view) => view.awaits_numbers(),
+            Self::Blend(blend) => blend.awaits_place(),
+            Self::Path(path) => path.awaits_feet(),
+            Self::Graph(graph) => graph.awaits_path(),
+            _ => false,
+        }
+    }
+}
+
+/// Clips on the stage, the first on the left of the second, as seen from behind; one alone lies where its file has it.
+fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<Source> {
+    /// From the middle to either side, metres.
+    const ASIDE_METRES: f64 = 0.6;
+    let Some(stands) = clips.first().map(|(_, first)| first.standing_at(0.0)) else {
+        return Vec::new();
+    };
+    let alone = clips.len() == 1;
+    let placed = clips.into_iter().zip([ASIDE_METRES, -ASIDE_METRES]).map(|((slot, motion), side)| {
+        let aside = Planar::new(0.0, if alone { 0.0 } else { side }, 0.0);
+        let world_from_clip = stands.after(&aside).after(&motion.standing_at(0.0).inverse());
+        Source::new(slot, &motion, 0.0, world_from_clip)
+    });
+    placed.collect()
 }
 
 /// The window that the automatic match uses: one for all panes, so that they differ in the compared value alone.

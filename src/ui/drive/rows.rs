@@ -57,7 +57,7 @@ pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut 
     kit::folded_ui(text::MATCH_CLIPS, ui, |ui| clips_ui(session, out, ui));
     ui.add_space(space::S);
     if session.is_driven() {
-        keep_ui(state.saved_pane, out, ui);
+        keep_ui(state.saved_pane, session, out, ui);
     } else {
         save_result_ui(session, state, out, ui);
     }
