@@ -7,7 +7,7 @@ mod formats_common;
 use formats_common::{CHAIN, chain, one, read, row};
 use glam::{Quat, Vec3};
 use segue::clip::{Clip, UpAxis};
-use segue::formats::{ImportError, ImportOptions, import, import_with_progress};
+use segue::formats::{ImportError, ImportOptions, bvh, import, import_with_progress};
 use segue::skeleton::Channel;
 
 /// The motion of [`chain`] with four frames.
@@ -287,18 +287,25 @@ fn positions_replace_the_offset_and_a_root_without_them_stays_on_it() {
 }
 
 #[test]
-fn a_root_that_stands_still_is_kept_above_the_hips_that_move() {
+fn a_root_that_stands_still_is_folded_into_the_hips_that_move_and_written_again() {
     let text = "ROOT reference\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n JOINT Hips\n {\n  \
                 OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n  JOINT Head\n  {\n   OFFSET 0 75 0\n  \
                 }\n  JOINT Foot\n  {\n   OFFSET 0 -90 0\n  }\n }\n}\n\
                 MOTION\nFrames: 2\nFrame Time: .0083333\n0 0 0 0 0 0 1 90 0 0 0 5\n0 0 0 0 0 0 3 90 0 0 0 6\n";
     let (found, warnings) = one(text);
     assert_eq!(warnings, [""; 0]);
-    assert_eq!(found.clip.skeleton().len(), 4);
-    assert_eq!(found.clip.root_translations(), [Vec3::ZERO; 2]);
-    assert_eq!(found.clip.translations()[0].joint, 1);
-    assert!(found.clip.world_pose(1).positions[2].distance(Vec3::new(0.03, 1.65, 0.0)) < 1e-5);
+    let names = |clip: &Clip| clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found.clip), ["Hips", "Head", "Foot"]);
+    assert!(found.clip.translations().is_empty());
+    for (root, x) in found.clip.root_translations().iter().zip([0.01, 0.03]) {
+        assert!(root.distance(Vec3::new(x, 0.9, 0.0)) < 1e-6);
+    }
+    assert!(found.clip.world_pose(1).positions[1].distance(Vec3::new(0.03, 1.65, 0.0)) < 1e-5);
     assert!((found.measure.height_metres() - 1.65).abs() < 1e-5);
+    let written = bvh::write(&found.clip, &bvh::WriteOptions::default());
+    assert!(written.contains("ROOT reference") && written.contains("JOINT Hips"));
+    let rows: Vec<&str> = written.lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1).collect();
+    assert!(rows.iter().all(|row| row.starts_with("0 0 0 0 0 0 ")), "{rows:?}");
 }
 
 #[test]
