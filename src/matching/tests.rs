@@ -1,9 +1,10 @@
 use super::search::{Question, scan};
 use super::*;
 use crate::clip::{Clip, Contacts, Interpolation, resample};
-use crate::math::{Planar, wrap_angle};
+use crate::math::{Decay, Planar, wrap_angle};
 use crate::skeleton::{Joint, Roles, Skeleton};
 use crate::synth::{Action, Params, synthesize};
+use crate::transition::Inertialization;
 use glam::{DVec2, Quat, Vec3};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -327,6 +328,45 @@ fn jumps_are_continuous() {
         assert!(at < before + 0.05, "{jump:?} {before} {at}");
     }
     assert!(most < 0.5, "{most}");
+}
+
+/// A half-life that is dragged in the middle of a jump leaves the offset's velocity as it is.
+#[test]
+fn options_that_change_during_a_jump_keep_the_velocity() {
+    let options = |half_life_secs| ControllerOptions {
+        transition: Inertialization::Offset(Decay::Spring { half_life_secs }),
+        planting: None,
+        following: None,
+        ..options()
+    };
+    let recording = Scenario::StartStop.recording();
+    let mut compared = 0;
+    for ticks_after_jump in [1, 4, 8] {
+        let start = || Controller::new(Arc::clone(small()), options(0.15), &Planar::IDENTITY).unwrap();
+        let (mut kept, mut changed) = (start(), start());
+        let mut since_jump = usize::MAX;
+        for control in recording.controls() {
+            let jumps = kept.jumps();
+            kept.tick(&control);
+            changed.tick(&control);
+            since_jump = if kept.jumps() > jumps { 0 } else { since_jump.saturating_add(1) };
+            if since_jump != ticks_after_jump {
+                continue;
+            }
+            changed.set_options(options(0.1501)).unwrap();
+            let ahead = [&mut kept, &mut changed].map(|controller| {
+                controller.tick(&control);
+                controller.pose().rotations.clone()
+            });
+            let [a, b] = &ahead;
+            let apart = a.iter().zip(b).map(|(&a, &b)| crate::math::quat::angle_between(a, b)).fold(0.0, f32::max);
+            // Nearly the same half-life, nearly the same pose a tick later: 1e-3 rad are 3.4 degrees per second.
+            assert!(apart < 1e-3, "{ticks_after_jump}: {apart}");
+            compared += 1;
+            break;
+        }
+    }
+    assert_eq!(compared, 3);
 }
 
 #[test]

@@ -181,6 +181,13 @@ impl Inertializer {
         self.elapsed_secs = 0.0;
     }
 
+    /// Continues with another method from this moment on. What is left of every offset is kept with its velocity, so that neither pose nor velocity
+    /// jumps. `live` is what plays now, as it is without inertia.
+    pub fn change(&mut self, how: Inertialization, live: &MovingPose) {
+        self.trigger(live, live);
+        self.how = how;
+    }
+
     /// Time passes.
     pub fn advance(&mut self, dt_secs: f64) {
         self.elapsed_secs += dt_secs.max(0.0);

@@ -120,20 +120,15 @@ impl Controller {
         &self.options
     }
 
-    /// Other options from the next tick on. A transition that is going on ends as it began.
+    /// Other options from the next tick on. A transition that is under way continues from where it is, pose and velocity.
     ///
     /// # Errors
     /// [`MatchError::Setting`] when one is out of range; the old ones stay.
     pub fn set_options(&mut self, options: ControllerOptions) -> Result<(), MatchError> {
         options.validate()?;
         if options.transition != self.options.transition {
-            let old = self.moving(self.place);
-            let mut next = Inertializer::new(options.transition);
-            // What is left of the running transition is handed over.
-            let mut playing = old.clone();
-            self.inertializer.apply(&mut playing.rotations, &mut playing.translations);
-            next.trigger(&playing, &old);
-            self.inertializer = next;
+            let playing = self.moving(self.place);
+            self.inertializer.change(options.transition, &playing);
         }
         self.weights = options.weights.spread(self.database.features().layout());
         self.options = options;

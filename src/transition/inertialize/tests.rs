@@ -110,6 +110,32 @@ proptest! {
         }
     }
 
+    /// A half-life that is dragged, or another method, in the middle of a transition.
+    #[test]
+    fn a_change_of_method_keeps_pose_and_velocity(old in steady(), new in steady(), at in 0.01f32..0.4) {
+        for (how, then) in KINDS.into_iter().flat_map(|how| KINDS.map(|then| (how, then))) {
+            let mut inertia = Inertializer::new(how);
+            inertia.trigger(&old.at(0.0), &new.at(0.0));
+            let dt = 1e-3;
+            inertia.advance(f64::from(at - dt));
+            let before = with_inertia(&mut inertia, new.at(at - dt));
+            inertia.advance(f64::from(dt));
+            let here = with_inertia(&mut inertia, new.at(at));
+            inertia.change(then, &new.at(at));
+            prop_assert!(off(&with_inertia(&mut inertia, new.at(at)), &here) < 1e-4, "{how:?} {then:?}");
+            // A quintic may begin with a high acceleration, so that it does not overshoot.
+            if [how, then].iter().any(|how| matches!(how, Inertialization::Offset(Decay::Quintic { .. }))) {
+                continue;
+            }
+            inertia.advance(f64::from(dt));
+            let after = with_inertia(&mut inertia, new.at(at + dt));
+            let (before, after) = (rates(&before, &here, dt), rates(&here, &after, dt));
+            let bound = dt * 1500.0;
+            prop_assert!((before.0 - after.0).length() < bound, "{how:?} {then:?} {} {}", before.0, after.0);
+            prop_assert!((before.1 - after.1).length() < bound, "{how:?} {then:?} {} {}", before.1, after.1);
+        }
+    }
+
     /// No extrapolated pose makes the result jump the other way round.
     #[test]
     fn dead_poses_do_not_flip(old in steady(), new in steady()) {
