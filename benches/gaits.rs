@@ -26,10 +26,10 @@ fn living(c: &mut Criterion) {
         bench.iter(|| layer(black_box(&walk), &roles, &run, &LayerOptions::default()).expect("one skeleton"));
     });
     let sources = [walk, run].map(|clip| Source::new(Arc::new(clip), &roles));
-    let cycles = [0, 1].map(|gait: usize| GaitCycle::find(&sources[gait], &contacts[gait]).expect("whole cycles"));
+    let cycles = [0, 1].map(|gait: usize| GaitCycle::find(&sources[gait], &roles, &contacts[gait]).expect("whole cycles"));
     let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default()).expect("speeds differ");
     c.bench_function("find a cycle in 600 frames (once per clip)", |bench| {
-        bench.iter(|| GaitCycle::find(black_box(&sources[0]), &contacts[0]).expect("whole cycles"));
+        bench.iter(|| GaitCycle::find(black_box(&sources[0]), &roles, &contacts[0]).expect("whole cycles"));
     });
     c.bench_function("one cycle at a speed", |bench| {
         bench.iter(|| blend.cycle_at(black_box(2.3)).expect("a speed"));

@@ -1,10 +1,10 @@
 use super::GaitError;
 use super::phase::Events;
 use crate::blend::Source;
-use crate::clip::{Contacts, ground_speed};
+use crate::clip::{ContactOptions, Contacts, ground_speed};
 use crate::math::{quat, stats};
-use crate::skeleton::Side;
-use crate::transition::{Loop, LoopOptions, close_loop};
+use crate::skeleton::{Roles, Side};
+use crate::transition::{CycleSearch, Loop, LoopOptions, WholeCycle, close_loop, find_cycle};
 use std::ops::Range;
 
 /// One cycle of a walk or run, from a strike of the left foot to its next one, closed.
@@ -17,6 +17,8 @@ pub struct GaitCycle {
     speed_mps: f64,
 }
 
+/// Ends that are farther apart belong to no cycle, centimetres on the reference body.
+const MOST_APART_CM: f64 = 12.0;
 /// Cycles are no shorter and no longer, seconds.
 const CYCLE_SECS: Range<f64> = 0.3..3.0;
 
@@ -25,17 +27,23 @@ impl GaitCycle {
     ///
     /// A cycle goes from a strike of the left foot to the next one and has one strike of the right foot. Of all cycles that one is taken which
     /// differs least from the median in duration, speed, and the phases of strike and lift, and whose ends are most alike; a foot that stands in
-    /// the clip's first frame is taken to strike there only if there is no other cycle. `contacts` are those of the clip.
+    /// the clip's first frame is taken to strike there only if nothing else is a cycle. `contacts` are those of the clip.
+    ///
+    /// A clip that is one cycle, or most of one, rarely begins with a strike. Where none of these cycles is in the clip, it is closed by its own ends
+    /// ([`WholeCycle`]), or where its poses repeat best ([`find_cycle`]); the contacts of the closed cycle, which go round, then tell where it strikes.
     ///
     /// # Errors
-    /// [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`] when it cannot be closed.
-    pub fn find(source: &Source, contacts: &Contacts) -> Result<Self, GaitError> {
-        let none = || GaitError::NoCycle {
-            name: source.clip().name().to_owned(),
-        };
+    /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`] when it cannot be closed.
+    pub fn find(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
         let mut candidates = candidates(source, contacts);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
             candidates.retain(|candidate| candidate.range.start > 0);
+        } else {
+            // A foot that stands in the first frame may have come down long before.
+            match Self::closed_by_its_ends(source, roles, contacts) {
+                Err(_) if !candidates.is_empty() => {}
+                closed => return closed,
+            }
         }
         let measures: Vec<[f32; 5]> = candidates.iter().map(|candidate| candidate.measures(source)).collect();
         let median = |index: usize| {
@@ -51,20 +59,65 @@ impl GaitCycle {
                 .sum();
             apart + candidates[index].gap(source)
         };
-        let best = (0..candidates.len()).min_by(|&a, &b| odd(a).total_cmp(&odd(b))).ok_or_else(none)?;
+        let best = (0..candidates.len()).min_by(|&a, &b| odd(a).total_cmp(&odd(b))).unwrap_or(0);
         let Candidate { range, events } = candidates.swap_remove(best);
         let looped = close_loop(source, range.clone(), &LoopOptions::default())?;
+        Ok(Self::new(looped, range, events))
+    }
+
+    fn new(looped: Loop, range: Range<usize>, events: Events) -> Self {
         let mut frames = looped.frames.clone();
         frames.extend(frames.first().map(|first| looped.cycle.after(first)));
-        Ok(Self {
+        Self {
             speed_mps: f64::from(ground_speed(&frames, looped.clip.fps())),
             looped,
             range,
             events,
+        }
+    }
+
+    /// The cycle of a clip that does not hold one from strike to strike.
+    fn closed_by_its_ends(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
+        let clip = source.clip();
+        let name = || clip.name().to_owned();
+        if Side::BOTH.iter().any(|&side| roles.foot_points(clip.skeleton(), side).is_empty()) {
+            return Err(GaitError::NoFeet { name: name() });
+        }
+        // The ends of both kinds, the nearer ones first.
+        let whole = WholeCycle::of(source);
+        let search = CycleSearch {
+            min_secs: CYCLE_SECS.start,
+            ..CycleSearch::new(clip.fps())
+        };
+        let height = f64::from(roles.body_height(clip.skeleton()));
+        let inside = find_cycle(source, contacts, height, &search)
+            .ok()
+            .filter(|cut| cut.rms_cm < MOST_APART_CM);
+        let mut closed: Vec<(f64, usize, Loop)> = Vec::new();
+        if let Some(whole) = &whole {
+            closed.push((whole.apart_cm, 0, whole.close(&LoopOptions::default())?));
+        }
+        if let Some(cut) = inside {
+            let looped = close_loop(source, cut.cycle.clone(), &LoopOptions::default())?;
+            closed.push((cut.rms_cm, cut.cycle.start, looped));
+        }
+        closed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, start, looped) in closed {
+            let Some((strike, events)) = events_of(&looped, roles) else {
+                continue;
+            };
+            let frames = looped.clip.frames();
+            let looped = looped.begun_at(strike).map_err(GaitError::Clip)?;
+            return Ok(Self::new(looped, start + strike..start + strike + frames, events));
+        }
+        Err(GaitError::NoCycle {
+            name: name(),
+            secs: clip.duration_secs(),
         })
     }
 
-    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again.
+    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again. It lies behind the clip's last frame where the clip
+    /// was closed by its own ends.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.range.clone()
@@ -98,6 +151,32 @@ impl GaitCycle {
     pub(super) fn first_phase(&self) -> f64 {
         -(self.range.start as f64) / self.range.len() as f64
     }
+}
+
+/// What goes on in a closed cycle: the frame in which the left foot strikes, and the events from there on. `None` unless each foot stands once.
+pub(crate) fn events_of(looped: &Loop, roles: &Roles) -> Option<(usize, Events)> {
+    let frames = looped.clip.frames();
+    if !CYCLE_SECS.contains(&(frames as f64 / looped.clip.fps())) {
+        return None;
+    }
+    // In the middle of three rounds nothing is cut off.
+    let contacts = Contacts::detect(&looped.repeat(3).ok()?, roles, &ContactOptions::default());
+    let stance = |side: Side| {
+        let mut within = contacts
+            .intervals(side)
+            .into_iter()
+            .filter(|stance| (frames..2 * frames).contains(&stance.start));
+        within.next().filter(|stance| within.next().is_none() && stance.len() < frames)
+    };
+    let (left, right) = (stance(Side::Left)?, stance(Side::Right)?);
+    let phase = |frames_on: usize| frames_on as f64 / frames as f64;
+    let right_strike = phase((right.start + frames - left.start) % frames);
+    let events = Events {
+        left_lift: phase(left.len()),
+        right_strike,
+        right_lift: right_strike + phase(right.len()),
+    };
+    (right_strike > 0.0).then_some((left.start - frames, events))
 }
 
 struct Candidate {

@@ -2,7 +2,8 @@
 //!
 //! # The idea
 //!
-//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts of the feet and closed ([`GaitCycle`]).
+//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts of the feet and closed ([`GaitCycle`]); a
+//! clip that is one cycle, or most of one, is closed by its own ends.
 //! Both are laid on one phase, so that strikes meet strikes and lifts meet lifts, and blended pose by pose ([`SpeedBlend`]). Faster means
 //! two things at once, longer strides and more of them:
 //!
@@ -33,7 +34,7 @@
 //!     let clip = Arc::new(synthesize(&Params::new(action))?.clip);
 //!     roles = Roles::detect(clip.skeleton());
 //!     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-//!     cycles.push(GaitCycle::find(&Source::new(clip, &roles), &contacts)?);
+//!     cycles.push(GaitCycle::find(&Source::new(clip, &roles), &roles, &contacts)?);
 //! }
 //! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;
@@ -69,6 +70,7 @@ mod speed;
 mod strikes;
 
 pub use cycle::GaitCycle;
+pub(crate) use cycle::events_of;
 pub use phase::{Events, PhaseAlignment};
 pub use player::SpeedPlayer;
 pub use speed::{GaitClip, GaitFacts, SpeedBlend, SpeedOptions};
@@ -80,13 +82,21 @@ use crate::transition::LoopError;
 /// Why gaits cannot be blended by speed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GaitError {
-    /// No whole cycle.
+    /// The joints of a foot are not known.
+    #[error("`{name}` has no joints that are known as its feet: choose these joints by hand")]
+    NoFeet {
+        /// Name of the clip.
+        name: String,
+    },
+    /// No whole cycle, and no ends that meet.
     #[error(
-        "`{name}` has no whole cycle, from one strike of the left foot to the next with one of the right foot between: use a longer walk or run"
+        "`{name}` does not contain a gait cycle (left strike, right strike, left strike), and its {secs:.2} s do not close into one: use a longer walk or run, or one cycle whose end leads into its beginning"
     )]
     NoCycle {
         /// Name of the clip.
         name: String,
+        /// Its duration, seconds.
+        secs: f64,
     },
     /// The clips move different bodies.
     #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
@@ -97,7 +107,9 @@ pub enum GaitError {
         b: String,
     },
     /// Nothing lies between the gaits.
-    #[error("the gaits go at {a_mps:.2} and {b_mps:.2} m/s: for speeds between them take two that differ by 0.1 m/s or more, and move")]
+    #[error(
+        "the cycles of A and B move at {a_mps:.2} and {b_mps:.2} m/s: choose two clips that move, at speeds that differ by at least 0.1 m/s"
+    )]
     Speeds {
         /// Speed of the first gait.
         a_mps: f64,

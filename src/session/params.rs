@@ -233,6 +233,7 @@ const METHODS: &[Choice] = &[
 const LOOP_METHODS: &[Choice] = &[
     choice("exact", "exact"),
     choice("both", "both ends"),
+    choice("crossed", "both ends, crossed"),
     choice("start", "start only"),
     choice("end", "end only"),
     choice("linear", "linear"),
@@ -296,7 +297,9 @@ const HYSTERESES: &[Choice] = &[
     choice("bias", "bias"),
     choice("time", "time"),
     choice("votes", "votes"),
+    choice("clip_votes", "votes for another clip"),
 ];
+const NORMALISATIONS: &[Choice] = &[choice("block", "by block"), choice("dimension", "by dimension")];
 const SEARCHES: &[Choice] = &[choice("boxes", "boxes"), choice("tree", "k-d tree"), choice("scan", "scan")];
 const JUMPS: &[Choice] = &[choice("inertialize", "inertialize"), choice("dead", "dead blend")];
 const GAITS: &[Choice] = &[
@@ -421,6 +424,7 @@ parameters! {
     Drive "drive" "Recorded input" Match Kind::Text, Start::Word(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
     MatchClips "match_clips" "Clips" Match Kind::Text, Start::Word(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
     Mirrored "mirrored" "Mirrored copies" Match Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
+    MatchCycles "match_cycles" "Cycles go round" Match Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
     WalkSpeed "walk_speed" "Walking speed" Match number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
     RunSpeed "run_speed" "Running speed" Match number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift.";
     Strafe "strafe" "Strafe" Match Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes.";
@@ -431,14 +435,16 @@ parameters! {
     WeightHipSpeed "weight_hip_speed" "Hips, how fast" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the hips move.";
     AheadNear "ahead_near" "Look ahead, near" Match number(0.05, 1.0, 0.01), Start::Number(0.33), "s", "The first time at which path and facing are compared.";
     AheadMiddle "ahead_middle" "Look ahead, middle" Match number(0.1, 2.0, 0.01), Start::Number(0.67), "s", "The second.";
-    AheadFar "ahead_far" "Look ahead, far" Match number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen.";
+    AheadFar "ahead_far" "Look ahead, far" Match number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen, unless the clip is a cycle.";
+    Normalisation "normalisation" "Normalise" Match Kind::Choice(NORMALISATIONS), Start::Word("block"), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
     SearchInterval "search_interval" "Search every" Match logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
     SearchBy "search_by" "Search by" Match Kind::Choice(SEARCHES), Start::Word("boxes"), "", "Three searches that find the same frame: how many frames they look at differs.";
     Hysteresis "hysteresis" "Hysteresis" Match Kind::Choice(HYSTERESES), Start::Word("bias"), "", "What keeps it from jumping for next to nothing.";
     BiasShare "bias_share" "Bias, share" Match number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
     BiasConstant "bias_constant" "Bias, constant" Match number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
     MinimumTime "minimum_time" "Time between jumps" Match number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
-    PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, another clip must be cheaper by this share.";
+    PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, a frame of another clip must be cheaper by this share.";
+    PreferClip "prefer_clip" "Clip preferred" Match Kind::Text, Start::Word(""), "", "Which clip is preferred by that share while the input is still. Empty: the one that plays.";
     JumpMethod "jump_method" "Transition" Match Kind::Choice(JUMPS), Start::Word("inertialize"), "", "How a jump is hidden.";
     JumpHalfLife "jump_half_life" "Half-life" Match logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
     VelocityHalfLife "velocity_half_life" "Velocity half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";

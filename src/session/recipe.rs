@@ -155,8 +155,10 @@ pub enum CycleMade {
         facts: GaitFacts,
         /// The speed that was asked for, metres per second.
         asked_mps: f64,
-        /// How fast A and B go, metres per second.
+        /// How fast A and B go in the cycles that were taken of them, metres per second.
         clips_mps: [f64; 2],
+        /// Where these cycles begin and end, seconds in A and in B. A clip that is closed by its own ends may end before its cycle does.
+        cuts_secs: [[f64; 2]; 2],
     },
     /// A part of A whose ends were brought together.
     Cut {

@@ -47,15 +47,18 @@ pub struct CutPoints {
 
 /// What a whole cycle of difference between the feet's phases counts as, centimetres of distance.
 const CM_PER_CYCLE: f64 = 20.0;
-/// How many places of the coarse grid are scored, and how many of them are looked at closely.
-const SCORED: usize = 64;
-const CANDIDATES: usize = 6;
+/// The feet's phases choose between cycles whose distances differ by no more than this, as a share of the least and in centimetres.
+const ALIKE_SHARE: f64 = 0.05;
+const ALIKE_CM: f64 = 0.02;
+/// How many minima of the coarse grid are looked at closely.
+const CANDIDATES: usize = 16;
 
-/// Finds where a clip repeats itself: the pair of frames with the smallest distance between the windows that begin there, plus what the
-/// feet's phases differ by ([`Contacts::phase`]), among all cycles of the durations asked for.
+/// Finds where a clip repeats itself: the pair of frames with the smallest distance between the windows that begin there, among all cycles of the
+/// durations asked for. Of distances that are all but equal the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
 ///
-/// Coarse to fine as in [`crate::registration::TransitionSearch`]. A clip that is one whole cycle has no window behind its last frame: its
-/// first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
+/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands for a moment fits itself best, and is no gait.
+/// Coarse to fine: every minimum of a grid of about 1/30 s is looked at frame by frame. A clip that is one whole cycle has no window behind its last
+/// frame: its first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
 ///
 /// # Errors
 /// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to an end that is given; [`LoopError::Registration`] when positions are no numbers.
@@ -75,6 +78,7 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
     let finder = Finder {
         clip,
         contacts,
+        touchdowns: touchdowns(contacts),
         weights: limb_weights(clip.skeleton()),
         cm: 100.0 * if body_height > 0.0 { REFERENCE_HEIGHT_M / body_height } else { 1.0 },
         window: search.window.clamp(1, frames - shortest),
@@ -85,23 +89,22 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
         return Ok(best.cut(contacts));
     }
     let stride = ((fps / 30.0).ceil() as usize).max(frames.div_ceil(400)).max(1);
-    let mut places = finder.pairs(&(0..frames), &(0..frames), stride, finder.window, true)?;
-    places.truncate(CANDIDATES);
-    let mut best: Option<Place> = None;
-    let mut offer = |place: Place| {
-        if best.is_none_or(|best| place.score < best.score) {
-            best = Some(place);
-        }
-    };
-    for place in places {
+    let mut places = Vec::new();
+    for place in finder.pairs(&(0..frames), &(0..frames), stride, finder.window, true)? {
         let around = |at: usize| at.saturating_sub(stride)..(at + stride + 1).min(frames);
-        let close = finder.pairs(&around(place.start), &around(place.end), 1, finder.window, false)?;
-        close.into_iter().take(1).for_each(&mut offer);
+        places.extend(finder.pairs(&around(place.start), &around(place.end), 1, finder.window, false)?);
     }
-    let whole = finder.pairs(&(0..1), &(frames - 1..frames), 1, 1, false)?;
-    whole.into_iter().for_each(&mut offer);
-    let best = best.ok_or(too_short)?;
+    places.extend(finder.pairs(&(0..1), &(frames - 1..frames), 1, 1, false)?);
+    let best = finder.choose(&places).ok_or(too_short)?;
     Ok(best.cut(contacts))
+}
+
+/// The frames in which a foot comes down, in order. One that stands in the first frame came down at some time before.
+fn touchdowns(contacts: &Contacts) -> Vec<usize> {
+    let starts = |side| contacts.intervals(side).into_iter().map(|stance| stance.start);
+    let mut all: Vec<usize> = Side::BOTH.into_iter().flat_map(starts).filter(|&at| at > 0).collect();
+    all.sort_unstable();
+    all
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -125,6 +128,8 @@ impl Place {
 struct Finder<'a> {
     clip: &'a Clip,
     contacts: &'a Contacts,
+    /// When a foot comes down, frames in order.
+    touchdowns: Vec<usize>,
     weights: Vec<f64>,
     /// What turns metres into centimetres on the reference body.
     cm: f64,
@@ -160,12 +165,28 @@ impl Finder<'_> {
         let finder = Finder {
             lengths,
             weights: self.weights.clone(),
+            touchdowns: self.touchdowns.clone(),
             ..*self
         };
-        Ok(finder.pairs(&starts, &ends, 1, window, false)?.into_iter().next())
+        Ok(finder.choose(&finder.pairs(&starts, &ends, 1, window, false)?))
     }
 
-    /// The cycles that start in `starts` and end in `ends`, best first; of a whole grid (`minima`) only its lowest minima.
+    /// Whether a foot comes down in a cycle.
+    fn steps_in(&self, place: &Place) -> bool {
+        let next = self.touchdowns.partition_point(|&at| at <= place.start);
+        self.touchdowns.get(next).is_some_and(|&at| at <= place.end)
+    }
+
+    /// The best of these cycles: of those that have a step, if there are any, and are about as close as the closest, the one with the least score.
+    fn choose(&self, places: &[Place]) -> Option<Place> {
+        let any_steps = places.iter().any(|place| self.steps_in(place));
+        let admitted = || places.iter().filter(|place| !any_steps || self.steps_in(place));
+        let least = admitted().map(|place| place.rms_cm).min_by(f64::total_cmp)?;
+        let alike = admitted().filter(|place| place.rms_cm <= least * (1.0 + ALIKE_SHARE) + ALIKE_CM);
+        alike.min_by(|a, b| a.score.total_cmp(&b.score)).copied()
+    }
+
+    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its lowest minima, and those of cycles with a step.
     fn pairs(
         &self,
         starts: &Range<usize>,
@@ -182,23 +203,18 @@ impl Finder<'_> {
             let (start, end) = grid.frames(row, column);
             end.checked_sub(start).is_some_and(|length| self.lengths.contains(&length)) && end < self.clip.frames()
         };
-        let all = || {
-            (0..grid.rows())
-                .flat_map(|row| (0..grid.columns()).map(move |column| (row, column)))
+        let distance = |(row, column): (usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
+        // No farther than its eight neighbours, of which those that are no cycles do not count.
+        let is_minimum = |&(row, column): &(usize, usize)| {
+            let here = distance((row, column));
+            (row.saturating_sub(1)..(row + 2).min(grid.rows()))
+                .flat_map(|r| (column.saturating_sub(1)..(column + 2).min(grid.columns())).map(move |c| (r, c)))
                 .filter(allowed)
+                .all(|there| distance(there) >= here)
         };
-        let mut cells: Vec<(usize, usize)> = if minima {
-            grid.local_minima().into_iter().filter(allowed).take(SCORED).collect()
-        } else {
-            all().collect()
-        };
-        if cells.is_empty() {
-            // No minimum inside: the best on the border of what is allowed.
-            let distance = |&(row, column): &(usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
-            cells.extend(all().min_by(|a, b| distance(a).total_cmp(&distance(b))));
-        }
+        let all = (0..grid.rows()).flat_map(|row| (0..grid.columns()).map(move |column| (row, column)));
+        let cells = all.filter(allowed).filter(|cell| !minima || is_minimum(cell));
         let mut places: Vec<Place> = cells
-            .into_iter()
             .filter_map(|(row, column)| {
                 let (start, end) = grid.frames(row, column);
                 let rms_cm = f64::from(grid.get(row, column)?) * self.cm;
@@ -207,7 +223,12 @@ impl Finder<'_> {
                 Some(Place { start, end, rms_cm, score })
             })
             .collect();
-        places.sort_by(|a, b| a.score.total_cmp(&b.score));
+        if minima {
+            let stepping = places.iter().any(|place| self.steps_in(place));
+            places.retain(|place| !stepping || self.steps_in(place));
+            places.sort_by(|a, b| a.rms_cm.total_cmp(&b.rms_cm));
+            places.truncate(CANDIDATES);
+        }
         Ok(places)
     }
 }

@@ -14,6 +14,12 @@ pub enum LoopMethod {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
+    /// As [`Self::Classic`], but the head takes `1 - r` of the velocities' difference beside `r` of the poses': what results when the two shares are mixed
+    /// up, and the same for `r = 0.5`.
+    Crossed {
+        /// Half-life, seconds.
+        half_life_secs: f64,
+    },
     /// Evenly over the whole cycle: the pose closes, the velocity does not.
     Linear,
     /// A Hermite cubic over the whole cycle: pose and velocity close.
@@ -76,6 +82,12 @@ impl LoopCurve {
                 },
                 as_it_is,
             ),
+            LoopMethod::Crossed { half_life_secs } => (
+                LoopMethod::Crossed {
+                    half_life_secs: held(half_life_secs),
+                },
+                as_it_is,
+            ),
             other => (other, as_it_is),
         };
         Self {
@@ -109,12 +121,13 @@ impl LoopCurve {
                     vv: r * (1.0 - s) * (1.0 - 3.0 * s) + q * s * (2.0 - 3.0 * s),
                 }
             }
-            LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } => {
+            LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } | LoopMethod::Crossed { half_life_secs } => {
                 let head = spring::response(half_life_secs, secs);
                 let tail = spring::response(half_life_secs, period - secs);
+                let of_velocity = if matches!(self.method, LoopMethod::Crossed { .. }) { q } else { r };
                 // In X and W; the tail runs backwards.
-                let [xx, xv] = [r * head.xx - q * tail.xx, r * head.xv + q * tail.xv];
-                let [vx, vv] = [r * head.vx + q * tail.vx, r * head.vv - q * tail.vv];
+                let [xx, xv] = [r * head.xx - q * tail.xx, of_velocity * head.xv + q * tail.xv];
+                let [vx, vv] = [r * head.vx + q * tail.vx, of_velocity * head.vv - q * tail.vv];
                 Response {
                     xx: xx * self.fed.xx + xv * self.fed.vx,
                     xv: xx * self.fed.xv + xv * self.fed.vv,
@@ -130,7 +143,7 @@ impl LoopCurve {
         match self.method {
             LoopMethod::Exact { .. } | LoopMethod::Cubic => [true, true],
             LoopMethod::Linear => [true, false],
-            LoopMethod::Classic { .. } => [false, false],
+            LoopMethod::Classic { .. } | LoopMethod::Crossed { .. } => [false, false],
         }
     }
 }
@@ -161,7 +174,7 @@ mod tests {
 
         #[test]
         fn rates_are_derivatives(h in 0.05f64..1.0, r in 0.0f64..1.0, duration in 0.3f64..3.0, share in 0.01f64..0.99) {
-            for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Classic { half_life_secs: h }, LoopMethod::Linear, LoopMethod::Cubic] {
+            for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Classic { half_life_secs: h }, LoopMethod::Crossed { half_life_secs: h }, LoopMethod::Linear, LoopMethod::Cubic] {
                 let curve = LoopCurve::new(method, r, duration);
                 let (t, dt) = (share * duration, 1e-6);
                 let [before, here, after] = [t - dt, t, t + dt].map(|t| curve.at(t));
@@ -178,6 +191,17 @@ mod tests {
         let z = spring::rate(0.2) * 0.5;
         assert!((left - (1.0 + z) * (-z).exp()).abs() < 1e-12);
         assert!((left - 0.14).abs() < 0.005, "{left}");
+    }
+
+    #[test]
+    fn crossed_shares_differ_in_the_head_s_velocity_alone() {
+        let half_life_secs = 0.15;
+        let of = |method, ratio| LoopCurve::new(method, ratio, 1.0).at(0.0);
+        let [crossed, both] = [LoopMethod::Crossed { half_life_secs }, LoopMethod::Classic { half_life_secs }];
+        assert_eq!(of(crossed, 0.5), of(both, 0.5));
+        // At the head the spring is the offset and the velocity that it is given; what the tail has left there is the same.
+        let (a, b) = (of(crossed, 0.8), of(both, 0.8));
+        assert!((a.vv - b.vv - (0.2 - 0.8)).abs() < 1e-12 && (a.xx - b.xx).abs() < 1e-12 && (a.vx - b.vx).abs() < 1e-12);
     }
 
     #[test]

@@ -94,6 +94,25 @@ impl Loop {
     pub fn repeat(&self, times: usize) -> Result<Clip, ClipError> {
         play_around(&self.clip, &self.cycle, times)
     }
+
+    /// The same cycle from another of its frames on, which is taken round after round.
+    ///
+    /// # Errors
+    /// [`ClipError`] when the result is no clip.
+    pub fn begun_at(&self, frame: usize) -> Result<Self, ClipError> {
+        let frames = self.clip.frames();
+        let first = frame % frames.max(1);
+        let (earlier, later) = self.frames.split_at(first.min(self.frames.len()));
+        Ok(Self {
+            clip: self.repeat(2)?.crop(first..first + frames)?,
+            frames: later
+                .iter()
+                .copied()
+                .chain(earlier.iter().map(|stands| self.cycle.after(stands)))
+                .collect(),
+            ..self.clone()
+        })
+    }
 }
 
 /// Plays a clip `times` times, at most 1,024, each time moved over the ground by `cycle` from where it lay. Where each repetition lies is accumulated in `f64`:
@@ -134,7 +153,8 @@ pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -
             frames: clip.frames(),
         });
     }
-    if let LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } = options.method
+    if let LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } | LoopMethod::Crossed { half_life_secs } =
+        options.method
         && !(0.0..=MOST_SECS).contains(&half_life_secs)
     {
         return Err(LoopError::HalfLife(half_life_secs));

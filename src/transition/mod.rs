@@ -96,6 +96,7 @@ mod loop_curve;
 mod loops;
 mod mistake;
 mod moving;
+mod whole_cycle;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
@@ -106,3 +107,4 @@ pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop, play_around};
 pub use mistake::{Mistake, concatenate_mistaken};
 pub use moving::MovingPose;
+pub use whole_cycle::WholeCycle;

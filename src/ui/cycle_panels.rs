@@ -15,6 +15,9 @@ const SLIDER_MPS: f64 = 6.0;
 /// And how far it goes beyond the faster clip.
 const SLIDER_BEYOND: f64 = 1.6;
 
+/// Ends that are farther apart than this hardly repeat each other, centimetres: as the default threshold of the motion graph.
+const POOR_ENDS_CM: f64 = 8.0;
+
 /// Two gaits at a speed.
 pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
@@ -27,13 +30,19 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         ..Detail::default()
     };
     let mut warning = None;
-    if let Some(CycleMade::Gait { facts, clips_mps, .. }) = made {
+    if let Some(CycleMade::Gait {
+        facts,
+        clips_mps,
+        cuts_secs,
+        ..
+    }) = made
+    {
         let mark = |part: Part, value| Mark {
             value,
             color: part.fill(palette).0,
         };
         detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
-        detail.help = Some(text::gaits(clips_mps));
+        detail.help = Some(text::gaits(clips_mps, cuts_secs));
         let most = clips_mps[0].max(clips_mps[1]);
         detail.max = Some((SLIDER_BEYOND * most).max(session.params().number(Key::Speed)));
         warning = text::beyond_gaits(&facts, clips_mps);
@@ -83,17 +92,27 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         .and_then(|entry| entry.motion.as_ref())
         .map(|motion| motion.clip.duration_secs());
     let automatic = |key| params.optional(key).is_none();
+    let distance_cm = cycle.and_then(|cycle| match cycle.made {
+        CycleMade::Cut { distance_cm, .. } => Some(distance_cm),
+        CycleMade::Gait { .. } => None,
+    });
+    let poor = distance_cm.is_some_and(|distance_cm| distance_cm > POOR_ENDS_CM);
     let place = |key, said_below: bool| Detail {
         max: duration,
         help: Some(match (automatic(key), said_below) {
             (false, _) => text::BY_HAND.to_owned(),
             (true, true) => String::new(),
+            // Said in a warning below.
+            (true, false) if poor && automatic(Key::LoopFrom) => String::new(),
             (true, false) => found_sentence(cycle),
         }),
         ..Detail::default()
     };
     param_row_ui(Key::LoopFrom, &place(Key::LoopFrom, automatic(Key::LoopTo)), session, out, ui);
     param_row_ui(Key::LoopTo, &place(Key::LoopTo, false), session, out, ui);
+    if let Some(distance_cm) = distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo)) {
+        kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
+    }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
     // With several methods side by side, what any of them has to set is there.
     let methods: Vec<String> = match session.compare().filter(|compare| compare.key == Key::LoopMethod) {
@@ -104,7 +123,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         kit::note_ui(text::loop_method(method), palette_of(ui).muted, ui);
     }
     let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
-    if any(&["exact", "both", "start", "end"]) {
+    if any(&["exact", "both", "crossed", "start", "end"]) {
         let detail = Detail {
             help: Some(text::LOOP_HALF_LIFE.to_owned()),
             ..Detail::default()
@@ -112,7 +131,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         param_row_ui(Key::HalfLife, &detail, session, out, ui);
         compare_ui(Key::HalfLife, session, out, ui);
     }
-    if any(&["exact", "both", "linear", "cubic"]) {
+    if any(&["exact", "both", "crossed", "linear", "cubic"]) {
         param_row_ui(Key::LoopRatio, &Detail::default(), session, out, ui);
     }
     let shoot_out = methods.len() > 1;

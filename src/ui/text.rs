@@ -306,9 +306,11 @@ pub(crate) const THREE_SPEEDS: &str = "A, half way, B";
 /// A chip over a pane whose speed lies beyond both clips.
 pub(crate) const BEYOND: &str = "beyond both clips";
 
-/// How fast both clips go.
-pub(crate) fn gaits([a, b]: [f64; 2]) -> String {
-    format!("A goes at {a:.2} m/s, B at {b:.2}.")
+/// How fast both clips go, and where.
+pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> String {
+    format!(
+        "Speed of one cycle: A {a:.2} m/s from {from_a:.2} to {to_a:.2} s, B {b:.2} m/s from {from_b:.2} to {to_b:.2} s. The mean over a whole clip, as in View, may differ."
+    )
 }
 
 /// That the speed asked for lies beyond both clips; `None` where it does not.
@@ -343,6 +345,9 @@ pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 pub(crate) fn loop_method(method: &str) -> &'static str {
     match method {
         "both" => "Springs from both ends, as they are: what has not died away at the other end stays as a seam.",
+        "crossed" => {
+            "As with both ends, but the beginning takes the other share of the velocity's difference. With a ratio of 0.5 it is the same."
+        }
         "start" => "A spring at the beginning alone takes all of the difference.",
         "end" => "A spring at the end alone takes all of the difference.",
         "linear" => "Evenly over the whole cycle: the pose closes, its velocity does not.",
@@ -354,6 +359,13 @@ pub(crate) fn loop_method(method: &str) -> &'static str {
 /// How the ends of a cycle were found.
 pub(crate) fn ends_found(distance_cm: f64) -> String {
     format!("{FOUND}: the ends that fit best, {distance_cm:.1} cm apart.")
+}
+
+/// That the ends of a cycle that was found hardly fit.
+pub(crate) fn poor_ends(distance_cm: f64) -> String {
+    format!(
+        "The best ends that were found are {distance_cm:.1} cm apart: this clip hardly repeats itself. Choose a steadier clip, or set the ends by hand."
+    )
 }
 
 /// What the Register lab does, and where to look.
@@ -479,6 +491,8 @@ pub(crate) const JOIN: &str = "This one joins";
 pub(crate) const JOIN_HELP: &str = "Leaves this character on the stage as it is, so that another path can be made beside it";
 /// A list of clips.
 pub(crate) const JOIN_CLIP: &str = "A clip joins";
+/// Which clip is preferred while none is chosen.
+pub(crate) const THE_CLIP_THAT_PLAYS: &str = "the one that plays";
 /// While none is chosen.
 pub(crate) const CHOOSE_CLIP: &str = "choose…";
 /// What that is for.
@@ -883,6 +897,7 @@ pub(crate) fn hysteresis(word: &str) -> &'static str {
         "none" => "The best frame is taken, however little better it is: many jumps.",
         "time" => "After a jump it stays for a while, whatever comes.",
         "votes" => "Three searches in a row must want to go.",
+        "clip_votes" => "Three searches in a row must want to go to another clip; within its clip it jumps at once.",
         _ => "Going on counts as better than it is.",
     }
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 fn found(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-    Ok((GaitCycle::find(&Source::new(Arc::new(clip), &roles), &contacts)?, roles))
+    Ok((GaitCycle::find(&Source::new(Arc::new(clip), &roles), &roles, &contacts)?, roles))
 }
 
 fn cycle(action: Action) -> (GaitCycle, Roles) {
@@ -248,6 +248,53 @@ fn a_dragged_speed_changes_the_gait_without_a_jump() {
     for dt in [0.0, -1.0, f64::NAN] {
         player.advance(&blend, dt, f64::NAN);
         assert_eq!((player.phase(), player.here()), (before.phase(), before.here()));
+    }
+}
+
+/// A stretch of a made gait that is as long as so much of its cycle.
+fn part_of_a_cycle(action: Action, from: usize, share: f64) -> (Clip, GaitCycle) {
+    let clip = synthesize(&Params::new(action)).unwrap().clip;
+    let (whole, _) = found(clip.clone()).unwrap();
+    let frames = (share * whole.looped().clip.frames() as f64).round() as usize;
+    (clip.crop(from..from + frames).unwrap(), whole)
+}
+
+#[test]
+fn a_clip_that_is_one_cycle_or_most_of_one_is_closed_by_its_ends() {
+    for action in [Action::Walk, Action::Run] {
+        for share in [1.3, 1.02, 1.0, 0.93, 0.85] {
+            for from in (40..100).step_by(7) {
+                let (part, whole) = part_of_a_cycle(action, from, share);
+                let name = format!("{action:?} {share} from {from}");
+                let (cycle, roles) = found(part).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let off = cycle.speed_mps() / whole.speed_mps() - 1.0;
+                assert!(off.abs() < 0.02, "{name}: {off}");
+                let secs = cycle.secs() / whole.secs() - 1.0;
+                assert!(secs.abs() < 0.04, "{name}: {secs}");
+                let (found, wanted) = (cycle.events(), whole.events());
+                let apart = [
+                    found.left_lift - wanted.left_lift,
+                    found.right_strike - wanted.right_strike,
+                    found.right_lift - wanted.right_lift,
+                ];
+                assert!(apart.iter().all(|apart| apart.abs() < 0.08), "{name}: {found:?} {wanted:?}");
+                assert!(cycle.looped().seam.turn_deg < 1e-3, "{name}");
+                let own = measured(&cycle.looped().repeat(3).unwrap(), &roles);
+                assert!((own / cycle.speed_mps() - 1.0).abs() < 0.02, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn speeds_between_two_clips_of_one_cycle_are_made() {
+    for (share, from) in [(1.0, 40), (0.9, 55), (1.02, 71)] {
+        let [(walk, roles), (run, _)] = [Action::Walk, Action::Run].map(|action| found(part_of_a_cycle(action, from, share).0).unwrap());
+        let blend = SpeedBlend::new(&walk, &run, &roles, &SpeedOptions::default()).unwrap();
+        for speed in [1.5, 2.0, 3.0] {
+            let off = measured(&blend.clip_of(speed, 6.0).unwrap().clip, &roles) / speed - 1.0;
+            assert!(off.abs() < 0.02, "{share} {speed}: {off}");
+        }
     }
 }
 

@@ -326,7 +326,7 @@ fn clips_that_are_no_gaits_say_so() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=speed&a=idle".into())).unwrap();
     let problem = session.panes()[0].problem.clone().unwrap();
-    assert!(problem.contains("no whole cycle"), "{problem}");
+    assert!(problem.contains("does not contain a gait cycle"), "{problem}");
     session.apply(Command::OpenLink("lab=speed&a=walk&b=walk".into())).unwrap();
     let problem = session.panes()[0].problem.clone().unwrap();
     assert!(problem.contains("differ"), "{problem}");

@@ -166,7 +166,7 @@ impl Layerer {
         {
             return reading.clone();
         }
-        let reading = GaitCycle::find(pair.profiles[1].source(), &pair.incoming.contacts)
+        let reading = GaitCycle::find(pair.profiles[1].source(), &pair.incoming.roles, &pair.incoming.contacts)
             .ok()
             .and_then(|cycle| {
                 let phases = strike_phases(&pair.a.contacts, cycle.events().right_strike)?;

@@ -91,6 +91,7 @@ fn options(params: &Params) -> LoopOptions {
     let classic = LoopMethod::Classic { half_life_secs };
     let (method, ratio) = match params.text(Key::LoopMethod) {
         "both" => (classic, ratio),
+        "crossed" => (LoopMethod::Crossed { half_life_secs }, ratio),
         "start" => (classic, 1.0),
         "end" => (classic, 0.0),
         "linear" => (LoopMethod::Linear, ratio),

@@ -7,6 +7,7 @@ use crate::clip::ground_speed;
 use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use crate::metrics::Metric;
 use crate::session::params::{Key, Kind, Params};
+use crate::skeleton::Roles;
 use std::sync::Arc;
 
 /// The cycles of two clips, found once.
@@ -62,12 +63,12 @@ impl GaitFinder {
         {
             return Ok(Arc::clone(gaits));
         }
-        let [first, second] = &pair.profiles;
-        let find = |profile: &crate::metrics::Profile| {
-            let found = GaitCycle::find(profile.source(), profile.contacts());
+        let find = |profile: &crate::metrics::Profile, roles: &Roles| {
+            let found = GaitCycle::find(profile.source(), roles, profile.contacts());
             found.map_err(|error| error.to_string())
         };
-        let cycles = [find(first)?, find(second)?];
+        let [first, second] = &pair.profiles;
+        let cycles = [find(first, &pair.a.roles)?, find(second, &pair.incoming.roles)?];
         let gaits = Arc::new(Gaits {
             pair: Arc::clone(pair),
             cycles,
@@ -141,6 +142,10 @@ impl SpeedInputs {
                     facts,
                     asked_mps: self.asked_mps,
                     clips_mps: blend.speeds_mps(),
+                    cuts_secs: [a, b].map(|cycle| {
+                        let range = cycle.range();
+                        [range.start, range.end].map(|frame| frame as f64 / cycle.looped().clip.fps())
+                    }),
                 },
             }),
             retargeted: pair.retargeted.clone(),

@@ -1,0 +1,270 @@
+use super::moving::{View, further, travel};
+use super::{Loop, LoopError, LoopOptions, close_loop};
+use crate::blend::{Assembly, Source, moving_joints};
+use crate::math::quat;
+use crate::registration::limb_weights;
+use crate::skeleton::WorldPose;
+use glam::{Quat, Vec3};
+use std::ops::Range;
+
+/// A clip that is one cycle by itself, or most of one: its end leads into its beginning.
+///
+/// Captured cycles rarely hold the frame that stands for the first one again. The time that passes from the last frame to the first one is
+/// the one that fits the velocities of both ends best: with the difference of the poses `D` and the mean of the velocities `v`, both in the
+/// character's frame and over all joints, `(D · v)/|v|²` were steady motion; along a sine of the cycle's period, whose chord is shorter than its
+/// tangents, it is `t = (T/π) atan(π/T · (D · v)/|v|²)`. The frames of that time are made: the clip runs on with its last velocity, which takes on
+/// the first frame's. What then remains between the ends is left to [`close_loop`].
+#[derive(Clone, Debug)]
+pub struct WholeCycle {
+    source: Source,
+    /// The frames that play; the end stands for the first frame again. It lies behind the clip's last frame where frames were made.
+    pub frames: Range<usize>,
+    /// Frames behind the clip's last one that had to be made, the one that stands for the first frame again among them.
+    pub made: usize,
+    /// Root mean square distance between the joints of both ends that [`close_loop`] has to bridge, centimetres.
+    pub apart_cm: f64,
+    /// The same as a share of the farthest that any frame of the clip is away from its first one. Small for a cycle; 1 where the clip leads away.
+    pub apart_share: f64,
+}
+
+/// A clip is most of a cycle when at most this share of the cycle is missing.
+const MOST_MISSING: f64 = 0.25;
+/// A cycle goes through its ends at this share of its mean speed in the joints at least: what comes to rest there is a deed that is done once.
+const LEAST_SPEED: f64 = 0.3;
+/// The velocities of the ends are measured over this time, seconds.
+const MEASURED_SECS: f64 = 1.0 / 30.0;
+/// Where frames are made, the change of velocity takes at least this share of the clip: over fewer frames it would be a jerk.
+const LEAST_CHANGE: f64 = 0.15;
+/// The ends of a cycle are at most this far apart, as a share of the farthest that any of its poses is away from the first.
+const MOST_APART: f64 = 0.5;
+/// The speeds over the ground at both ends differ by at most this share of the mean speed, and this much, metres per second.
+const SPEED_SHARE: f64 = 0.5;
+const SPEED_MPS: f64 = 0.2;
+
+impl WholeCycle {
+    /// Looks at a clip as a cycle. `None` for a clip that is not: of fewer than eight frames; with ends that are more than half as far apart as any
+    /// two of its poses; one that is much faster at one end than at the other, as a start or a stop; or one that rests at an end, as a turn on the spot.
+    #[must_use]
+    pub fn of(source: &Source) -> Option<Self> {
+        let clip = source.clip();
+        let (frames, fps) = (clip.frames(), clip.fps());
+        if frames < 8 {
+            return None;
+        }
+        let last = frames - 1;
+        let reach = ((MEASURED_SECS * fps).round() as usize).clamp(1, last / 4);
+        if !keeps_its_speed(source, reach) {
+            return None;
+        }
+        let weights = limb_weights(clip.skeleton());
+        let mut world = WorldPose::default();
+        let mut cloud = |frame: usize| -> Vec<Vec3> {
+            clip.world_pose_into(frame, &mut world);
+            let here = source.frames()[frame].inverse();
+            world.positions.iter().map(|&position| here.apply(position)).collect()
+        };
+        let [first, second, before, end] = [0, reach, last - reach, last].map(&mut cloud);
+        let rate = 0.5 / reach as f32;
+        let ends = || first.iter().zip(&second).zip(before.iter().zip(&end)).zip(&weights);
+        // Differences from the last frame to the first, and mean velocities per frame.
+        let pairs =
+            || ends().map(|(((&first, &second), (&before, &end)), &weight)| (first - end, (second - first + end - before) * rate, weight));
+        let sum = |of: &dyn Fn(Vec3, Vec3) -> f32| -> f64 { pairs().map(|(d, v, weight)| weight * f64::from(of(d, v))).sum() };
+        let along = sum(&|d, v| d.dot(v));
+        let square = sum(&|_, v| v.length_squared());
+        let most = MOST_MISSING / (1.0 - MOST_MISSING) * last as f64;
+        let steady = if square > 0.0 { (along / square).max(0.0) } else { 0.0 };
+        // The period is not known before; a few rounds settle it.
+        let sine = |missing: f64| {
+            let rate = std::f64::consts::PI / (last as f64 + missing);
+            libm::atan(rate * steady) / rate
+        };
+        let made = (0..8).fold(steady, |missing, _| sine(missing)).min(most).round() as usize;
+        let total: f64 = weights.iter().sum();
+        let rms = |square: f64| (square / total.max(f64::MIN_POSITIVE)).sqrt();
+        let apart = rms(sum(&|d, v| (d - v * made as f32).length_squared()));
+        let between = |a: &[Vec3], b: &[Vec3]| {
+            let squares = a.iter().zip(b).zip(&weights);
+            rms(squares.map(|((a, b), &weight)| weight * f64::from(a.distance_squared(*b))).sum())
+        };
+        let (mut farthest, mut way, mut earlier) = (0.0f64, 0.0, first.clone());
+        for frame in 1..frames {
+            let here = cloud(frame);
+            farthest = farthest.max(between(&first, &here));
+            way += between(&earlier, &here);
+            earlier = here;
+        }
+        let least = LEAST_SPEED * way / last as f64 * reach as f64;
+        if between(&first, &second) < least || between(&before, &end) < least {
+            return None;
+        }
+        let share = if farthest > 0.0 { apart / farthest } else { 1.0 };
+        if share.is_nan() || share > MOST_APART {
+            return None;
+        }
+        Some(Self {
+            source: if made > 0 {
+                with_frames_behind(source, made)?
+            } else {
+                source.clone()
+            },
+            frames: 0..last + made,
+            made,
+            apart_cm: 100.0 * apart,
+            apart_share: share,
+        })
+    }
+
+    /// Closes it ([`close_loop`]).
+    ///
+    /// # Errors
+    /// As [`close_loop`].
+    pub fn close(&self, options: &LoopOptions) -> Result<Loop, LoopError> {
+        close_loop(&self.source, self.frames.clone(), options)
+    }
+}
+
+/// Whether the body is about as fast at the end as at the beginning, each over `reach` frames.
+fn keeps_its_speed(source: &Source, reach: usize) -> bool {
+    let stands = source.frames();
+    let fps = source.clip().fps();
+    let last = stands.len() - 1;
+    let velocity = |from: usize, to: usize| stands[from].inverse().after(&stands[to]).shift * (fps / (to - from) as f64);
+    let way: f64 = stands.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).sum();
+    let mean = way * fps / last as f64;
+    velocity(0, reach).distance(velocity(last - reach, last)) <= SPEED_SHARE * mean + SPEED_MPS
+}
+
+/// A clip that runs on behind its end until it moves as at its beginning: `made` frames, and one more to tell the velocity there. `None` when that is
+/// no clip.
+fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
+    let clip = source.clip();
+    let (frames, fps) = (clip.frames(), clip.fps());
+    let last = frames - 1;
+    let moving = moving_joints(clip, clip);
+    let view = View {
+        source,
+        moving: &moving,
+        fixed: None,
+    };
+    let poses = [0, 1, last - 1, last].map(|frame| view.pose(frame));
+    let [first, second, before, end] = &poses;
+    let over = (made as f64).max(LEAST_CHANGE * last as f64) as f32;
+    // From the velocity at the end to that at the beginning, evenly over `over` frames; all per frame.
+    let run_on = |from: Vec3, to: Vec3, frame: f32| from * frame + (to - from) * (0.5 * frame * frame / over);
+    let turn = |from: Quat, to: Quat| quat::log(to * from.conjugate());
+    let turns: Vec<(Vec3, Vec3)> = (0..end.0.len())
+        .map(|joint| (turn(before.0[joint], end.0[joint]), turn(first.0[joint], second.0[joint])))
+        .collect();
+    let shifts: Vec<(Vec3, Vec3)> = (0..end.1.len())
+        .map(|slot| (end.1[slot] - before.1[slot], second.1[slot] - first.1[slot]))
+        .collect();
+    let steps = [last, 1].map(|into| travel(&source.step_into(into), fps));
+
+    let mut made_clip = Assembly::new(clip, clip, frames + made + 1);
+    made_clip.play(clip, 0..frames);
+    let mut stands = source.frames().to_vec();
+    let mut here = *stands.last()?;
+    for frame in 1..=made + 1 {
+        let at = frame as f32;
+        let step = steps[0] + (steps[1] - steps[0]) * ((at - 0.5) / over);
+        here = here.after(&further(&crate::math::Planar::IDENTITY, step, fps.recip()));
+        let mut rotations: Vec<Quat> = (end.0.iter().zip(&turns))
+            .map(|(&rotation, &(from, to))| quat::renormalize(quat::exp(run_on(from, to, at)) * rotation))
+            .collect();
+        if let Some(root) = rotations.first_mut() {
+            *root = quat::renormalize(here.rotation() * *root);
+        }
+        let translations: Vec<Vec3> = (end.1.iter().zip(&shifts))
+            .map(|(&translation, &(from, to))| translation + run_on(from, to, at))
+            .collect();
+        let root = here.apply(translations[0]);
+        made_clip.push(root, &rotations, &translations[1..]);
+        stands.push(here);
+    }
+    let extended = made_clip.finish(clip.name().to_owned()).ok()?;
+    Some(source.with_motion(extended, stands))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registration::fixtures::Walk;
+    use crate::skeleton::Roles;
+    use std::sync::Arc;
+
+    fn source_of(walk: &Walk) -> Source {
+        let clip = walk.clip();
+        let roles = Roles::detect(clip.skeleton());
+        Source::new(Arc::new(clip), &roles)
+    }
+
+    /// A walk whose stride takes 60 frames, cut to so many of them.
+    fn walk(frames: usize, turning: f32) -> Source {
+        source_of(&Walk {
+            frames,
+            cadence: 1.0,
+            turning,
+            phase: 0.15,
+            ..Walk::default()
+        })
+    }
+
+    #[test]
+    fn what_is_missing_of_a_cycle_is_found_and_made() {
+        let whole = walk(200, 0.5);
+        // With the first frame again, without it, and without a tenth and a fifth of the cycle.
+        for (frames, within) in [(61, 0), (60, 0), (58, 1), (54, 1), (48, 3)] {
+            let cycle = WholeCycle::of(&walk(frames, 0.5)).unwrap();
+            assert!(cycle.frames.len().abs_diff(60) <= within, "{frames}: {:?}", cycle.frames);
+            assert_eq!(cycle.made, cycle.frames.end + 1 - frames);
+            assert!(cycle.apart_share < 0.2, "{frames}: {} cm, {}", cycle.apart_cm, cycle.apart_share);
+            let looped = cycle.close(&LoopOptions::default()).unwrap();
+            assert!(looped.seam.turn_deg < 1e-3 && looped.seam.turn_dps < 0.1, "{:?}", looped.seam);
+            // The cycle is where the walk is, after three rounds as well.
+            let round = whole.frames()[0].inverse().after(&whole.frames()[60]);
+            let found = looped.frames[0].inverse().after(&looped.cycle.after(&looped.frames[0]));
+            let off = found.shift.distance(round.shift) / round.shift.length();
+            assert!(
+                off < 0.02 * (1 + 2 * within) as f64 && (found.yaw - round.yaw).abs() < 0.03,
+                "{frames}: {found:?} {round:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn made_frames_are_those_of_the_walk() {
+        let (whole, cut) = (walk(61, 0.0), walk(54, 0.0));
+        let cycle = WholeCycle::of(&cut).unwrap();
+        let positions = |source: &Source, frame: usize| source.clip().world_pose(frame).positions;
+        for frame in 54..59 {
+            let apart = positions(&whole, frame)
+                .iter()
+                .zip(&positions(&cycle.source, frame))
+                .map(|(a, b)| a.distance(*b))
+                .fold(0.0, f32::max);
+            assert!(apart < 0.05, "{frame}: {apart}");
+        }
+    }
+
+    #[test]
+    fn what_is_done_once_is_no_cycle() {
+        use crate::synth::{Action, Params, synthesize};
+        for action in [Action::Spin, Action::Start, Action::Stop, Action::Jump] {
+            let clip = synthesize(&Params::new(action)).unwrap().clip;
+            let roles = Roles::detect(clip.skeleton());
+            assert!(WholeCycle::of(&Source::new(Arc::new(clip), &roles)).is_none(), "{action:?}");
+        }
+    }
+
+    #[test]
+    fn what_leads_elsewhere_is_no_cycle() {
+        for frames in [2, 7, 20, 32, 95, 150] {
+            assert!(WholeCycle::of(&walk(frames, 0.0)).is_none(), "{frames}");
+        }
+        // Two and three strides are cycles, too.
+        for frames in [121, 181] {
+            assert_eq!(WholeCycle::of(&walk(frames, 0.0)).unwrap().frames, 0..frames - 1);
+        }
+    }
+}
