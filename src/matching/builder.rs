@@ -1,13 +1,16 @@
 use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
 use super::features::{Features, Layout, RATE};
 use super::motion::{FeatureJoints, Motion, mirrored_contacts};
+use super::round;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
 use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget};
+use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
-use crate::skeleton::{Roles, Skeleton};
+use crate::skeleton::{Roles, Side, Skeleton};
+use crate::transition::play_around;
 use std::sync::Arc;
 
 /// The most frames of a database: features of 27 dimensions take half a gigabyte then.
@@ -20,8 +23,8 @@ const SLICE: usize = 100_000;
 /// Builds a [`Database`] in slices: [`advance`](Self::advance) until it is complete, then [`finish`](Self::finish).
 ///
 /// Each clip is moved to the first clip's skeleton and to [`RATE`] frames per second, measured, and mirrored; one of these for one clip is a
-/// slice. Then features are normalised and frames sorted into boxes. A clip that is too short to look ahead in is left out and
-/// named in [`Database::skipped`].
+/// slice. Then features are normalised and frames sorted into boxes. A clip that is a cycle is closed and goes round
+/// ([`DatabaseOptions::cycles`]). Another one that is too short to look ahead in is left out and named in [`Database::skipped`].
 #[derive(Clone, Debug)]
 pub struct DatabaseBuilder {
     clips: Vec<MatchClip>,
@@ -40,12 +43,32 @@ pub struct DatabaseBuilder {
 #[derive(Clone, Debug)]
 enum Stage {
     Prepare,
-    Measure(Arc<Clip>),
+    Measure(Round),
     Mirror,
-    MeasureMirrored(Arc<Clip>),
+    MeasureMirrored(Round),
     Gather(Gathering),
     Normalise(Gathering),
     Sort(Sorting),
+}
+
+/// A clip at the database's rate; of a cycle one round, and where that leads.
+#[derive(Clone, Debug)]
+struct Round {
+    clip: Arc<Clip>,
+    cycle: Option<Planar>,
+}
+
+impl Round {
+    /// The contacts of the feet; in a cycle those of a round in the middle of others, where no stance is cut off.
+    fn contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
+        let detect = |clip: &Clip| Contacts::detect(clip, roles, &ContactOptions::default());
+        let Some(cycle) = &self.cycle else { return Ok(detect(&self.clip)) };
+        let frames = self.clip.frames();
+        let three = detect(&play_around(&self.clip, cycle, 3)?);
+        Ok(Contacts::from_flags(Side::BOTH.map(|side| {
+            (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()
+        })))
+    }
 }
 
 /// The features of all motions, one after the other.
@@ -143,7 +166,7 @@ impl DatabaseBuilder {
             clips: Vec::new(),
             options: DatabaseOptions {
                 features: features.clone(),
-                mirrored: database.options.mirrored,
+                ..database.options.clone()
             },
             layout: Layout::new(features)?,
             skeleton: Arc::clone(&database.skeleton),
@@ -184,9 +207,9 @@ impl DatabaseBuilder {
         match std::mem::replace(&mut self.stage, Stage::Prepare) {
             Stage::Prepare => match self.clips.get(self.next) {
                 Some(from) => {
-                    let clip = self.prepared(from)?;
-                    if clip.frames() > self.layout.horizon() {
-                        self.stage = Stage::Measure(clip);
+                    let round = self.prepared(from)?;
+                    if round.cycle.is_some() || round.clip.frames() > self.layout.horizon() {
+                        self.stage = Stage::Measure(round);
                     } else {
                         self.skipped.push(MatchError::TooShort {
                             name: from.clip.name().to_owned(),
@@ -198,9 +221,9 @@ impl DatabaseBuilder {
                 }
                 None => self.stage = Stage::Gather(Gathering::new()),
             },
-            Stage::Measure(clip) => {
-                let contacts = Contacts::detect(&clip, &self.roles, &ContactOptions::default());
-                let mut motion = Motion::new(clip, &self.roles, contacts, self.next, false)?;
+            Stage::Measure(round) => {
+                let contacts = round.contacts(&self.roles)?;
+                let mut motion = Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, false)?;
                 motion.tags = self.tags_of(&motion);
                 self.motions.push(Arc::new(motion));
                 self.stage = if self.options.mirrored { Stage::Mirror } else { self.next_clip() };
@@ -212,15 +235,18 @@ impl DatabaseBuilder {
                             name: motion.clip().name().to_owned(),
                             error,
                         })?;
-                        Stage::MeasureMirrored(Arc::new(clip))
+                        Stage::MeasureMirrored(Round {
+                            clip: Arc::new(clip),
+                            cycle: motion.cycle().as_ref().map(round::mirrored),
+                        })
                     }
                     None => self.next_clip(),
                 };
             }
-            Stage::MeasureMirrored(clip) => {
+            Stage::MeasureMirrored(round) => {
                 if let Some(original) = self.motions.last() {
                     let contacts = mirrored_contacts(original.contacts());
-                    let mut motion = Motion::new(clip, &self.roles, contacts, self.next, true)?;
+                    let mut motion = Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, true)?;
                     motion.tags.clone_from(&original.tags);
                     self.motions.push(Arc::new(motion));
                 }
@@ -286,7 +312,7 @@ impl DatabaseBuilder {
     }
 
     /// A clip on the first clip's skeleton and at the database's rate.
-    fn prepared(&self, from: &MatchClip) -> Result<Arc<Clip>, MatchError> {
+    fn prepared(&self, from: &MatchClip) -> Result<Round, MatchError> {
         let mut clip = Arc::clone(&from.clip);
         if clip.skeleton() != &self.skeleton {
             let moved = retarget(&clip, &from.roles, &self.skeleton, &self.roles).map_err(|error| MatchError::Retarget {
@@ -295,10 +321,18 @@ impl DatabaseBuilder {
             })?;
             clip = Arc::new(moved);
         }
+        if self.options.cycles
+            && let Some((clip, cycle)) = round::closed(&clip, &self.roles).as_ref().and_then(round::at_rate)
+        {
+            return Ok(Round {
+                clip: Arc::new(clip),
+                cycle: Some(cycle),
+            });
+        }
         if clip.fps() != RATE as f64 {
             clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
         }
-        Ok(clip)
+        Ok(Round { clip, cycle: None })
     }
 
     fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
@@ -329,7 +363,8 @@ impl DatabaseBuilder {
         for &frame in &valid {
             counts[frame as usize] = true;
         }
-        let features = Features::normalise(self.layout.clone(), rows, |row| counts[row]);
+        let normalisation = self.options.features.normalisation;
+        let features = Features::normalise(self.layout.clone(), normalisation, rows, |row| counts[row]);
         let boxes = BoxBuilder::new(&valid, &Weights::default().spread(&self.layout));
         Ok(Sorting {
             starts,

@@ -43,6 +43,9 @@ pub struct DatabaseOptions {
     pub features: FeatureOptions,
     /// Whether each clip is followed by its mirror image.
     pub mirrored: bool,
+    /// Whether a clip that is a cycle, by itself or but for a rest, goes round: it is searched to its last frame and plays on behind it. Without it
+    /// every clip ends.
+    pub cycles: bool,
 }
 
 impl Default for DatabaseOptions {
@@ -50,6 +53,7 @@ impl Default for DatabaseOptions {
         Self {
             features: FeatureOptions::default(),
             mirrored: true,
+            cycles: true,
         }
     }
 }
@@ -121,7 +125,7 @@ impl Database {
         self.starts.last().copied().unwrap_or(0)
     }
 
-    /// Frames that can be found: those whose trajectory lies inside their motion.
+    /// Frames that can be found: those whose trajectory lies inside their motion, and all of a cycle.
     #[must_use]
     pub fn valid(&self) -> &[u32] {
         &self.valid
@@ -185,7 +189,7 @@ impl Database {
         (place.frame < motion.frames()).then(|| self.starts[place.motion] + place.frame)
     }
 
-    /// Whether a frame can be found: its trajectory lies inside its motion. Tags are another matter.
+    /// Whether a frame can be found: its trajectory lies inside its motion, or that is a cycle. Tags are another matter.
     #[must_use]
     pub fn is_valid(&self, place: Place) -> bool {
         self.motion(place.motion)

@@ -53,11 +53,23 @@ impl Block {
     }
 }
 
+/// Which numbers are brought to one scale together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum Normalisation {
+    /// Each [`Block`]: where hardly anything varies sideways, that counts as little as it is.
+    #[default]
+    Block,
+    /// Each number by itself, so that all vary by as much: the plain standard score.
+    Dimension,
+}
+
 /// What is looked at in a frame.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FeatureOptions {
     /// How far ahead the trajectory is compared, seconds, rising. Three times give 27 dimensions.
     pub trajectory_secs: Vec<f64>,
+    /// Which numbers are brought to one scale together.
+    pub normalisation: Normalisation,
 }
 
 impl Default for FeatureOptions {
@@ -65,6 +77,7 @@ impl Default for FeatureOptions {
     fn default() -> Self {
         Self {
             trajectory_secs: vec![1.0 / 3.0, 2.0 / 3.0, 1.0],
+            normalisation: Normalisation::default(),
         }
     }
 }
@@ -197,21 +210,22 @@ const LEAST_SCALE: f32 = 0.02;
 /// Normalised features of frames, row by row, and how they were normalised.
 ///
 /// `(value - mean of its dimension) / scale of its block`; a block's scale is the mean of its dimensions' standard deviations (Clavet,
-/// "Motion Matching and The Road to Next-Gen Animation", GDC 2016; Holden et al., "Learned Motion Matching", 2020, section 3). A block
-/// that does not vary at all has the scale 1. Rounded to 1/4096.
+/// "Motion Matching and The Road to Next-Gen Animation", GDC 2016; Holden et al., "Learned Motion Matching", 2020, section 3). With
+/// [`Normalisation::Dimension`] each dimension has a scale of its own. What does not vary at all has the scale 1. Rounded to 1/4096.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
     layout: Layout,
     rows: Vec<f32>,
     means: Vec<f32>,
-    scales: [f32; Block::COUNT],
+    /// One for each number of a row.
+    scales: Vec<f32>,
 }
 
 impl Features {
     /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; a last row that is not whole is left out). Means and scales are those of
     /// the rows for which `counts` says so.
     #[must_use]
-    pub fn normalise(layout: Layout, mut rows: Vec<f32>, counts: impl Fn(usize) -> bool) -> Self {
+    pub fn normalise(layout: Layout, normalisation: Normalisation, mut rows: Vec<f32>, counts: impl Fn(usize) -> bool) -> Self {
         let dims = layout.dims();
         rows.truncate(rows.len() / dims * dims);
         let (mut sums, mut squares, mut number) = (vec![0.0f64; dims], vec![0.0f64; dims], 0usize);
@@ -236,16 +250,24 @@ impl Features {
                 *square += (f64::from(value) - mean) * (f64::from(value) - mean);
             }
         }
-        let scales = Block::ALL.map(|block| {
-            let range = layout.range(block);
-            let deviations: f64 = squares[range.clone()].iter().map(|square| (square / number).sqrt()).sum();
-            let scale = (deviations / range.len() as f64) as f32;
-            match scale {
+        let scale_of = |dims: Range<usize>| {
+            let deviations: f64 = squares[dims.clone()].iter().map(|square| (square / number).sqrt()).sum();
+            match (deviations / dims.len() as f64) as f32 {
                 still if still <= 1e-6 || !still.is_finite() => 1.0,
                 // Clips that all go straight on: a tremble of the heading is not to be all that counts.
                 scale => scale.max(LEAST_SCALE),
             }
-        });
+        };
+        let scales = match normalisation {
+            Normalisation::Dimension => (0..dims).map(|dim| scale_of(dim..dim + 1)).collect(),
+            Normalisation::Block => {
+                let of_block = |block| {
+                    let range = layout.range(block);
+                    std::iter::repeat_n(scale_of(range.clone()), range.len())
+                };
+                Block::ALL.into_iter().flat_map(of_block).collect()
+            }
+        };
         let means = sums.into_iter().map(|mean| mean as f32).collect();
         let mut features = Self {
             layout,
@@ -262,13 +284,8 @@ impl Features {
 
     /// One raw row, normalised where it lies.
     pub fn normalise_row(&self, row: &mut [f32]) {
-        for block in Block::ALL {
-            let range = self.layout.range(block);
-            let scale = self.scales[block as usize];
-            let means = &self.means[range.clone()];
-            for (value, mean) in row.get_mut(range).into_iter().flatten().zip(means) {
-                *value = ((*value - mean) / scale * GRID).round() / GRID;
-            }
+        for ((value, mean), scale) in row.iter_mut().zip(&self.means).zip(&self.scales) {
+            *value = ((*value - mean) / scale * GRID).round() / GRID;
         }
     }
 
@@ -303,10 +320,10 @@ impl Features {
         &self.means
     }
 
-    /// A block's scale: what 1 is in its own unit.
+    /// The scale of each number of a row: what 1 is in its own unit.
     #[must_use]
-    pub fn scale(&self, block: Block) -> f32 {
-        self.scales[block as usize]
+    pub fn scales(&self) -> &[f32] {
+        &self.scales
     }
 }
 
@@ -333,7 +350,10 @@ mod tests {
             vec![9.0],
             vec![0.1; 7],
         ] {
-            let options = FeatureOptions { trajectory_secs: times };
+            let options = FeatureOptions {
+                trajectory_secs: times,
+                ..FeatureOptions::default()
+            };
             assert!(matches!(Layout::new(&options), Err(MatchError::Times { .. })), "{options:?}");
         }
     }
@@ -342,6 +362,7 @@ mod tests {
     fn a_block_has_one_scale_and_one_that_stands_still_has_1() {
         let layout = Layout::new(&FeatureOptions {
             trajectory_secs: vec![0.5],
+            ..FeatureOptions::default()
         })
         .unwrap();
         let dims = layout.dims();
@@ -351,9 +372,13 @@ mod tests {
             rows[row * dims] = 5.0 + sign;
             rows[row * dims + 1] = 3.0 * sign;
         }
-        let features = Features::normalise(layout, rows, |_| true);
-        assert_eq!(features.scale(Block::TrajectoryPosition), 2.0);
-        assert_eq!(features.scale(Block::HipVelocity), 1.0);
+        let own = Features::normalise(layout.clone(), Normalisation::Dimension, rows.clone(), |_| true);
+        let features = Features::normalise(layout, Normalisation::Block, rows, |_| true);
+        assert_eq!(features.scales()[..3], [2.0, 2.0, 1.0]);
+        assert_eq!(features.scales()[dims - 1], 1.0);
+        // With a scale of its own each dimension varies by 1.
+        assert_eq!(own.scales()[..3], [1.0, 3.0, 1.0]);
+        assert_eq!(&own.row(1).unwrap()[..3], &[1.0, 1.0, 0.0]);
         assert_eq!(&features.row(1).unwrap()[..3], &[0.5, 1.5, 0.0]);
         assert_eq!((features.len(), features.row(4), features.row(usize::MAX)), (4, None, None));
     }

@@ -17,6 +17,9 @@
 //!   question, the body as it is the other.
 //! - *Input* ([`Control`], [`Recording`]): rounded as it is recorded, replayed exactly.
 //!
+//! A clip that is a cycle, such as one stride of a walk, goes round: it is searched to its last frame, its trajectories lead into the next round,
+//! and it plays on until another frame fits better.
+//!
 //! The character's frame is the *simulation root*: the hips over the ground, without the sway of the stride ([`simulation_roots`]).
 //!
 //! # Example
@@ -83,7 +86,7 @@ mod error;
 mod features;
 mod made;
 mod motion;
-
+mod round;
 mod scenario;
 pub mod search;
 mod simulation;
@@ -98,7 +101,7 @@ pub use database::{Database, DatabaseOptions, MatchClip, Place};
 pub use desired::{Simulation, Steering};
 pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;
-pub use features::{Block, FeatureOptions, Features, Layout, RATE, Weights};
+pub use features::{Block, FeatureOptions, Features, Layout, Normalisation, RATE, Weights};
 pub use made::{made_clip, made_clips, made_params};
 pub use motion::Motion;
 pub use scenario::Scenario;

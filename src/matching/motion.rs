@@ -1,4 +1,6 @@
 use super::features::{BODY, Layout, RATE};
+use super::round::{moved_by, standing};
+use super::simulation::simulation_roots_of_cycle;
 use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
 use crate::clip::{Clip, Contacts, character_frames};
@@ -16,6 +18,8 @@ pub struct Motion {
     body: Vec<[f32; BODY]>,
     source: usize,
     mirrored: bool,
+    /// Where a round of a clip that goes round leads: `clip_from_clip`.
+    cycle: Option<Planar>,
     pub(super) tags: Vec<TagRange>,
 }
 
@@ -42,11 +46,22 @@ impl FeatureJoints {
 }
 
 impl Motion {
-    /// Measures a clip at [`RATE`].
-    pub(super) fn new(clip: Arc<Clip>, roles: &Roles, contacts: Contacts, source: usize, mirrored: bool) -> Result<Self, MatchError> {
+    /// Measures a clip at [`RATE`]; with `cycle`, where a round of it leads, one that goes round.
+    pub(super) fn new(
+        clip: Arc<Clip>,
+        cycle: Option<Planar>,
+        roles: &Roles,
+        contacts: Contacts,
+        source: usize,
+        mirrored: bool,
+    ) -> Result<Self, MatchError> {
         let joints = FeatureJoints::find(&clip, roles)?;
-        let roots = simulation_roots(&character_frames(&clip, roles));
-        let body = body_features(&clip, joints, &roots);
+        let frames = character_frames(&clip, roles);
+        let roots = match &cycle {
+            Some(cycle) => simulation_roots_of_cycle(&frames, cycle),
+            None => simulation_roots(&frames),
+        };
+        let body = body_features(&clip, cycle.as_ref(), joints, &roots);
         let finite =
             body.iter().flatten().all(|value| value.is_finite()) && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
         if !finite {
@@ -60,6 +75,7 @@ impl Motion {
             body,
             source,
             mirrored,
+            cycle,
             tags: Vec::new(),
         })
     }
@@ -94,6 +110,37 @@ impl Motion {
         self.mirrored
     }
 
+    /// Whether it is a cycle, which plays round and round: its last frame is followed by its first.
+    #[must_use]
+    pub fn is_cycle(&self) -> bool {
+        self.cycle.is_some()
+    }
+
+    /// Where a round of a cycle leads: the frame behind the last is the first, moved by this over the ground. `None` for a clip that ends.
+    #[must_use]
+    pub fn cycle(&self) -> Option<Planar> {
+        self.cycle
+    }
+
+    /// The frame that follows; `None` at the end of a clip that is no cycle.
+    #[must_use]
+    pub fn next(&self, frame: usize) -> Option<usize> {
+        match frame + 1 {
+            next if next < self.frames() => Some(next),
+            _ => self.cycle.map(|_| 0),
+        }
+    }
+
+    /// How many frames two of its frames are apart, in a cycle the shorter way round.
+    pub(super) fn frames_between(&self, a: usize, b: usize) -> usize {
+        let apart = a.abs_diff(b);
+        if self.is_cycle() {
+            apart.min(self.frames().saturating_sub(apart))
+        } else {
+            apart
+        }
+    }
+
     /// Its tags, at [`RATE`].
     #[must_use]
     pub fn tags(&self) -> &[TagRange] {
@@ -106,18 +153,23 @@ impl Motion {
         self.clip.frames()
     }
 
-    /// The frames from 0 on whose trajectory lies inside the clip.
+    /// The frames from 0 on whose trajectory lies inside the clip: all of a cycle.
     pub(super) fn valid(&self, layout: &Layout) -> usize {
-        self.frames().saturating_sub(layout.horizon())
+        let behind = if self.is_cycle() { 0 } else { layout.horizon() };
+        self.frames().saturating_sub(behind)
     }
 
-    /// Where the simulation root is in a frame; behind the clip's end it goes on as it did over the last half second.
+    /// Where the simulation root is in a frame. Behind the clip's end a cycle begins again, and another clip goes on as it did over the last half
+    /// second.
     #[must_use]
     pub fn root(&self, frame: usize) -> Planar {
         if let Some(root) = self.roots.get(frame) {
             return *root;
         }
         let Some(last) = self.roots.last() else { return Planar::IDENTITY };
+        if let Some(cycle) = &self.cycle {
+            return standing(&self.roots, cycle, isize::try_from(frame).unwrap_or(0));
+        }
         let behind = self.roots.len() - 1;
         let over = (frame - behind) as f64;
         // The steps of half a second: a single one would go on with what the smoothing made of the end.
@@ -170,8 +222,8 @@ pub(super) fn write_trajectory(row: &mut [f32], times: usize, index: usize, ther
     }
 }
 
-/// Feet and hips in the character's frame. Velocities are those over the world by central differences, one-sided at the clip's ends.
-fn body_features(clip: &Clip, joints: FeatureJoints, roots: &[Planar]) -> Vec<[f32; BODY]> {
+/// Feet and hips in the character's frame. Velocities are those over the world by central differences, one-sided at the ends of a clip that is no cycle.
+fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roots: &[Planar]) -> Vec<[f32; BODY]> {
     let FeatureJoints { hips, feet } = joints;
     let needed = clip.skeleton().with_ancestors([hips, feet[0], feet[1]]);
     let mut world = WorldPose::default();
@@ -185,9 +237,20 @@ fn body_features(clip: &Clip, joints: FeatureJoints, roots: &[Planar]) -> Vec<[f
     (0..positions.len())
         .map(|frame| {
             let here = roots[frame].inverse();
-            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
-            let rate = RATE as f32 / (after - before).max(1) as f32;
-            let velocity = |point: usize| here.apply_vector((positions[after][point] - positions[before][point]) * rate);
+            let (mut before, mut after) = (positions[frame.saturating_sub(1)], positions[(frame + 1).min(last)]);
+            let mut steps = (frame + 1).min(last) - frame.saturating_sub(1);
+            if let Some(cycle) = cycle {
+                steps = 2;
+                if frame == 0 {
+                    let back = moved_by(cycle, -1);
+                    before = positions[last].map(|position| back.apply(position));
+                }
+                if frame == last {
+                    after = positions[0].map(|position| cycle.apply(position));
+                }
+            }
+            let rate = RATE as f32 / steps.max(1) as f32;
+            let velocity = |point: usize| here.apply_vector((after[point] - before[point]) * rate);
             let values = [
                 here.apply(positions[frame][0]),
                 here.apply(positions[frame][1]),

@@ -1,6 +1,7 @@
 //! The simulation root: where the character is meant to be, without the sway of the stride.
 
 use super::features::RATE;
+use super::round::standing;
 use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 
@@ -42,6 +43,18 @@ pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
             }
         })
         .collect()
+}
+
+/// The simulation roots of a cycle, whose frame behind the last is the first, moved by `cycle`: smoothed over what comes before and behind when it goes
+/// round.
+pub(super) fn simulation_roots_of_cycle(frames: &[Planar], cycle: &Planar) -> Vec<Planar> {
+    // So much is looked at to either side.
+    let around = (0.5 * POSITION_SECS.max(DIRECTION_SECS) * RATE as f64).round() as isize;
+    let whole: Vec<Planar> = (-around..frames.len() as isize + around)
+        .map(|frame| standing(frames, cycle, frame))
+        .collect();
+    let roots = simulation_roots(&whole);
+    roots.into_iter().skip(around as usize).take(frames.len()).collect()
 }
 
 /// Each value replaced by that of the cubic that fits it and `half` neighbours to either side best (Savitzky and Golay 1964). Near the ends the

@@ -263,10 +263,10 @@ impl Controller {
     fn go_on(&mut self) -> Planar {
         let mut step = Planar::IDENTITY;
         if let Some(motion) = self.database.motion(self.place.motion)
-            && self.place.frame + 1 < motion.frames()
+            && let Some(next) = motion.next(self.place.frame)
         {
             step = motion.root(self.place.frame).inverse().after(&motion.root(self.place.frame + 1));
-            self.place.frame += 1;
+            self.place.frame = next;
         }
         self.inertializer.advance(TICK_SECS);
         let step = self.inertializer.step(&step, TICK_SECS);
@@ -345,13 +345,14 @@ impl Controller {
         };
         let last = motion.frames().saturating_sub(1);
         let (clip, frame) = (motion.clip(), place.frame.min(last));
-        // The step from this frame to the next; behind the last one it is the one before.
-        let (from, to) = if frame < last {
+        // The step from this frame to the next; behind the last one of a clip that ends it is the one before.
+        let (from, to) = if motion.next(frame).is_some() {
             (frame, frame + 1)
         } else {
             (last.saturating_sub(1), last)
         };
         let at = |frame: usize| {
+            let frame = frame % (last + 1);
             let here = motion.root(frame).inverse();
             let mut rotations = clip.rotations(frame).to_vec();
             if let Some(root) = rotations.first_mut() {

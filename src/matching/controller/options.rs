@@ -22,6 +22,8 @@ pub enum Hysteresis {
     },
     /// A jump needs three searches in a row that want one.
     ThreeVotes,
+    /// A jump into another clip needs three searches in a row that want one; within its clip it jumps at once.
+    ThreeVotesForAnotherClip,
 }
 
 /// Which search is asked. All find the same frame.
@@ -69,9 +71,10 @@ pub struct ControllerOptions {
     pub method: SearchMethod,
     /// What keeps it from jumping too often.
     pub hysteresis: Hysteresis,
-    /// While the input stays as it is, a frame of another clip must be cheaper than the one that is playing by this share of the cost, from 0 (no
-    /// matter) to 1.
+    /// While the input stays as it is, one clip is preferred: a frame of another clip must be cheaper by this share of the cost, from 0 (no matter) to 1.
     pub prefer_current: f32,
+    /// Which clip that is, by its number among those that the database was built from; `None` prefers the clip that is playing.
+    pub prefer_source: Option<usize>,
     /// How a jump is hidden.
     pub transition: Inertialization,
     /// How the simulation object is steered.
@@ -95,6 +98,7 @@ impl Default for ControllerOptions {
                 constant: 0.2,
             },
             prefer_current: 0.2,
+            prefer_source: None,
             transition: Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
             steering: Steering {
                 velocity_half_life_secs: 0.28,
@@ -136,9 +140,9 @@ impl ControllerOptions {
                 check("a continuing bias", f64::from(constant), 0.0, 1e3)?;
             }
             Hysteresis::MinimumTime { secs } => check("a minimum time (s)", secs, 0.0, 10.0)?,
-            Hysteresis::None | Hysteresis::ThreeVotes => {}
+            Hysteresis::None | Hysteresis::ThreeVotes | Hysteresis::ThreeVotesForAnotherClip => {}
         }
-        check("a preference for the current clip", f64::from(self.prefer_current), 0.0, 1.0)?;
+        check("a preference for a clip", f64::from(self.prefer_current), 0.0, 1.0)?;
         let times = match self.transition {
             Inertialization::Offset(Decay::Spring { half_life_secs }) => [half_life_secs; 2],
             Inertialization::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) => [blend_secs; 2],

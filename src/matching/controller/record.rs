@@ -48,10 +48,10 @@ pub struct SearchRecord {
     pub reason: Reason,
     /// The frame that was playing, and its cost.
     pub current: Candidate,
-    /// The frame of least cost among those admitted.
+    /// The frame of least cost among those admitted, or that of a clip that is preferred.
     pub winner: Option<Candidate>,
     /// The best frames of the neighbourhoods, the winner first: [`super::ControllerOptions::candidates`] of them at most. Beside the winner they are frames
-    /// that cost less than those next to them in their clip.
+    /// that cost less than those next to them in their clip, the cheapest first.
     pub candidates: Vec<Candidate>,
     /// What kept it from going to the winner; `None` when it went.
     pub held: Option<Held>,

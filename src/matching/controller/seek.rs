@@ -19,7 +19,9 @@ const STILL_TICKS: u64 = RATE as u64 / 2;
 impl Controller {
     pub(super) fn reason(&mut self, filter: TagFilter) -> Option<Reason> {
         let simulation = &self.simulation;
-        let frames = self.database.motion(self.place.motion).map_or(0, Motion::frames);
+        let playing = self.database.motion(self.place.motion);
+        // A cycle has no end.
+        let ends = playing.is_none_or(|motion| !motion.is_cycle() && self.place.frame + 2 >= motion.frames());
         let changed = self.asked.velocity.distance(simulation.goal_velocity) > CHANGE_MPS
             || wrap_angle(self.asked.yaw - simulation.goal_yaw).abs() > CHANGE_RADIANS
             || self.asked.filter != filter;
@@ -28,7 +30,7 @@ impl Controller {
         }
         let interval = (self.options.search_interval_secs * RATE as f64).round().max(1.0) as u64;
         let due = self.last_search.is_none_or(|last| self.tick >= last + interval);
-        if self.place.frame + 2 >= frames {
+        if ends {
             Some(Reason::ClipEnd)
         } else if changed {
             Some(Reason::InputChange)
@@ -97,7 +99,8 @@ impl Controller {
         };
         let admitted = self.database.is_valid(self.place) && filter.admits(self.database.tags(here));
         let found = self.find(&query, filter, admitted.then_some(current));
-        let held = match found.best.and_then(|best| Some((best, self.database.place(best.frame)?))) {
+        let best = self.preferred(&query, filter, found.best);
+        let held = match best.and_then(|best| Some((best, self.database.place(best.frame)?))) {
             None => Some(Held::Nothing),
             Some((best, to)) => {
                 let held = self.held(reason, filter, current, best, to);
@@ -121,10 +124,14 @@ impl Controller {
             })
         };
         let Some(was) = candidate(current) else { return };
-        let winner = found.best.and_then(candidate);
+        let winner = best.and_then(candidate);
         let mut candidates: Vec<Candidate> = winner.into_iter().take(self.options.candidates).collect();
         if self.options.candidates > 1 {
             candidates = self.best(&query, filter).into_iter().filter_map(candidate).collect();
+            // The winner comes first, also where it is not the cheapest.
+            candidates.retain(|other| winner.is_none_or(|winner| winner.place != other.place));
+            candidates.splice(0..0, winner);
+            candidates.truncate(self.options.candidates);
         }
         self.record = Some(SearchRecord {
             tick: self.tick,
@@ -138,9 +145,59 @@ impl Controller {
         });
     }
 
+    /// Whether the input has not changed for a while.
+    fn is_still(&self) -> bool {
+        self.tick >= self.last_change + STILL_TICKS
+    }
+
+    /// Whether a motion is of the clip that is preferred now, by its name.
+    fn is_preferred(&self, motion: usize) -> bool {
+        let source = self.options.prefer_source.filter(|_| self.is_still());
+        source.is_some() && self.database.motion(motion).map(Motion::source) == source
+    }
+
+    /// A cost as it counts: frames of the clip that is preferred are cheaper.
+    fn counted(&self, motion: usize, cost: f32) -> f32 {
+        if self.is_preferred(motion) {
+            cost * (1.0 - self.options.prefer_current)
+        } else {
+            cost
+        }
+    }
+
+    /// The best frame of the clip that is preferred now, if it counts as no dearer than the best of all; else that one.
+    fn preferred(&self, query: &[f32], filter: TagFilter, best: Option<Hit>) -> Option<Hit> {
+        let best = best?;
+        let question = Question {
+            query,
+            weights: &self.weights,
+            filter,
+        };
+        let database = &self.database;
+        let frames = (0..database.motions().len())
+            .filter(|&motion| self.is_preferred(motion))
+            .flat_map(|motion| {
+                let valid = database.motions()[motion].valid(database.features().layout());
+                (0..valid).filter_map(move |frame| database.number(Place { motion, frame }))
+            });
+        let hits = frames.filter(|&frame| filter.admits(database.tags(frame))).filter_map(|frame| {
+            let cost = question.cost(database.features().row(frame)?);
+            Some(Hit { frame, cost })
+        });
+        let named = hits.reduce(|a, b| if b.beats(&a) { b } else { a });
+        let motion_of = |hit: &Hit| database.place(hit.frame).map_or(usize::MAX, |place| place.motion);
+        let counted = |hit: &Hit| self.counted(motion_of(hit), hit.cost);
+        named.filter(|named| counted(named) <= counted(&best)).or(Some(best))
+    }
+
     /// What speaks against going to the winner.
     fn held(&mut self, reason: Reason, filter: TagFilter, current: Hit, best: Hit, to: Place) -> Option<Held> {
-        let same = to.motion == self.place.motion && to.frame.abs_diff(self.place.frame) <= SAME_FRAMES;
+        let playing = self.database.motion(self.place.motion);
+        let apart = playing.map_or(usize::MAX, |motion| motion.frames_between(to.frame, self.place.frame));
+        let same = to.motion == self.place.motion && apart <= SAME_FRAMES;
+        let elsewhere = to.motion != self.place.motion;
+        let cost = self.counted(to.motion, best.cost);
+        let current_cost = self.counted(self.place.motion, current.cost);
         if reason == Reason::ClipEnd {
             self.votes = 0;
             return None;
@@ -152,13 +209,14 @@ impl Controller {
         // A frame that has not the tags that are asked for is left as soon as may be.
         if filter.admits(self.database.tags(current.frame)) {
             match self.options.hysteresis {
-                Hysteresis::ContinuingBias { share, constant } if best.cost + constant >= current.cost * (1.0 - share) => {
+                Hysteresis::ContinuingBias { share, constant } if cost + constant >= current_cost * (1.0 - share) => {
                     return Some(Held::Bias);
                 }
                 Hysteresis::MinimumTime { secs } if self.last_jump.is_some_and(|last| (self.tick - last) as f64 * TICK_SECS < secs) => {
                     return Some(Held::MinimumTime);
                 }
-                Hysteresis::ThreeVotes => {
+                Hysteresis::ThreeVotesForAnotherClip if !elsewhere => {}
+                Hysteresis::ThreeVotes | Hysteresis::ThreeVotesForAnotherClip => {
                     self.votes += 1;
                     if self.votes < 3 {
                         return Some(Held::Votes);
@@ -166,8 +224,8 @@ impl Controller {
                 }
                 _ => {}
             }
-            let still = self.tick >= self.last_change + STILL_TICKS;
-            if still && to.motion != self.place.motion && best.cost >= current.cost * (1.0 - self.options.prefer_current) {
+            let holds_on = self.options.prefer_source.is_none() && self.is_still();
+            if holds_on && elsewhere && best.cost >= current.cost * (1.0 - self.options.prefer_current) {
                 return Some(Held::CurrentClip);
             }
         }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::matching::tags::Tag;
-use crate::matching::{FeatureOptions, Features, Layout};
+use crate::matching::{FeatureOptions, Features, Layout, Normalisation};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
@@ -19,7 +19,11 @@ struct Field {
 fn field(times: usize, frames: usize, seed: u64) -> Field {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let trajectory_secs = (1..=times).map(|i| i as f64 / 3.0).collect();
-    let layout = Layout::new(&FeatureOptions { trajectory_secs }).unwrap();
+    let layout = Layout::new(&FeatureOptions {
+        trajectory_secs,
+        ..FeatureOptions::default()
+    })
+    .unwrap();
     let (mut rows, mut tags, mut valid) = (Vec::new(), Vec::new(), Vec::new());
     let (mut at, mut speed) = (vec![0.0f32; layout.dims()], vec![0.0f32; layout.dims()]);
     for frame in 0..frames {
@@ -52,7 +56,7 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
             valid.push(frame as u32);
         }
     }
-    let features = Features::normalise(layout, rows, |row| row % 97 < 70);
+    let features = Features::normalise(layout, Normalisation::Block, rows, |row| row % 97 < 70);
     Field { features, tags, valid }
 }
 
@@ -203,7 +207,7 @@ fn what_is_no_question_finds_nothing() {
     assert_eq!(BoxBuilder::new(&[], &[]).finish(&field.features).len(), 0);
     // Rows that are all the same make a tree of no depth, or none.
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
-    let same = Features::normalise(layout, vec![1.0; 27 * 5_000], |_| true);
+    let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], |_| true);
     let valid: Vec<u32> = (0..5_000).collect();
     let candidates = Candidates {
         features: &same,

@@ -6,7 +6,7 @@ use crate::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use crate::metrics::Metric;
 use crate::session::command::CommandError;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, filter_of, options_of, read_ids, read_tags, recording_of};
+use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, filter_of, options_in, read_ids, read_tags, recording_of};
 use crate::skeleton::Pose;
 use std::sync::Arc;
 
@@ -213,11 +213,12 @@ impl Session {
             let answer = match database {
                 // The old one is played until the new one is there.
                 Ok(None) => Answer::Awaited,
-                Ok(Some(database)) => {
-                    let options = options_of(&params);
-                    main = main.or(Some((Arc::clone(&database), options)));
-                    driven(live, pane, &database, options).unwrap_or_else(Answer::Refused)
-                }
+                Ok(Some(database)) => options_in(&database, &params)
+                    .and_then(|options| {
+                        main = main.take().or(Some((Arc::clone(&database), options)));
+                        driven(live, pane, &database, options)
+                    })
+                    .unwrap_or_else(Answer::Refused),
                 Err(problem) => Answer::Refused(problem),
             };
             pane.take(answer, &params);
@@ -262,7 +263,8 @@ impl Session {
         let Some(database) = self.match_database(params)? else {
             return Ok(None);
         };
-        let played = self.driver.replay(database, options_of(params), recording, filter_of(params)?)?;
+        let options = options_in(&database, params)?;
+        let played = self.driver.replay(database, options, recording, filter_of(params)?)?;
         Ok(played.map(Inputs::Match))
     }
 

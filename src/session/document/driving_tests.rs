@@ -1,7 +1,7 @@
 //! The Match lab, by commands.
 
 use super::*;
-use crate::matching::{Control, Controller, Database, DatabaseOptions, RATE, Scenario, Tag, TagSet, drive, made_clips};
+use crate::matching::{Control, Controller, Database, DatabaseOptions, Normalisation, RATE, Scenario, Tag, TagSet, drive, made_clips};
 use crate::session::Driven;
 use glam::DVec2;
 
@@ -293,7 +293,7 @@ fn a_crowd_shares_the_database() {
 fn what_cannot_be_done_is_a_sentence() {
     for (link, part) in [
         (
-            "lab=match&match_clips=walk(make_seconds:2)&ahead_far=3",
+            "lab=match&match_clips=walk(make_seconds:2)&ahead_far=3&match_cycles=off",
             "has a frame that can be searched",
         ),
         ("lab=match&match_clips=nobody", "is not here"),
@@ -315,4 +315,31 @@ fn what_cannot_be_done_is_a_sentence() {
         &crate::math::Planar::IDENTITY,
     );
     assert_eq!(core.unwrap().place(), driven(&session).moments[0].place);
+}
+
+#[test]
+fn the_literal_forms_of_a_course_are_choices() {
+    let given = "lab=match&mirrored=off&match_clips=walk,walk_left,walk(make_seconds:6)&scenario=straight";
+    let usual = open(given);
+    let options = |session: &Session| driven(session).database.options().clone();
+    assert!(options(&usual).cycles && options(&usual).features.normalisation == Normalisation::Block);
+    let literal = open(&format!(
+        "{given}&normalisation=dimension&hysteresis=clip_votes&prefer_clip=walk_left&prefer_current=1&match_cycles=off"
+    ));
+    assert!(!options(&literal).cycles && options(&literal).features.normalisation == Normalisation::Dimension);
+    // The clip that is preferred plays, although it leads elsewhere.
+    let played = |session: &Session| {
+        let driven = driven(session);
+        let left = |moment: &&Arc<crate::session::DriveMoment>| driven.database.motions()[moment.place.motion].source() == 1;
+        driven.moments.iter().skip(120).filter(left).count() as f64 / (driven.moments.len() - 120) as f64
+    };
+    assert!(
+        played(&literal) > 0.8 && played(&usual) < 0.3,
+        "{} {}",
+        played(&literal),
+        played(&usual)
+    );
+    let unknown = open(&format!("{given}&prefer_clip=run"));
+    let problem = unknown.panes()[0].problem.as_ref().unwrap();
+    assert!(problem.contains("`run` is not among the clips"), "{problem}");
 }

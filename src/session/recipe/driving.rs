@@ -10,7 +10,9 @@ mod trace;
 pub(in crate::session) use crowd::Crowd;
 pub(in crate::session) use driver::{Driver, ReplayInputs, Source};
 pub(in crate::session) use live::Live;
-pub(in crate::session) use settings::{options_of, recording_of};
+#[cfg(test)]
+pub(in crate::session) use settings::options_of;
+pub(in crate::session) use settings::{options_in, recording_of};
 pub use tagging::{HandTag, own_words, write_tags};
 pub(in crate::session) use tagging::{filter_of, read_tags};
 pub use trace::{DriveMoment, Driven};

@@ -48,7 +48,14 @@ pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut 
     hysteresis_ui(session, out, ui);
     ui.add_space(space::S);
     kit::folded_ui(text::SEARCHING, ui, |ui| {
-        for key in [Key::SearchInterval, Key::SearchBy, Key::AheadNear, Key::AheadMiddle, Key::AheadFar] {
+        for key in [
+            Key::SearchInterval,
+            Key::SearchBy,
+            Key::AheadNear,
+            Key::AheadMiddle,
+            Key::AheadFar,
+            Key::Normalisation,
+        ] {
             row(key, session, out, ui);
         }
     });
@@ -119,10 +126,37 @@ fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         row(Key::MinimumTime, session, out, ui);
     }
     row(Key::PreferCurrent, session, out, ui);
+    preferred_ui(session, out, ui);
     let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
     let label = if on { text::COMPARE_OFF } else { text::HYSTERESES };
     if kit::button_ui(Button::new(label).selected(on), ui).clicked() {
         compare_hysteresis(session, out);
+    }
+}
+
+/// Which clip is preferred while the input is still.
+fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let Some((driven, _)) = super::shown(session) else { return };
+    let ids = session.match_clip_ids();
+    let originals = driven.database.motions().iter().filter(|motion| !motion.is_mirrored());
+    let words: Vec<&str> = std::iter::once("")
+        .chain(originals.map(|motion| ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)))
+        .collect();
+    let label = |word: &str| -> String {
+        let name = session.library().find(word).map_or(word, |entry| entry.name.as_str());
+        if word.is_empty() {
+            text::THE_CLIP_THAT_PLAYS.to_owned()
+        } else {
+            name.to_owned()
+        }
+    };
+    let labels: Vec<String> = words.iter().map(|word| label(word)).collect();
+    let options: Vec<(usize, &str)> = labels.iter().map(String::as_str).enumerate().collect();
+    let asked = session.params().text(Key::PreferClip);
+    let chosen = words.iter().position(|word| *word == asked).unwrap_or(usize::MAX);
+    let picked = kit::choice_row_ui(Key::PreferClip.param().label, chosen, &options, ui);
+    if let Some(word) = picked.and_then(|index| words.get(index)) {
+        out.set_once(Key::PreferClip, Value::Text((*word).to_owned()));
     }
 }
 
@@ -194,6 +228,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
     }
     row(Key::Mirrored, session, out, ui);
+    row(Key::MatchCycles, session, out, ui);
     if session.is_driven() {
         row(Key::Crowd, session, out, ui);
     }

@@ -3,8 +3,8 @@
 use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
 use crate::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError, Recording,
-    TagFilter, made_clip, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError,
+    Normalisation, Recording, TagFilter, made_clip, made_params,
 };
 use crate::math::Planar;
 use crate::session::compare::MAX_PANES;
@@ -33,15 +33,22 @@ impl Source {
         Self {
             clips,
             options: DatabaseOptions {
-                features: FeatureOptions { trajectory_secs },
+                features: FeatureOptions {
+                    trajectory_secs,
+                    normalisation: match params.text(Key::Normalisation) {
+                        "dimension" => Normalisation::Dimension,
+                        _ => Normalisation::Block,
+                    },
+                },
                 mirrored: params.is_on(Key::Mirrored),
+                cycles: params.is_on(Key::MatchCycles),
             },
         }
     }
 
-    /// Whether only the trajectory times differ.
+    /// Whether only the features differ.
     fn has_clips_of(&self, other: &Self) -> bool {
-        self.options.mirrored == other.options.mirrored
+        (self.options.mirrored, self.options.cycles) == (other.options.mirrored, other.options.cycles)
             && self.clips.len() == other.clips.len()
             && self.clips.iter().zip(&other.clips).all(|(a, b)| Arc::ptr_eq(a, b))
     }

@@ -1,8 +1,12 @@
 //! From parameters to what the controller is told.
 
-use crate::matching::{ControllerOptions, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights};
+use super::tagging::clip_name;
+use crate::matching::{
+    ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights,
+};
 use crate::math::Decay;
 use crate::session::params::{Key, Params};
+use crate::session::recipe::read_ids;
 use crate::transition::Inertialization;
 
 /// How the character searches, goes over, and follows.
@@ -30,12 +34,14 @@ pub(in crate::session) fn options_of(params: &Params) -> ControllerOptions {
                 secs: number(Key::MinimumTime),
             },
             "votes" => Hysteresis::ThreeVotes,
+            "clip_votes" => Hysteresis::ThreeVotesForAnotherClip,
             _ => Hysteresis::ContinuingBias {
                 share: number(Key::BiasShare) as f32,
                 constant: number(Key::BiasConstant) as f32,
             },
         },
         prefer_current: number(Key::PreferCurrent) as f32,
+        prefer_source: None,
         transition: match params.text(Key::JumpMethod) {
             "dead" => Inertialization::DeadBlend {
                 blend_secs: number(Key::BlendTime),
@@ -58,6 +64,24 @@ pub(in crate::session) fn options_of(params: &Params) -> ControllerOptions {
         planting: usual.planting.filter(|_: &FootPlanting| params.is_on(Key::PlantFeet)),
         candidates: number(Key::ShownCandidates) as usize,
     }
+}
+
+/// The same with the clip of a database that is preferred while the input is still.
+pub(in crate::session) fn options_in(database: &Database, params: &Params) -> Result<ControllerOptions, String> {
+    let options = options_of(params);
+    let name = params.text(Key::PreferClip);
+    if name.is_empty() {
+        return Ok(options);
+    }
+    let ids = read_ids(params.text(Key::MatchClips)).unwrap_or_default();
+    let named = database.motions().iter().find(|motion| clip_name(motion, &ids) == name);
+    let source = named
+        .map(|motion| motion.source())
+        .ok_or_else(|| format!("`{name}` is not among the clips to choose frames from: choose another clip to prefer, or none."))?;
+    Ok(ControllerOptions {
+        prefer_source: Some(source),
+        ..options
+    })
 }
 
 /// The input that is played; `None` where the user drives.

@@ -1,6 +1,6 @@
 //! Tags that are set by hand, beside those that speed and turn rate suggest: `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
-use crate::matching::{Database, RATE, Tag, TagFilter, TagRange, TagSet};
+use crate::matching::{Database, Motion, RATE, Tag, TagFilter, TagRange, TagSet};
 use crate::session::params::{Key, Params, format_number};
 use crate::session::recipe::kept::{read_ids, write_ids};
 use std::sync::Arc;
@@ -106,6 +106,11 @@ pub(in crate::session) fn filter_of(params: &Params) -> Result<TagFilter, String
     })
 }
 
+/// What a motion's clip is called in parameters: its id among those that the database was built from, its own name in the synthesiser's set.
+pub(in crate::session) fn clip_name<'a>(motion: &'a Motion, ids: &'a [String]) -> &'a str {
+    ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
+}
+
 /// A database with tags by hand; `ids` are the clips that it was built from, none for the synthesiser's set. Clips that are not in it are passed over.
 pub(super) fn tagged(database: &Database, ids: &[String], tags: &[HandTag]) -> Database {
     let own = own_words(tags);
@@ -117,7 +122,7 @@ pub(super) fn tagged(database: &Database, ids: &[String], tags: &[HandTag]) -> D
         .map(Arc::clone)
         .collect();
     for motion in originals {
-        let name = ids.get(motion.source()).map_or(motion.clip().name(), String::as_str);
+        let name = clip_name(&motion, ids);
         let mut ranges = motion.tags().to_vec();
         let of_this = tags.iter().filter(|tag| tag.clip == name);
         let mut changed = false;
