@@ -32,9 +32,9 @@ impl Default for ContactOptions {
 }
 
 /// The height that the options' lengths and speeds are given for, metres.
-const REFERENCE_HEIGHT_M: f32 = 1.75;
+pub(super) const REFERENCE_HEIGHT_M: f32 = 1.75;
 /// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and the dents of a soft floor.
-const GROUND_PERCENTILE: f32 = 0.05;
+pub(super) const GROUND_PERCENTILE: f32 = 0.05;
 /// A floor that leans in the capture lifts one foot's level over that of both feet by up to this much, metres. A foot that stays higher is held up.
 const LEANING_FLOOR_M: f32 = 0.05;
 /// Speed limits hold for bodies up to this speed, metres per second, and grow with it above: in a sprint a foot that stands rolls and
@@ -154,15 +154,6 @@ impl Contacts {
     }
 }
 
-/// The height of the ground under a clip, metres: the 5th percentile of the heights of the feet's lowest points. 0 for a clip without feet.
-#[must_use]
-pub fn ground_height(clip: &Clip, roles: &Roles) -> f32 {
-    let ways = Ways::of(clip, roles);
-    let lowest = |frame: usize| ways.feet.iter().flatten().map(|(_, way)| way[frame].y).min_by(f32::total_cmp);
-    let heights: Vec<f32> = (0..clip.frames()).filter_map(lowest).collect();
-    stats::percentile(&heights, GROUND_PERCENTILE).unwrap_or(0.0)
-}
-
 /// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
 pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
     let steps = before
@@ -173,15 +164,15 @@ pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
 }
 
 /// World positions, frame by frame.
-struct Ways {
+pub(super) struct Ways {
     /// Of ankles, toe joints and toe tips, for each side that has them.
-    feet: [Vec<(Side, Vec<Vec3>)>; 3],
+    pub(super) feet: [Vec<(Side, Vec<Vec3>)>; 3],
     /// Of the hips.
     body: Vec<Vec3>,
 }
 
 impl Ways {
-    fn of(clip: &Clip, roles: &Roles) -> Self {
+    pub(super) fn of(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
         let mut wanted: Vec<(usize, Side, usize, Vec3)> = Vec::new();

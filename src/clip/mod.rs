@@ -70,6 +70,7 @@ mod contacts;
 mod curves;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod ground;
 mod jolts;
 mod mirror;
 mod poses;
@@ -81,8 +82,9 @@ mod storage;
 mod velocity;
 
 pub(crate) use contacts::stillest_step;
-pub use contacts::{ContactOptions, Contacts, ground_height};
+pub use contacts::{ContactOptions, Contacts};
 pub use curves::{CurveKind, joint_curve};
+pub use ground::estimate_ground;
 pub(crate) use jolts::{Jolting, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use resample::resample;

@@ -1,4 +1,5 @@
-use super::{Clip, ClipError, ground_height};
+use super::ground::rise_between;
+use super::{Clip, ClipError};
 use crate::skeleton::{Pose, Retargeting, Roles, Skeleton};
 use glam::Vec3;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ pub enum RetargetError {
 
 /// The clip on another skeleton: see [`Retargeting`] for how joints are matched and turned.
 ///
-/// The result stands as high above the ground as the source does, in proportion to its legs ([`ground_height`] of both). On the same skeleton the
+/// The result stands as high above the ground as the source does, in proportion to its legs, by those points of the feet that both bodies have. On the same skeleton the
 /// clip comes back unchanged; on the same rig with its joints in another order every shared joint stays where it was.
 ///
 /// # Errors
@@ -31,9 +32,9 @@ pub fn retarget(clip: &Clip, source_roles: &Roles, target: &Arc<Skeleton>, targe
     let make = |poses: Vec<Pose>| Clip::from_poses(clip.name(), Arc::clone(target), clip.fps(), poses);
     if !way.is_same_rig() {
         let standing = make(poses.clone())?;
-        let sinks = ground_height(clip, source_roles) * way.scale() - ground_height(&standing, target_roles);
+        let rise = rise_between((clip, source_roles), (&standing, target_roles), way.scale()).unwrap_or(0.0);
         for pose in &mut poses {
-            pose.root_translation += Vec3::Y * sinks;
+            pose.root_translation += Vec3::Y * rise;
         }
     }
     Ok(make(poses)?.with_provenance(clip.provenance()))

@@ -35,7 +35,7 @@ pub struct Subject<'a> {
     pub b: &'a Profile,
     /// Roles of the result's joints.
     pub roles: &'a Roles,
-    /// Height of the ground, metres: 0, or [`crate::clip::ground_height`] for clips that float or stand in the floor.
+    /// Height of the ground, metres ([`crate::clip::estimate_ground`]).
     pub ground_m: f32,
 }
 

@@ -1,5 +1,7 @@
 use super::*;
+use crate::clip::estimate_ground;
 use crate::clip::fixtures::wander_by;
+use crate::clip::ground::foot_level;
 use crate::clip::{Interpolation, JointTranslations, resample};
 use crate::skeleton::fixtures;
 use proptest::prelude::*;
@@ -91,7 +93,7 @@ proptest! {
         let (clip, roles) = steps(150, 1.0, walk);
         let (other, other_roles) = steps(150, scale, |side, t| walk(side, t) + Vec3::Y * floor);
         prop_assert_eq!(found(&clip, &roles), found(&other, &other_roles));
-        let risen = ground_height(&other, &other_roles) / scale - ground_height(&clip, &roles);
+        let risen = foot_level(&other, &other_roles) / scale - foot_level(&clip, &roles);
         prop_assert!((risen - floor).abs() < 1e-4);
     }
 
@@ -159,7 +161,7 @@ fn standing_still_is_one_contact() {
         assert_eq!(contacts.intervals(side), std::slice::from_ref(&(0..30)));
     }
     // The lowest points of this rig are the ends of its toes.
-    assert!((ground_height(&clip, &roles) - 0.015).abs() < 1e-5);
+    assert!((foot_level(&clip, &roles) - 0.015).abs() < 1e-5);
 }
 
 #[test]
@@ -167,10 +169,10 @@ fn clips_without_feet_or_frames_have_no_contacts() {
     let (clip, roles) = steps(3, 1.0, walk);
     let without = found(&clip, &Roles::default());
     assert_eq!((without.frames(), without.intervals(Side::Left).len()), (3, 0));
-    assert_eq!(ground_height(&clip, &Roles::default()), 0.0);
+    assert_eq!(foot_level(&clip, &Roles::default()), 0.0);
     let empty = clip.crop(0..0).unwrap();
     assert_eq!(found(&empty, &roles), Contacts { planted: [vec![], vec![]] });
-    assert_eq!(ground_height(&empty, &roles), 0.0);
+    assert_eq!(foot_level(&empty, &roles), 0.0);
     let one = clip.crop(0..1).unwrap();
     assert!(found(&one, &roles).planted(Side::Left, 0));
     // Roles of another skeleton point beyond this one.
@@ -224,4 +226,30 @@ fn phases_run_from_touchdown_to_touchdown() {
     assert_eq!([phase(15), phase(0), phase(90)], [0.75, 0.0, 0.25]);
     assert_eq!(contacts.phase(Side::Right, 30), None);
     assert_eq!(Contacts::default().phase(Side::Left, 0), None);
+}
+
+/// The ground is where files promise it, unless planted feet contradict that.
+#[test]
+fn ground_of_a_walk_is_zero_unless_its_feet_are_elsewhere() {
+    for (floor, scale) in [
+        (0.0, 1.0),
+        (0.02, 1.0),
+        (-0.02, 1.0),
+        (0.025, 0.5),
+        (-0.2, 1.0),
+        (0.15, 1.0),
+        (0.3, 2.0),
+        (-1.0, 0.5),
+    ] {
+        let (clip, roles) = steps(200, scale, |side, t| walk(side, t) + Vec3::Y * (floor / scale));
+        let ground = estimate_ground(&clip, &roles, &found(&clip, &roles));
+        let expected = if floor.abs() < 0.03 * scale { 0.0 } else { floor };
+        // The toes of this rig end 1.5 cm above its soles.
+        assert!((ground - expected).abs() <= 0.02 * scale, "{floor} m, size {scale}: {ground} m");
+        assert!(expected != 0.0 || ground == 0.0, "{floor} m, size {scale}: {ground} m");
+    }
+    let (clip, roles) = steps(20, 1.0, walk);
+    let never = Contacts::from_flags([vec![false; 20], vec![false; 20]]);
+    assert_eq!(estimate_ground(&clip, &roles, &never), 0.0);
+    assert_eq!(estimate_ground(&clip, &Roles::default(), &found(&clip, &roles)), 0.0);
 }
