@@ -95,6 +95,14 @@ impl Database {
         &self.options
     }
 
+    /// The height of the ground under all motions, metres: the lowest of theirs, so that no foot is lifted off the ground that its own clip has, nor moved
+    /// from one height to another by a jump.
+    #[must_use]
+    pub fn ground_m(&self) -> f32 {
+        let heights = self.motions.iter().map(|motion| motion.ground_m());
+        heights.min_by(f32::total_cmp).unwrap_or(0.0)
+    }
+
     /// The skeleton of all motions: the first clip's.
     #[must_use]
     pub fn skeleton(&self) -> &Arc<Skeleton> {

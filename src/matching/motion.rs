@@ -3,7 +3,7 @@ use super::round::{moved_by, standing};
 use super::simulation::simulation_roots_of_cycle;
 use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
-use crate::clip::{Clip, Contacts, character_frames};
+use crate::clip::{Clip, Contacts, character_frames, estimate_ground};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
@@ -15,6 +15,7 @@ pub struct Motion {
     clip: Arc<Clip>,
     roots: Vec<Planar>,
     contacts: Contacts,
+    ground_m: f32,
     body: Vec<[f32; BODY]>,
     source: usize,
     mirrored: bool,
@@ -69,6 +70,7 @@ impl Motion {
             return Err(MatchError::NotFinite { name });
         }
         Ok(Self {
+            ground_m: estimate_ground(&clip, roles, &contacts),
             clip,
             roots,
             contacts,
@@ -96,6 +98,12 @@ impl Motion {
     #[must_use]
     pub fn contacts(&self) -> &Contacts {
         &self.contacts
+    }
+
+    /// The height of the ground under the clip, metres.
+    #[must_use]
+    pub fn ground_m(&self) -> f32 {
+        self.ground_m
     }
 
     /// The number of the clip that it was made from, among those that the database was built from.

@@ -29,16 +29,16 @@ pub struct ClipMetrics {
     pub spin_deg: Option<f64>,
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or stances.
     pub skate_cm: Option<f64>,
-    /// Penetration, centimetres: how deep the deepest joint or end site is below the ground (y = 0).
+    /// Penetration, centimetres: how deep the deepest joint or end site is below the ground.
     pub penetration_cm: Option<f64>,
 }
 
 impl ClipMetrics {
     /// Measures a clip. `contacts` and `ground_frames` are the clip's own ([`Contacts::detect`], [`character_frames`](crate::clip::character_frames)).
-    /// O(frames × joints).
+    /// `ground_m` is the height of the ground ([`estimate_ground`](crate::clip::estimate_ground)). O(frames × joints).
     #[must_use]
-    pub fn measure(clip: &Clip, roles: &Roles, contacts: &Contacts, ground_frames: &[Planar]) -> Self {
-        let mut meter = ClipMeter::new(clip, roles);
+    pub fn measure(clip: &Clip, roles: &Roles, contacts: &Contacts, ground_frames: &[Planar], ground_m: f32) -> Self {
+        let mut meter = ClipMeter::new(clip, roles, ground_m);
         while meter.advance(clip, contacts, usize::MAX) {}
         meter.finish(clip, ground_frames)
     }
@@ -99,6 +99,7 @@ pub struct ClipMeter {
     slide: SlideMeter,
     low_points: LowPoints,
     lowest: Option<f32>,
+    ground_m: f32,
     frame: usize,
     joint: usize,
     joint_steps: JointSteps,
@@ -106,13 +107,14 @@ pub struct ClipMeter {
 }
 
 impl ClipMeter {
-    /// Nothing is measured yet.
+    /// Nothing is measured yet. `ground_m` is the height of the ground ([`estimate_ground`](crate::clip::estimate_ground)).
     #[must_use]
-    pub fn new(clip: &Clip, roles: &Roles) -> Self {
+    pub fn new(clip: &Clip, roles: &Roles, ground_m: f32) -> Self {
         Self {
             slide: SlideMeter::new(clip, roles),
             low_points: LowPoints::of(clip.skeleton()),
             lowest: None,
+            ground_m,
             frame: 0,
             joint: 0,
             joint_steps: JointSteps::default(),
@@ -167,7 +169,7 @@ impl ClipMeter {
             jump_cm: steps.beyond_usual().map(|metres| f64::from(metres) * 100.0),
             spin_deg: fastest_turn(ground_frames, clip.fps()).map(f64::to_degrees),
             skate_cm: self.slide.worst_cm(),
-            penetration_cm: self.lowest.map(|lowest| f64::from((-lowest).max(0.0)) * 100.0),
+            penetration_cm: self.lowest.map(|lowest| f64::from((self.ground_m - lowest).max(0.0)) * 100.0),
             ..self.found
         }
     }
@@ -267,7 +269,7 @@ mod tests {
 
     fn measured(clip: &Clip, roles: &Roles) -> ClipMetrics {
         let contacts = Contacts::detect(clip, roles, &ContactOptions::default());
-        ClipMetrics::measure(clip, roles, &contacts, &character_frames(clip, roles))
+        ClipMetrics::measure(clip, roles, &contacts, &character_frames(clip, roles), 0.0)
     }
 
     /// The walk with each frame changed.
@@ -334,7 +336,7 @@ mod tests {
         let (clip, roles) = walk();
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let frames = character_frames(&clip, &roles);
-        let mut meter = ClipMeter::new(&clip, &roles);
+        let mut meter = ClipMeter::new(&clip, &roles, 0.0);
         let mut progress = 0.0;
         while meter.advance(&clip, &contacts, 7) {
             assert!(meter.progress(&clip) > progress);

@@ -79,7 +79,7 @@ pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
 pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
-pub use motion::{Motion, curve_kind, frame_at, joint_of, word_of_joint};
+pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};

@@ -348,6 +348,9 @@ parameters! {
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
+    Ground "ground" "Ground" Blend auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere.";
+    ContactHeight "contact_height" "Contact height" Blend number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
+    ContactSpeed "contact_speed" "Contact speed" Blend number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";
 
     Method "method" "Method" Transition Kind::Choice(METHODS), Start::Word("inertialize"), "", "How A goes over into B.";
     HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
@@ -730,6 +733,8 @@ impl Param {
     #[must_use]
     pub fn is_comparable(&self) -> bool {
         match self.kind {
+            // Clips are read anew for these.
+            _ if matches!(self.key, Key::Ground | Key::ContactHeight | Key::ContactSpeed) => false,
             Kind::Clip => true,
             Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab() || self.key == Key::Skinning,
             _ => false,

@@ -94,6 +94,12 @@ pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &Foot
     state.finish(clip)
 }
 
+/// Whether a skeleton has a leg of thigh, shin and foot, one below the other: feet of others cannot be planted.
+#[must_use]
+pub fn has_legs(skeleton: &Skeleton, roles: &Roles) -> bool {
+    Side::BOTH.into_iter().any(|side| Leg::find(skeleton, roles, side).is_some())
+}
+
 /// [`foot_lock`] in slices, for clips that take longer than there is time for at once.
 #[derive(Debug)]
 pub struct FootLocking {

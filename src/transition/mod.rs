@@ -101,7 +101,7 @@ mod whole_cycle;
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
 pub(crate) use foot_lock::Leg;
-pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock};
+pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock, has_legs};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
 pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop, play_around};

@@ -53,6 +53,7 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
         (text::FRAME_RATE, format_number(clip.fps(), 0.01), "fps"),
         (text::JOINTS, clip.skeleton().len().to_string(), ""),
         (text::BODY_HEIGHT, format!("{:.2}", motion.roles.body_height(clip.skeleton())), "m"),
+        (text::GROUND, format_number(f64::from(motion.ground_m) * 100.0, 0.1), "cm"),
         (text::MEAN_SPEED, format!("{speed:.2}"), "m/s"),
     ];
     for (label, value, unit) in facts {

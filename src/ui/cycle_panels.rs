@@ -1,7 +1,7 @@
 //! The panels of the Speed and the Loop lab: results that go round.
 
 use super::kit::{self, Button, Mark, Part};
-use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
+use super::lab_panel::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
 use super::state::UiState;
@@ -59,7 +59,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     ui.add_space(space::S);
     param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
     kit::note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
@@ -139,7 +139,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         compare_loops(session, out);
     }
     ui.add_space(space::S);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

@@ -20,6 +20,7 @@ use super::top_bar::{made_number, toggle_compare};
 use eframe::egui::{self, Ui};
 use segue::math::spring;
 use segue::session::{Command, Group, Key, NoResult, PARAMS, Session, Slot, Value, split_reference};
+use segue::transition::has_legs;
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -47,7 +48,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     compared_clips_ui(session, out, ui);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     let is_held = session.params().is_on(Key::FootLock);
     if is_held {
         keep_ui(0, session, out, ui);
@@ -91,7 +92,7 @@ fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             compare_ui(param.key, session, out, ui);
         }
     }
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }
@@ -124,9 +125,26 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
+}
+
+/// The foot lock, how feet are read where they are held, and why they are not.
+pub(super) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    if session.params().is_on(Key::FootLock)
+        && let Some(outcome) = session.main_outcome()
+        && !has_legs(outcome.motion.clip.skeleton(), &outcome.motion.roles)
+    {
+        let words = egui::RichText::new(tr(text::NO_LEGS, ui)).font(theme_of(ui).font(Type::Small));
+        ui.label(words.color(palette_of(ui).warning));
+    }
+    kit::folded_ui(text::FEET, ui, |ui| {
+        for key in [Key::Ground, Key::ContactHeight, Key::ContactSpeed] {
+            param_row_ui(key, &Detail::default(), session, out, ui);
+        }
+    });
 }
 
 /// Keeps the result, or saves it; which one, where several stand side by side.
@@ -175,6 +193,13 @@ pub(super) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
         if !retargeted.unmatched.is_empty() {
             line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
         }
+    }
+    let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.fps());
+    if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))
+        && (a - b).abs() > 1e-4 * a
+    {
+        let words = egui::RichText::new(tr(&text::resampled(b, a), ui)).font(theme_of(ui).font(Type::Small));
+        ui.label(words.color(palette_of(ui).muted));
     }
     ui.add_space(space::S);
     outcome.map_or(60.0, |outcome| outcome.motion.clip.fps())
@@ -227,7 +252,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

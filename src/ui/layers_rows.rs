@@ -1,7 +1,7 @@
 //! The Layers lab: which part of the body is B's, how much of it, and when.
 
 use super::kit;
-use super::lab_panel::{compare_ui, lab_label, pair_ui, save_result_ui};
+use super::lab_panel::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
 use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -39,7 +39,7 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
         param_row_ui(Key::KeepOrientation, &plain, session, out, ui);
     }
     param_row_ui(Key::MaskColors, &plain, session, out, ui);
-    param_row_ui(Key::FootLock, &plain, session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);
 }

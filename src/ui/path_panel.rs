@@ -1,7 +1,7 @@
 //! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole path.
 
 use super::kit::{self, Button, Icon};
-use super::lab_panel::{lab_label, save_result_ui, slot_row_ui};
+use super::lab_panel::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
 use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -64,7 +64,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     kit::note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
-    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
     if path.is_some_and(|path| path.awaits_feet) {
         kit::note_ui(text::FEET_LATER, palette.muted, ui);
     }

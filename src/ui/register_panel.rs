@@ -1,7 +1,7 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
 use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
-use super::lab_panel::{clip_choice_ui, compare_ui, lab_label, pair_ui, save_result_ui};
+use super::lab_panel::{clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
 use super::language::tr;
 use super::out::Out;
 use super::param_row::{Detail, param_row_ui};
@@ -49,7 +49,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
         param_row_ui(Key::WarpFrom, &detail, session, out, ui);
         param_row_ui(Key::WarpTo, &detail, session, out, ui);
     }
-    param_row_ui(Key::FootLock, &plain, session, out, ui);
+    foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     kit::section_header_ui(text::REGISTRATION, ui);
     let fps = session.distance_map().map_or(60.0, |map| map.fps());

@@ -4,7 +4,7 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition};
+use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition, format_number};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -82,6 +82,11 @@ pub(crate) const LENGTH: &str = "Length";
 pub(crate) const FRAMES: &str = "Frames";
 pub(crate) const FRAME_RATE: &str = "Frame rate";
 pub(crate) const BODY_HEIGHT: &str = "Body height";
+pub(crate) const GROUND: &str = "Ground";
+/// Of a body whose feet cannot be held.
+pub(crate) const NO_LEGS: &str =
+    "Its feet are not held: this skeleton has no leg with thigh, shin and foot. Choose these joints under Body parts in the View lab.";
+pub(crate) const FEET: &str = "Ground and contacts";
 pub(crate) const MEAN_SPEED: &str = "Mean speed";
 pub(crate) const JOINTS: &str = "Joints";
 pub(crate) const JOINT_TREE: &str = "Joints of the clip";
@@ -215,6 +220,12 @@ pub(crate) fn retargeted(retargeted: &Retargeted) -> String {
     } else {
         format!("{moved}; not matched: {named}.")
     }
+}
+
+/// That B runs at another rate than A.
+pub(crate) fn resampled(from: f64, to: f64) -> String {
+    let [from, to] = [from, to].map(|fps| format_number(fps, 0.01));
+    format!("B is resampled from {from} to {to} frames per second, the rate of A and of the result.")
 }
 
 /// The shortcuts, in the order of the list under `?`.

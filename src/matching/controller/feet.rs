@@ -18,6 +18,7 @@ pub(super) struct Feet {
     both: Vec<Foot>,
     needed: Vec<usize>,
     scale: f32,
+    ground_m: f32,
     world: WorldPose,
 }
 
@@ -40,8 +41,8 @@ struct Foot {
 }
 
 impl Feet {
-    /// `examples` are poses that tell about which axis the knees bend.
-    pub(super) fn new(skeleton: &Skeleton, roles: &Roles, examples: &[WorldPose]) -> Self {
+    /// `examples` are poses that tell about which axis the knees bend; `ground_m` is the height of the ground.
+    pub(super) fn new(skeleton: &Skeleton, roles: &Roles, examples: &[WorldPose], ground_m: f32) -> Self {
         let foot = |side: Side| {
             let leg = Leg::find(skeleton, roles, side)?;
             Some(Foot {
@@ -62,6 +63,7 @@ impl Feet {
             needed: skeleton.with_ancestors(joints),
             both: feet,
             scale: roles.body_height(skeleton) / REFERENCE_HEIGHT_M as f32,
+            ground_m,
             world: WorldPose::default(),
         }
     }
@@ -91,7 +93,8 @@ impl Feet {
             let step = stillest_step(&foot.before, &now);
             let slow = step.is_some_and(|step| step.length() < DOWN_MPS * self.scale * dt_secs as f32);
             let stood = foot.stands;
-            let planted = planted[foot.side.index()] && (stood || (slow && lowest < DOWN_M * self.scale));
+            // Feet that dip into the floor at push-off set the ground lower than where they stand.
+            let planted = planted[foot.side.index()] && (stood || (slow && lowest - self.ground_m.max(0.0) < DOWN_M * self.scale));
             foot.stands = planted;
             foot.before = now;
             stand[foot.side.index()] = planted;
@@ -110,7 +113,7 @@ impl Feet {
                 None if planted && !foot.let_go => foot.rate = Vec3::ZERO,
                 None => (foot.shift, foot.rate) = spring::response(options.half_life_secs, dt_secs).of_vec3(foot.shift, foot.rate),
             }
-            let shift = foot.shift + Vec3::Y * (-lowest).max(0.0);
+            let shift = foot.shift + Vec3::Y * (self.ground_m - lowest).max(0.0);
             // A hundredth of a millimetre is not seen.
             if shift.length_squared() > 1e-10 {
                 foot.leg.move_ankle(&self.world, shift, foot.axis, &mut pose.rotations);

@@ -80,7 +80,7 @@ impl Controller {
             .into_iter()
             .flat_map(|clip| (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame)))
             .collect();
-        let feet = Feet::new(database.skeleton(), database.roles(), &examples);
+        let feet = Feet::new(database.skeleton(), database.roles(), &examples, database.ground_m());
         let mut controller = Self {
             weights: options.weights.spread(database.features().layout()),
             simulation: Simulation::at_rest(start),
@@ -146,7 +146,7 @@ impl Controller {
         self.tree = None;
         self.record = None;
         if !same {
-            self.feet = Feet::new(self.database.skeleton(), self.database.roles(), &[]);
+            self.feet = Feet::new(self.database.skeleton(), self.database.roles(), &[], self.database.ground_m());
             self.begin();
         }
     }

@@ -23,7 +23,7 @@ use super::compare::Compare;
 use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin, Sample};
 use super::link;
-use super::motion::Motion;
+use super::motion::{FeetReader, Motion};
 use super::notice::{Level, Notices};
 use super::params::{Key, Params, Value};
 use super::reading::{Reads, read};
@@ -99,6 +99,8 @@ pub struct Session {
     history: History,
     notices: Notices,
     panes: Vec<Pane>,
+    /// Clips whose feet are read otherwise than usual.
+    feet: FeetReader,
     pairs: Pairs,
     blender: Blender,
     gaits: GaitFinder,
@@ -153,6 +155,7 @@ impl Session {
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
+            feet: FeetReader::default(),
             pairs: Pairs::default(),
             blender: Blender::default(),
             gaits: GaitFinder::default(),
@@ -484,6 +487,7 @@ impl Session {
             Key::WarpFrom => Some(outcome.registered.as_ref()?.part_secs[0]),
             Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
             Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
+            Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,

@@ -6,7 +6,7 @@ use crate::math::Planar;
 use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
-use crate::session::motion::Motion;
+use crate::session::motion::{FeetReading, Motion};
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{
     BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source, SpeedInputs,
@@ -352,6 +352,12 @@ impl Session {
         }
     }
 
+    /// The motion of a clip with its feet read as the parameters ask for.
+    fn motion_read(&mut self, reference: &str, params: &Params) -> Result<Arc<Motion>, String> {
+        let motion = self.motion_of(reference)?;
+        Ok(self.feet.read(&motion, FeetReading::of(params)))
+    }
+
     /// The motion of a clip: made or asked for when it is not there yet.
     pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, String> {
         let Some(entry) = self.library.find(reference) else {
@@ -519,7 +525,7 @@ impl Session {
         let mut clips = Vec::new();
         for id in clips_of(params.text(Key::Clips))? {
             self.bring(&id);
-            let motion = self.motion_of(&id)?;
+            let motion = self.motion_read(&id, params)?;
             let name = self.library.find(&id).map_or(id, |entry| entry.name.clone());
             clips.push((name, motion));
         }
@@ -528,8 +534,8 @@ impl Session {
 
     /// A and B, made ready for each other.
     fn pair_of(&mut self, params: &Params) -> Result<Arc<Pair>, String> {
-        let a = self.motion_of(params.text(Key::A))?;
-        let b = self.motion_of(params.text(Key::B))?;
+        let a = self.motion_read(params.text(Key::A), params)?;
+        let b = self.motion_read(params.text(Key::B), params)?;
         self.pairs.of(&a, &b)
     }
 
@@ -541,7 +547,7 @@ impl Session {
                 let mut also = Vec::new();
                 for (id, weight) in read_also(params.text(Key::WarpAlso))? {
                     self.bring(&id);
-                    also.push((self.motion_of(&id)?, weight));
+                    also.push((self.motion_read(&id, params)?, weight));
                 }
                 return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
             }
@@ -551,14 +557,14 @@ impl Session {
             }
             "match" => return self.match_inputs(params),
             "view" => {
-                let motion = self.motion_of(params.text(Key::A))?;
+                let motion = self.motion_read(params.text(Key::A), params)?;
                 return Ok(self.viewer.inputs(&motion, params.is_on(Key::FootLock)).map(Inputs::View));
             }
             "make" => Ok(Inputs::Make(made_id(params))),
-            "loop" => (self.motion_of(params.text(Key::A)))
+            "loop" => (self.motion_read(params.text(Key::A), params))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
                 .map(Inputs::Loop),
-            "path" => (self.motion_of(params.text(Key::A)))
+            "path" => (self.motion_read(params.text(Key::A), params))
                 .and_then(|motion| self.paths.inputs(&motion, params))
                 .map(Inputs::Path),
             lab => self.pair_of(params).and_then(|pair| match lab {

@@ -5,7 +5,7 @@ use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
 use crate::formats::{FileKind, ImportError};
 use crate::math::Planar;
-use crate::session::motion::Motion;
+use crate::session::motion::{FeetReading, Motion};
 use crate::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
 use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{DVec2, Quat, Vec3};
@@ -77,6 +77,8 @@ struct ClipHead {
     /// The joints that have translations.
     moving: Vec<usize>,
     roles: Roles,
+    #[serde(default)]
+    ground_m: f32,
     about: About,
     /// Which of the file's meshes is its own.
     #[serde(default)]
@@ -281,6 +283,7 @@ impl ClipHead {
             provenance: motion.clip.provenance(),
             moving: motion.clip.translations().iter().map(|track| track.joint).collect(),
             roles: motion.roles.clone(),
+            ground_m: motion.ground_m,
             about: clip.about.clone(),
             mesh: clip
                 .mesh
@@ -393,6 +396,8 @@ impl Arrays {
                 contacts: Contacts::from_flags(self.contacts),
                 ground_frames: self.ground_frames,
                 seams: Vec::new(),
+                ground_m: head.ground_m,
+                feet: FeetReading::default(),
             },
             about: head.about,
             mesh,

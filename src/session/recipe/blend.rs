@@ -373,13 +373,15 @@ impl BlendInputs {
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
         let roles = pair.a.roles.clone();
         let free = Arc::new(made.clip.with_name(name));
-        let clip = with_feet(&free, &roles, &contacts, *is_locked)?;
+        let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *is_locked)?;
         let motion = Motion {
             clip,
             roles,
             contacts,
             ground_frames: made.frames,
             seams: pair.a.seams_joined(&window, &pair.incoming, place.enter),
+            ground_m: pair.ground_m(),
+            feet: pair.a.feet,
         };
         let measured = |result: &Clip| {
             TransitionMetrics::measure(&Subject {
@@ -391,7 +393,7 @@ impl BlendInputs {
                 a,
                 b,
                 roles: &motion.roles,
-                ground_m: 0.0,
+                ground_m: pair.ground_m(),
             })
         };
         let mut metrics = measured(&motion.clip).list().to_vec();

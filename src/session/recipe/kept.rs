@@ -15,19 +15,24 @@ const DEEPEST: usize = 6;
 pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
     let group = key.param().group;
     match lab {
-        "view" => group == Group::View || key == Key::FootLock,
-        "make" => group == Group::Make || key == Key::FootLock,
+        "view" => group == Group::View || is_of_feet(key),
+        "make" => group == Group::Make || is_of_feet(key),
         "blend" => group == Group::Blend,
         "transition" => matches!(group, Group::Blend | Group::Transition),
-        "speed" => group == Group::Speed || key == Key::FootLock,
-        "loop" => group == Group::Loop || matches!(key, Key::HalfLife | Key::FootLock),
-        "layers" => group == Group::Layers || key == Key::FootLock,
-        "register" => group == Group::Register || key == Key::FootLock,
-        "path" => group == Group::Path || key == Key::FootLock,
-        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed | Key::FootLock),
+        "speed" => group == Group::Speed || is_of_feet(key),
+        "loop" => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
+        "layers" => group == Group::Layers || is_of_feet(key),
+        "register" => group == Group::Register || is_of_feet(key),
+        "path" => group == Group::Path || is_of_feet(key),
+        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed) || is_of_feet(key),
         "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
+}
+
+/// Whether a parameter says how feet are read and held: every lab with clips has these.
+fn is_of_feet(key: Key) -> bool {
+    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed)
 }
 
 /// Whether a parameter is part of what a lab's result is made from.

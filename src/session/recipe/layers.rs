@@ -2,7 +2,7 @@ use super::feet::{slide_before, with_feet};
 use super::pair::{Pair, source_of};
 use super::{Outcome, Slot, Source};
 use crate::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
-use crate::clip::{Clip, ContactOptions, Contacts, character_frames};
+use crate::clip::{Clip, Contacts, character_frames};
 use crate::gait::{GaitCycle, strike_phases};
 use crate::math::Planar;
 use crate::metrics::{Metric, Profile, Subject, TransitionMetrics, deviations};
@@ -146,7 +146,7 @@ impl Layerer {
             ..LayerOptions::default()
         };
         let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times).map_err(|error| error.to_string())?;
-        let shown = Arc::new(Motion::analyze(shown.with_name(b.name()), Some(roles.clone())));
+        let shown = Arc::new(Motion::analyze_feet(shown.with_name(b.name()), Some(roles.clone()), pair.b.feet));
         let source = source_of(&shown);
         Ok(Timed {
             pair: Arc::clone(pair),
@@ -248,14 +248,15 @@ impl LayerInputs {
             .map(|share| share * options.weight)
             .collect();
         let root_share = shares.first().copied().unwrap_or(0.0);
+        let walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
+        let ground_m = if root_share == 0.0 { a.ground_m } else { pair.ground_m() };
         // Legs that are not touched stand as they stood.
         let contacts = if root_share == 0.0 {
             a.contacts.clone()
         } else {
-            Contacts::detect(&free, &roles, &ContactOptions::default())
+            Contacts::detect(&free, &roles, &a.feet.contacts)
         };
-        let clip = with_feet(&free, &roles, &contacts, self.foot_lock)?;
-        let walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
+        let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
         let measured = |result: &Clip| {
             TransitionMetrics::measure(&Subject {
                 result,
@@ -266,7 +267,7 @@ impl LayerInputs {
                 a: &pair.profiles[0],
                 b: &timed.profile,
                 roles: &roles,
-                ground_m: 0.0,
+                ground_m,
             })
         };
         let of_layers = ["seam_deg", "seam_dps", "skate_cm", "penetration_cm"];
@@ -282,6 +283,8 @@ impl LayerInputs {
             roles,
             contacts,
             seams: a.seams.clone(),
+            ground_m,
+            feet: a.feet,
         };
         let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {

@@ -114,7 +114,7 @@ impl LoopInputs {
         let Rounds {
             motion: played,
             mut slides,
-        } = rounds(&motion.roles, frames, three, &contacts, self.foot_lock)?;
+        } = rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;
         let secs = |frame: usize| frame as f64 / fps;
         let step = looped
             .frames

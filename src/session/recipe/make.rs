@@ -2,7 +2,7 @@ use super::Outcome;
 use super::feet::{slide, slide_before, with_feet};
 use super::kept::belongs_to;
 use crate::metrics::foot_slide_cm;
-use crate::session::motion::Motion;
+use crate::session::motion::{FeetReading, Motion};
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::synth::{self, Action};
 use std::sync::Arc;
@@ -72,11 +72,11 @@ fn synth_params(params: &Params) -> synth::Params {
 /// The motion that the Make lab is set to.
 pub(in crate::session) fn make(params: &Params) -> Result<Outcome, String> {
     let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
-    let mut motion = Motion::analyze(made.clip.with_name(made_id(params)), None);
+    let mut motion = Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
     let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
     let mut metrics = vec![slide(slid(&motion))];
     if params.is_on(Key::FootLock) {
-        motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, true)?;
+        motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, motion.ground_m, true)?;
         metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
     }
     Ok(Outcome {

@@ -311,6 +311,8 @@ impl PathInputs {
             contacts: made.contacts,
             ground_frames: made.characters,
             seams,
+            ground_m: fitted.motion.ground_m,
+            feet: fitted.motion.feet,
         };
         Ok(Outcome {
             sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],

@@ -15,7 +15,7 @@ use super::{Outcome, Slot, Source, Transition};
 use crate::blend::{
     self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
 };
-use crate::clip::{Clip, ContactOptions, Contacts};
+use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
 use crate::metrics::{Metric, Subject, TransitionMetrics, foot_slides_cm};
 use crate::registration::Registration;
@@ -374,7 +374,7 @@ impl RegisterInputs {
         let also = self.also.iter().map(|also| &also.pair.b);
         let others: Vec<&str> = std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
         let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), others.join(" + "))));
-        let clip = with_feet(&free, &roles, &contacts, self.foot_lock)?;
+        let clip = with_feet(&free, &roles, &contacts, self.ground_m(), self.foot_lock)?;
         let distance_cm = mean(
             beats
                 .get(mixed.clone())
@@ -406,7 +406,7 @@ impl RegisterInputs {
                 registration: Arc::clone(&self.found.registration),
                 is_plain: self.is_plain,
                 beats,
-                steps: Contacts::detect(&clip, &roles, &ContactOptions::default()),
+                steps: Contacts::detect(&clip, &roles, &pair.a.feet.contacts),
                 part_secs: part.map(|frame| frame / fps),
             })),
             walk: None,
@@ -416,6 +416,8 @@ impl RegisterInputs {
                 contacts,
                 ground_frames: frames,
                 seams,
+                ground_m: self.ground_m(),
+                feet: pair.a.feet,
             }),
             sources,
             transition,
@@ -445,6 +447,12 @@ impl RegisterInputs {
             }
         }
         (weight > 0.0).then(|| sum / weight)
+    }
+
+    /// The height of the ground under all clips, metres: the lowest.
+    fn ground_m(&self) -> f32 {
+        let also = self.also.iter().map(|also| also.pair.ground_m());
+        also.fold(self.pair.ground_m(), f32::min)
     }
 
     /// How far apart the mixed frames are, what feet do where the heavier clip stands, and the seams.
@@ -482,7 +490,7 @@ impl RegisterInputs {
             a,
             b,
             roles,
-            ground_m: 0.0,
+            ground_m: self.ground_m(),
         });
         // The other numbers ask what a source does in the same frame, which a bent clock does not have. A weight that stays has no seam.
         let is_join = matches!(self.made, Made::Join { .. });

@@ -3,7 +3,7 @@
 use super::feet::{slide, slide_before, with_feet};
 use crate::clip::{Clip, ClipError, Contacts, character_frames};
 use crate::metrics::{Metric, foot_slide_cm};
-use crate::session::motion::Motion;
+use crate::session::motion::{FeetReading, Motion};
 use crate::skeleton::{Roles, Side};
 use crate::transition::play_around;
 use std::sync::Arc;
@@ -22,8 +22,15 @@ pub(super) struct Rounds {
 /// Plays a cycle of `cycle_frames` several times.
 ///
 /// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in the middle is played again and again: a stance that
-/// the end of a clip cuts in two would be planted elsewhere than the same stance with all that is around it.
-pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: &Contacts, lock: bool) -> Result<Rounds, String> {
+/// the end of a clip cuts in two would be planted elsewhere than the same stance with all that is around it. `ground_m` is the height of the ground.
+pub(super) fn rounds(
+    roles: &Roles,
+    cycle_frames: usize,
+    three: Clip,
+    contacts: &Contacts,
+    ground_m: f32,
+    lock: bool,
+) -> Result<Rounds, String> {
     let sentence = |error: ClipError| error.to_string();
     let fps = three.fps();
     let count = (SHOWN_SECS * fps / cycle_frames as f64).ceil().clamp(2.0, 12.0) as usize;
@@ -35,7 +42,7 @@ pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: 
     let three = Arc::new(three);
     let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
     let mut slides = vec![slide(slid(&three))];
-    let held = with_feet(&three, roles, contacts, lock)?;
+    let held = with_feet(&three, roles, contacts, ground_m, lock)?;
     if lock {
         slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
     }
@@ -51,6 +58,8 @@ pub(super) fn rounds(roles: &Roles, cycle_frames: usize, three: Clip, contacts: 
             roles: roles.clone(),
             contacts: repeated(contacts, &(cycle_frames..2 * cycle_frames), frames),
             seams: Vec::new(),
+            ground_m,
+            feet: FeetReading::default(),
         },
         slides,
     })

@@ -111,7 +111,7 @@ impl SpeedInputs {
         let fps = pair.a.clip.fps();
         let three = blend.cycles_at(self.asked_mps, 3).map_err(|error| error.to_string())?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
-        let Rounds { motion, mut slides } = rounds(roles, cycle_frames, three.clip, &three.contacts, self.foot_lock)?;
+        let Rounds { motion, mut slides } = rounds(roles, cycle_frames, three.clip, &three.contacts, pair.ground_m(), self.foot_lock)?;
         let measured = f64::from(ground_speed(&motion.ground_frames, fps));
         let mut metrics = vec![
             Metric::fact(

@@ -1,11 +1,11 @@
 //! The View lab: a clip as it is, or with its planted feet held, and what there is to say of it in numbers.
 
 use super::Outcome;
-use super::feet::slide_before;
+use super::feet::{locking, slide_before};
 use crate::metrics::{ClipMeter, Metric, SlideMeter};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
-use crate::transition::{FootLockOptions, FootLocking};
+use crate::transition::FootLocking;
 use std::sync::Arc;
 
 /// Clips of up to so many frames are done at once: about 8 ms for 31 joints.
@@ -91,7 +91,7 @@ enum Stage {
 
 impl Stage {
     fn measuring(motion: Arc<Motion>, before: Option<Metric>) -> Self {
-        let meter = Box::new(ClipMeter::new(&motion.clip, &motion.roles));
+        let meter = Box::new(ClipMeter::new(&motion.clip, &motion.roles, motion.ground_m));
         Self::Measuring { motion, before, meter }
     }
 }
@@ -213,12 +213,13 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
                 return Step::On(Stage::Before(meter));
             }
             let before_cm = meter.worst_cm();
-            match FootLocking::new(Arc::clone(&of.clip), &of.roles, &of.contacts, &FootLockOptions::default()) {
-                Ok(locking) => Step::On(Stage::Locking {
+            match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m) {
+                Ok(Some(locking)) => Step::On(Stage::Locking {
                     before_cm,
                     locking: Box::new(locking),
                 }),
-                Err(error) => Step::Done(Box::new(Err(error.to_string()))),
+                Ok(None) => Step::On(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
+                Err(error) => Step::Done(Box::new(Err(error))),
             }
         }
         Stage::Locking { before_cm, mut locking } => {

@@ -2,7 +2,7 @@
 
 use super::{close_jump, map, no_way, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
-use crate::ui::lab_panel::{compare_ui, lab_label, save_result_ui};
+use crate::ui::lab_panel::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
 use crate::ui::out::{Action, Out};
 use crate::ui::param_row::{Detail, param_row_ui};
@@ -199,7 +199,7 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if params.text(Key::WalkMethod) == "inertialize" {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
     }
-    param_row_ui(Key::FootLock, &plain, session, out, ui);
+    foot_rows_ui(session, out, ui);
     for key in [Key::Transform, Key::Atan] {
         param_row_ui(key, &plain, session, out, ui);
     }

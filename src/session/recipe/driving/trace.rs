@@ -4,7 +4,7 @@ use crate::clip::{Clip, Contacts};
 use crate::matching::{Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering};
 use crate::math::Planar;
 use crate::metrics::Metric;
-use crate::session::motion::Motion;
+use crate::session::motion::{FeetReading, Motion};
 use crate::session::recipe::Outcome;
 use crate::skeleton::Pose;
 use std::collections::VecDeque;
@@ -153,6 +153,8 @@ impl Tracer {
             contacts: self.contacts(),
             ground_frames: self.moments.iter().map(|moment| moment.root).collect(),
             seams: Vec::new(),
+            ground_m: database.ground_m(),
+            feet: FeetReading::default(),
         };
         let driven = Driven {
             database: Arc::clone(database),

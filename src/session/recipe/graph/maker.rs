@@ -8,9 +8,9 @@ use crate::graph::{
 };
 use crate::metrics::{Metric, SlideMeter};
 use crate::session::motion::Motion;
-use crate::session::recipe::feet::{slide, slide_before};
+use crate::session::recipe::feet::{locking, slide, slide_before};
 use crate::skeleton::Side;
-use crate::transition::{FootLockOptions, FootLocking};
+use crate::transition::FootLocking;
 use petgraph::graph::NodeIndex;
 use std::sync::Arc;
 
@@ -232,6 +232,15 @@ impl Maker {
         }
     }
 
+    /// A walk whose feet are held, or what is left to measure of it.
+    fn held(&self, held: Motion, free: Arc<Clip>) -> Result<Motion, Publishing> {
+        if self.slides.is_some() {
+            return Ok(held);
+        }
+        let meters = [&held.clip, &free].map(|clip| SlideMeter::new(clip, &held.roles));
+        Err(Publishing::Measuring(Box::new(Measuring { held, free, meters })))
+    }
+
     /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left to do.
     fn published(&mut self, publishing: Publishing) -> Result<Result<Motion, Publishing>, String> {
         match publishing {
@@ -243,10 +252,10 @@ impl Maker {
                 if !self.wanted.foot_lock {
                     return Ok(Ok(motion));
                 }
-                let options = FootLockOptions::default();
-                let locking = FootLocking::new(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, &options);
-                let locking = locking.map_err(|error| error.to_string())?;
-                Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
+                match locking(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, motion.ground_m)? {
+                    Some(locking) => Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion)))),
+                    None => Ok(self.held(motion.clone(), Arc::clone(&motion.clip))),
+                }
             }
             Publishing::Locking(mut locking, motion) => {
                 if locking.advance(LOCKED_FRAMES) {
@@ -254,12 +263,7 @@ impl Maker {
                 }
                 let clip = Arc::new(locking.finish().map_err(|error| error.to_string())?);
                 let free = Arc::clone(&motion.clip);
-                let held = Motion { clip, ..*motion };
-                if self.slides.is_some() {
-                    return Ok(Ok(held));
-                }
-                let meters = [&held.clip, &free].map(|clip| SlideMeter::new(clip, &held.roles));
-                Ok(Err(Publishing::Measuring(Box::new(Measuring { held, free, meters }))))
+                Ok(self.held(Motion { clip, ..*motion }, free))
             }
             Publishing::Measuring(mut measuring) => {
                 if measuring.advance(MEASURED_FRAMES) {
@@ -393,8 +397,12 @@ impl Maker {
             flags.truncate(clip.frames());
             flags
         });
-        let roles = self.built.cast.motions().first().map(|motion| motion.roles.clone());
+        let motions = self.built.cast.motions();
+        let roles = motions.first().map(|motion| motion.roles.clone());
         Ok(Motion {
+            // The lowest: no foot is lifted off the ground that its own clip has.
+            ground_m: motions.iter().map(|motion| motion.ground_m).min_by(f32::total_cmp).unwrap_or(0.0),
+            feet: motions.first().map(|motion| motion.feet).unwrap_or_default(),
             contacts: Contacts::from_flags(planted),
             roles: roles.unwrap_or_default(),
             ground_frames,

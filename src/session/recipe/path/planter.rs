@@ -4,7 +4,8 @@ use super::{PathInputs, free_motion};
 use crate::clip::{Clip, Contacts};
 use crate::metrics::SlideMeter;
 use crate::session::compare::MAX_PANES;
-use crate::transition::{FootLockOptions, FootLocking};
+use crate::session::recipe::feet::locking;
+use crate::transition::FootLocking;
 use std::sync::Arc;
 
 /// Frames in one slice of work: about 2 ms for 31 joints in a browser.
@@ -92,9 +93,13 @@ impl Planter {
 
 fn begin(of: &PathInputs) -> Result<Stage, String> {
     let (_, free) = free_motion(of)?;
-    let roles = &of.fitted.motion.roles;
-    let locking = FootLocking::new(Arc::new(free.clip), roles, &free.contacts, &FootLockOptions::default());
-    Ok(Stage::Locking(locking.map_err(|error| error.to_string())?, free.contacts))
+    let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
+    Ok(
+        match locking(Arc::clone(&clip), roles, &free.contacts, of.fitted.motion.ground_m)? {
+            Some(locking) => Stage::Locking(locking, free.contacts),
+            None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
+        },
+    )
 }
 
 /// The next stage, or what came of it all.
