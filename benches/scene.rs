@@ -42,7 +42,7 @@ fn mesh(c: &mut Criterion) {
     c.bench_function("a body about a skeleton", |bench| {
         bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, 1.0));
     });
-    let mut sculptor = Sculptor::new(&skeleton, &roles);
+    let mut sculptor = Sculptor::new(&skeleton, &roles, &skeleton.rest_pose());
     let sculpture = std::iter::from_fn(|| Some(sculptor.advance()))
         .find_map(|done| done)
         .expect("a body");

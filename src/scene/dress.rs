@@ -1,8 +1,9 @@
 //! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a while: until it is there, limbs are worn.
 
 use super::Body;
+use crate::clip::reference_pose;
 use crate::session::{Key, Motion, Params, Session};
-use crate::skeleton::{Roles, Skeleton};
+use crate::skeleton::{Roles, Skeleton, WorldPose};
 use crate::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
 use std::sync::{Arc, Weak};
 
@@ -121,15 +122,16 @@ impl Wardrobe {
     fn made(&mut self, motion: &Motion) -> Body {
         let Cut { skin, girth } = self.cut;
         let skeleton = motion.clip.skeleton();
-        let body = Body::new(skeleton, Some(&motion.roles)).with_girth(girth);
-        match skin.then(|| self.mesh(skeleton, &motion.roles)).flatten() {
+        let reference = reference_pose(&motion.clip, &motion.roles);
+        let body = Body::standing(skeleton, Some(&motion.roles), &reference).with_girth(girth);
+        match skin.then(|| self.mesh(skeleton, &motion.roles, &reference)).flatten() {
             Some(mesh) => body.with_skin(mesh),
             None => body,
         }
     }
 
     /// The skin of a skeleton, where it is there already; else it is begun.
-    fn mesh(&mut self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<Arc<SkinnedMesh>> {
+    fn mesh(&mut self, skeleton: &Arc<Skeleton>, roles: &Roles, reference: &WorldPose) -> Option<Arc<SkinnedMesh>> {
         let girth = self.cut.girth;
         let fits = |known: &&mut Tailored| known.roles == *roles && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton);
         if let Some(known) = self.tailored.iter_mut().find(fits) {
@@ -143,7 +145,7 @@ impl Wardrobe {
         self.tailored.push(Tailored {
             skeleton: Arc::clone(skeleton),
             roles: roles.clone(),
-            state: State::Begun(Box::new(Sculptor::new(skeleton, roles))),
+            state: State::Begun(Box::new(Sculptor::new(skeleton, roles, reference))),
             mesh: None,
         });
         None

@@ -85,6 +85,7 @@ mod pose;
 mod retarget;
 mod role;
 mod roles;
+mod stance;
 mod tree;
 mod two_bones;
 
@@ -97,5 +98,6 @@ pub use pose::Pose;
 pub use retarget::Retargeting;
 pub use role::{Role, Side};
 pub use roles::{Found, Roles};
+pub use stance::{canonical_stance, rest_is_plausible, uprightness};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};
 pub use two_bones::{TwoBones, two_bones};

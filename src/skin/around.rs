@@ -7,7 +7,7 @@ use super::field::{Cone, Field};
 use super::shapes::{Placed, Shape, shapes};
 use super::weights::{Neighbours, Sharing, drawn_together, fair, normals};
 use super::{SkinnedMesh, bind};
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -71,28 +71,34 @@ enum Stage {
 }
 
 impl Sculptor {
-    /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. The joints
-    /// of the mesh are those of the skeleton (at most the first 65,536 of them).
+    /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. It is made on the
+    /// skeleton's [`canonical_stance`], for which `reference` is a pose that shows how its bones lie to each other
+    /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most the first 65,536 of them).
     #[must_use]
-    pub fn new(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let pose = bind::bind_pose(skeleton, roles);
-        let rest = skeleton.rest_positions();
-        let mut shapes = shapes(skeleton, &rest, Some(roles));
+    pub fn new(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> Self {
+        let stance = canonical_stance(skeleton, roles, reference);
+        let standing = &skeleton.resting_in(&stance);
+        let rest = standing.rest_positions();
+        let mut shapes = shapes(standing, &rest, Some(roles));
         shapes.retain(|shape| u16::try_from(shape.a.joint.max(shape.b.joint)).is_ok());
         let mut sculptor = Self {
-            powers: powers(skeleton, roles),
+            powers: powers(standing, roles),
             paths: Vec::new(),
             shells: Vec::new(),
             done: Sculpture::default(),
-            pose,
+            pose: bind::bind_pose(standing, roles, &stance),
         };
-        if shapes.len() > MOST_BLENDED {
+        let is_blended = shapes.len() <= MOST_BLENDED;
+        if !is_blended {
             shapes.retain(|shape| !shape.soft);
             shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
             shapes.truncate(MOST_SHAPES);
+        }
+        let shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
+        if !is_blended {
             (sculptor.done.mesh, sculptor.done.reach) = capsules(&shapes, &sculptor.pose);
         } else {
-            sculptor.begin_shells(skeleton, roles, &shapes);
+            sculptor.begin_shells(standing, roles, &shapes);
         }
         sculptor
     }

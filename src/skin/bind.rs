@@ -10,8 +10,9 @@ const ARMS_DOWN: f32 = 0.70;
 /// Legs stand so far out, radians (7°): the thighs part below the crotch.
 const LEGS_OUT: f32 = 0.12;
 
-/// The bind pose: limbs that roles tell are spread, all else rests. The root stands at the origin.
-pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles) -> WorldPose {
+/// The bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs that roles tell are spread, all else is as in the stance. The root
+/// stands at the origin.
+pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) -> WorldPose {
     let rest = skeleton.rest_positions();
     let joint = |role| roles.get_within(role, rest.len());
     let at = |role| joint(role).map(|joint| rest[joint]);
@@ -47,6 +48,9 @@ pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles) -> WorldPose {
         };
         world.rotations.push(turns[index].unwrap_or(above));
         world.positions.push(position);
+    }
+    for (turned, standing) in world.rotations.iter_mut().zip(&stance.rotations) {
+        *turned = quat::renormalize(*turned * *standing);
     }
     world
 }

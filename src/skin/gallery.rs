@@ -1,7 +1,8 @@
 //! Pictures of bodies, to be looked at: written where `SEGUE_GALLERY` names a folder.
 
 use super::{SkinnedMesh, dual_quaternion, linear_blend};
-use crate::skeleton::{Roles, Skeleton, WorldPose};
+use crate::clip::Clip;
+use crate::skeleton::{Joint, Pose, Roles, Skeleton, WorldPose};
 use crate::synth::{Action, Params, synthesize};
 use flate2::write::ZlibEncoder;
 use flate2::{Compression, Crc};
@@ -182,9 +183,48 @@ fn the_humanoid_stands_walks_and_runs() {
     picture("humanoid", &mesh, &poses);
 }
 
+/// Four legs, standing still, with joint axes that are turned by constants: its rest pose means nothing.
+fn dog() -> Clip {
+    let bones: [(&str, Option<usize>, [f32; 3]); 16] = [
+        ("Pelvis", None, [0.0, 0.6, -0.3]),
+        ("Spine", Some(0), [0.0, 0.03, 0.25]),
+        ("Chest", Some(1), [0.0, 0.0, 0.3]),
+        ("Neck", Some(2), [0.0, 0.08, 0.12]),
+        ("Head", Some(3), [0.0, 0.15, 0.12]),
+        ("Snout", Some(4), [0.0, -0.02, 0.18]),
+        ("Tail", Some(0), [0.0, 0.05, -0.2]),
+        ("Tip", Some(6), [0.0, 0.1, -0.2]),
+        ("HindLeftA", Some(0), [0.1, -0.05, 0.0]),
+        ("HindLeftB", Some(8), [0.0, -0.27, 0.05]),
+        ("HindLeftC", Some(9), [0.0, -0.25, -0.08]),
+        ("HindRightA", Some(0), [-0.1, -0.05, 0.0]),
+        ("HindRightB", Some(11), [0.0, -0.27, 0.05]),
+        ("ForeLeftA", Some(2), [0.1, -0.1, 0.0]),
+        ("ForeLeftB", Some(13), [0.0, -0.45, 0.0]),
+        ("ForeRightA", Some(2), [-0.1, -0.1, 0.0]),
+    ];
+    let turn = |joint: usize| Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 1.3 * joint as f32);
+    let joints = bones.iter().map(|&(name, parent, offset)| Joint {
+        name: name.into(),
+        parent,
+        offset: parent.map_or(Quat::IDENTITY, turn).conjugate() * Vec3::from(offset),
+        end_site: None,
+        channels: vec![],
+    });
+    let skeleton = Skeleton::new(joints.collect()).unwrap();
+    let pose = |sway: f32| Pose {
+        root_translation: Vec3::new(0.0, 0.6, 0.0),
+        rotations: (0..skeleton.len())
+            .map(|joint| skeleton.parent(joint).map_or(Quat::from_rotation_y(sway), turn).conjugate() * turn(joint))
+            .collect(),
+        translations: vec![],
+    };
+    let poses = vec![pose(0.0), pose(0.1), pose(0.0)];
+    Clip::from_poses("dog", std::sync::Arc::new(skeleton.clone()), 30.0, poses).unwrap()
+}
+
 #[test]
 fn the_takes_of_others_have_bodies_too() {
-    use crate::clip::Clip;
     use crate::formats::{ImportOptions, acclaim, import};
     let Some(data) = std::env::var_os("SEGUE_SHARED").map(PathBuf::from).filter(|_| folder().is_some()) else {
         return;
@@ -200,16 +240,19 @@ fn the_takes_of_others_have_bodies_too() {
             .remove(0)
             .clip
     };
-    let takes: [(&str, Clip); 4] = [
+    let takes = [
         ("cmu_asf", amc("cmu/16/16_35.amc")),
         ("cmu_bvh", bvh("cmu/01_01.bvh")),
         ("pirouette", bvh("cmu/pirouette.bvh")),
         ("games105", bvh("games105/run_forward.bvh")),
+        ("bandai_walk", bvh("bandai-namco/dataset-2_walk_normal_001.bvh")),
+        ("bandai_kick", bvh("bandai-namco/dataset-1_kick_normal_001.bvh")),
+        ("dog", dog()),
     ];
     for (name, clip) in takes {
         let skeleton = clip.skeleton();
         let start = std::time::Instant::now();
-        let mesh = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
+        let mesh = SkinnedMesh::around_clip(&clip, &Roles::detect(skeleton), 1.0);
         eprintln!(
             "{name}: {} joints, {} vertices, {:?}",
             skeleton.len(),

@@ -6,7 +6,7 @@
 //! motions themselves ([`dual_quaternion`]), which keeps it. Both are written here plainly, one vertex after the other; the renderer does the same on
 //! the GPU.
 //!
-//! [`SkinnedMesh::around`] makes a mesh for any skeleton, a mannequin where the roles of a human are known; a [`Sculptor`] makes it piece by piece, and
+//! [`SkinnedMesh::around_clip`] makes a mesh for any skeleton, a mannequin where the roles of a human are known; a [`Sculptor`] makes it piece by piece, and
 //! the [`Sculpture`] that comes of it takes any girth in a moment. A mesh that came with a file is a [`SkinnedMesh`], too.
 //!
 //! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to
@@ -22,7 +22,7 @@
 //! use segue::synth::{Action, Params, synthesize};
 //!
 //! let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-//! let mesh = SkinnedMesh::around(clip.skeleton(), &Roles::detect(clip.skeleton()), 1.0);
+//! let mesh = SkinnedMesh::around_clip(&clip, &Roles::detect(clip.skeleton()), 1.0);
 //! let mut world = WorldPose::default();
 //! clip.world_pose_into(30, &mut world);
 //! let mut joints = Vec::new();
@@ -57,6 +57,7 @@ pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
 pub(crate) use weights::normals;
 
+use crate::clip::{Clip, reference_pose};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 
@@ -81,10 +82,20 @@ pub struct SkinnedMesh {
 }
 
 impl SkinnedMesh {
-    /// Makes a body for a skeleton at once: see [`Sculptor::new`] and, for the girth, [`Sculpture::with_girth`]. The same input gives the same mesh.
+    /// Makes a body for a skeleton at once, of which nothing is known but its rest pose: see [`Sculptor::new`] and, for the girth,
+    /// [`Sculpture::with_girth`]. The same input gives the same mesh.
     #[must_use]
     pub fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> Self {
-        let mut sculptor = Sculptor::new(skeleton, roles);
+        Self::sculpted(Sculptor::new(skeleton, roles, &skeleton.rest_pose()), girth)
+    }
+
+    /// Makes a body for the skeleton of a clip at once. Where its rest pose means nothing, the clip shows how it stands ([`reference_pose`]).
+    #[must_use]
+    pub fn around_clip(clip: &Clip, roles: &Roles, girth: f32) -> Self {
+        Self::sculpted(Sculptor::new(clip.skeleton(), roles, &reference_pose(clip, roles)), girth)
+    }
+
+    fn sculpted(mut sculptor: Sculptor, girth: f32) -> Self {
         loop {
             if let Some(sculpture) = sculptor.advance() {
                 return sculpture.with_girth(girth);

@@ -4,7 +4,7 @@
 mod tests;
 
 use super::{Color, Limb};
-use crate::skeleton::{Roles, Skeleton, WorldPose};
+use crate::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
 use crate::skin::shapes::{Placed, Shape, shapes};
 use crate::skin::{Character, Drive, SkinnedMesh};
 use std::borrow::Cow;
@@ -47,15 +47,25 @@ struct Led {
 }
 
 impl Body {
-    /// Makes the body of a skeleton. `roles` may be missing or belong to another skeleton: the body is then plainer.
+    /// Makes the body of a skeleton of which nothing is known but its rest pose. `roles` may be missing or belong to another skeleton: the body is then
+    /// plainer.
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: Option<&Roles>) -> Self {
+        Self::standing(skeleton, roles, &skeleton.rest_pose())
+    }
+
+    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones lie to each other ([`crate::clip::reference_pose`]).
+    #[must_use]
+    pub fn standing(skeleton: &Skeleton, roles: Option<&Roles>, reference: &WorldPose) -> Self {
+        let stance = roles.map_or_else(|| skeleton.rest_pose(), |roles| canonical_stance(skeleton, roles, reference));
+        let skeleton = &skeleton.resting_in(&stance);
         let rest = skeleton.rest_positions();
         let mut shapes = shapes(skeleton, &rest, roles);
         shapes.retain(|shape| !shape.soft);
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
+        let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
         Self {
             shapes,
             skin: None,

@@ -50,6 +50,21 @@ impl Shape {
         Self { flat, flatness, ..self }
     }
 
+    /// The shape of a skeleton that rests in `stance` as one of the skeleton itself, whose joints have axes of their own there.
+    pub(crate) fn in_axes_of(self, stance: &WorldPose) -> Self {
+        let own = |joint: usize| stance.rotations.get(joint).copied().unwrap_or_default().conjugate();
+        let moved = |anchor: Anchor| Anchor {
+            point: own(anchor.joint) * anchor.point,
+            ..anchor
+        };
+        Self {
+            a: moved(self.a),
+            b: moved(self.b),
+            flat: own(self.a.joint) * self.flat,
+            ..self
+        }
+    }
+
     /// The shape in a pose; `None` where the pose lacks its joints or has numbers that are none.
     pub(crate) fn placed(&self, pose: &WorldPose) -> Option<Placed> {
         let at = |anchor: Anchor| Some(*pose.positions.get(anchor.joint)? + *pose.rotations.get(anchor.joint)? * anchor.point);
