@@ -11,12 +11,15 @@ use glam::{DMat4, DVec3};
 use segue::clip::{Clip, UpAxis};
 use segue::formats::bvh::{RotationOrder, WriteOptions, write};
 use segue::formats::csv::{CsvInputs, CsvOptions, write_csv};
-use segue::formats::gltf::{GlbOptions, write_glb};
+use segue::formats::gltf::{GlbOptions, write_character_glb, write_glb};
 use segue::formats::{ImportOptions, import};
-use segue::synth::{Action, Params, synthesize};
+use segue::skeleton::Roles;
+use segue::skin::{Character, Drive, SkinnedMesh};
+use segue::synth::{Action, Params, humanoid, synthesize};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A thousandth of a centimetre, metres.
 const AS_GOOD_AS_SAME: f64 = 1e-5;
@@ -127,6 +130,23 @@ fn exported_bvh_is_the_same_motion_to_another_reader() {
     }
 }
 
+/// A child of two colours that walks as an adult does: its motion, and its mesh.
+fn character() -> (Clip, SkinnedMesh) {
+    let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let skeleton = humanoid(1.5).unwrap();
+    let roles = Roles::detect(&skeleton);
+    let mut mesh = SkinnedMesh::around(&skeleton, &roles, 1.0);
+    let colors = [[0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]];
+    mesh.colors = mesh.positions.iter().map(|at| colors[usize::from(at.y > 0.0)]).collect();
+    let child = Character {
+        skeleton,
+        roles,
+        mesh: Arc::new(mesh.clone()),
+    };
+    let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).unwrap();
+    (drive.clip(&walk).unwrap(), mesh)
+}
+
 /// Leaves what the readers in other languages compare: for each case the BVH and the GLB, and the positions as CSV.
 #[test]
 fn files_for_other_readers() {
@@ -162,5 +182,16 @@ fn files_for_other_readers() {
         save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
         writeln!(list, "{name} {}", unit(&clip, &options)).unwrap();
     }
+    let (clip, mesh) = character();
+    let inputs = CsvInputs {
+        clip: &clip,
+        contacts: None,
+        columns: &[],
+    };
+    let save = |ending: &str, bytes: &[u8]| fs::write(folder.join(format!("character.{ending}")), bytes).unwrap();
+    save("bvh", write(&clip, &WriteOptions::default()).as_bytes());
+    save("glb", &write_character_glb(&clip, &mesh, &GlbOptions::default()).unwrap());
+    save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
+    writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();
 }

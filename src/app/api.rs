@@ -9,7 +9,7 @@ use glam::{Quat, Vec3};
 use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
-use segue::session::export::{ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue::session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
 use segue::session::reading::Content;
 use segue::session::{
     ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, frame_at, report,
@@ -350,16 +350,21 @@ impl Segue {
         Ok(main.outcome.metrics.iter().map(|metric| (metric.id, info(metric))).collect())
     }
 
-    /// A motion as a file of that format. `which` as in [`Self::pose`].
-    pub(crate) fn export(&self, which: &str, format: &str) -> Result<ExportedFile, String> {
+    /// A motion as a file of that format. `which` as in [`Self::pose`]; `body` says whose body a GLB file has, the character's on the stage where `None`.
+    pub(crate) fn export(&self, which: &str, format: &str, body: Option<&str>) -> Result<ExportedFile, String> {
         let format = ExportFormat::from_name(format).ok_or_else(|| {
             let names = ExportFormat::ALL.map(ExportFormat::name).join(", ");
             format!("found `{format}`, expected one of {names}")
+        })?;
+        let body = body.map_or(Ok(ExportBody::default()), |body| {
+            let names = ExportBody::ALL.map(ExportBody::name).join(", ");
+            ExportBody::from_name(body).ok_or_else(|| format!("found `{body}`, expected one of {names}"))
         })?;
         self.export_as(
             which,
             &ExportOptions {
                 format,
+                body,
                 ..ExportOptions::default()
             },
         )
@@ -382,7 +387,7 @@ impl Segue {
         Ok(ExportedFile {
             name: file_name(&stem, how.format.name()),
             mime: how.format.mime(),
-            bytes: export(motion, &curves, how).map_err(|error| error.to_string())?,
+            bytes: export(motion, self.session.character().as_ref(), &curves, how).map_err(|error| error.to_string())?,
         })
     }
 
@@ -591,14 +596,14 @@ mod tests {
         ] {
             let mut segue = open(good);
             let name = segue.stage_name();
-            assert!(segue.metrics().is_ok() && segue.export("result", "bvh").is_ok() && segue.report(None).is_ok());
+            assert!(segue.metrics().is_ok() && segue.export("result", "bvh", None).is_ok() && segue.report(None).is_ok());
             segue.set(&object(bad)).unwrap();
             while segue.pump() || segue.is_busy() {}
             let kept = segue.clips().len();
             let refused = [
                 segue.pose("result", 0.0).map(drop),
                 segue.metrics().map(drop),
-                segue.export("result", "bvh").map(drop),
+                segue.export("result", "bvh", None).map(drop),
                 segue.report(None).map(drop),
                 segue.keep("result").map(drop),
             ];
@@ -613,14 +618,18 @@ mod tests {
     #[test]
     fn what_is_exported_can_be_loaded_again() {
         let mut segue = open("a=walk&lab=view");
-        let file = segue.export("result", "bvh").unwrap();
+        let file = segue.export("result", "bvh", None).unwrap();
         assert_eq!(file.name, "walk.bvh");
         let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
         assert_eq!(loaded.clips.len(), 1);
         assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
         assert_eq!(
-            segue.export("result", "fbx").unwrap_err(),
+            segue.export("result", "fbx", None).unwrap_err(),
             "found `fbx`, expected one of bvh, csv, glb"
+        );
+        assert_eq!(
+            segue.export("result", "glb", Some("statue")).unwrap_err(),
+            "found `statue`, expected one of character, plain"
         );
         assert!(load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().starts_with("x.bvh:1:"));
         assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
@@ -635,7 +644,7 @@ mod tests {
             ("result:1", "walk to run 10 frames"),
         ] {
             for (format, mime) in [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")] {
-                let file = segue.export(which, format).unwrap();
+                let file = segue.export(which, format, None).unwrap();
                 assert_eq!(
                     (file.name.to_lowercase(), file.mime),
                     (format!("{}.{format}", stem.to_lowercase()), mime)
@@ -643,7 +652,7 @@ mod tests {
                 assert!(file.bytes.len() > 1000);
             }
         }
-        let table = String::from_utf8(segue.export("result:1", "csv").unwrap().bytes).unwrap();
+        let table = String::from_utf8(segue.export("result:1", "csv", None).unwrap().bytes).unwrap();
         let header = table.lines().next().unwrap();
         assert!(header.ends_with("left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"));
         let frames = segue.motion("result:1").unwrap().clip.frames();

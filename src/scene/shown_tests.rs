@@ -1,11 +1,13 @@
 //! Whatever is drawn belongs to the figure that is shown.
 
 use super::{Colors, Director, Layer, Look, Pane, Viewport, pose_at, shown_size};
-use crate::clip::Clip;
+use crate::clip::{Clip, Interpolation};
 use crate::formats::gltf::{GlbOptions, write_glb};
+use crate::formats::{ImportOptions, import};
+use crate::session::export::{ExportBody, ExportFormat, ExportOptions, export};
 use crate::session::{Command, Key, Session, Value};
-use crate::skeleton::{Role, Roles, Side, fixtures};
-use crate::skin::Character;
+use crate::skeleton::{Role, Roles, Side, Skeleton, fixtures, world_pose};
+use crate::skin::{Character, SkinnedMesh};
 use glam::{Vec3, Vec3Swizzles};
 use std::sync::Arc;
 
@@ -161,4 +163,81 @@ fn handles_of_the_path_lie_along_the_way_of_the_character() {
     }
     // Handles stand about a metre apart.
     assert!(farthest < 1.0, "{farthest} m from the nearest handle");
+}
+
+#[test]
+fn an_exported_character_is_the_one_on_the_stage() {
+    for size in [1.6, 0.6] {
+        let mut session = session("lab=blend&a=walk&b=run&camera_distance=4", size);
+        let outcome = Arc::clone(session.main_outcome().unwrap());
+        let motion = &outcome.motion;
+        let mut character = session.character().unwrap();
+        let options = ExportOptions {
+            format: ExportFormat::Glb,
+            ..ExportOptions::default()
+        };
+        // Trousers.
+        let mut mesh = SkinnedMesh::clone(&character.mesh);
+        let (blue, red) = ([0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]);
+        let middle = character.skeleton.joints()[0].offset.y;
+        mesh.colors = mesh.positions.iter().map(|at| if at.y < middle { blue } else { red }).collect();
+        character.mesh = Arc::new(mesh);
+        let bytes = export(motion, Some(&character), &[], &options).unwrap();
+        let back = import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
+        let (skeleton, mesh) = (back.clip.skeleton(), back.mesh.unwrap());
+        let names = |skeleton: &Skeleton| skeleton.joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(skeleton), names(&character.skeleton));
+        // The same triangles, in the order of their colours; weights are bytes.
+        let corners = |mesh: &SkinnedMesh, vertex: u32| {
+            let vertex = vertex as usize;
+            let [x, y, z] = mesh.positions[vertex].to_array().map(|x| (f64::from(x) * 1e4).round() as i64);
+            (x, y, z, mesh.joints[vertex][0])
+        };
+        let triangles = |mesh: &SkinnedMesh| {
+            let mut triangles: Vec<_> = mesh
+                .triangles
+                .iter()
+                .map(|triangle| triangle.map(|corner| corners(mesh, corner)))
+                .collect();
+            triangles.sort_unstable();
+            triangles
+        };
+        let (found, expected) = (triangles(&mesh), triangles(&character.mesh));
+        let same = found.iter().filter(|triangle| expected.binary_search(triangle).is_ok()).count();
+        assert_eq!(
+            (found.len(), mesh.triangles.len()),
+            (expected.len(), character.mesh.triangles.len())
+        );
+        assert!(same * 100 > found.len() * 98, "{same} of {} triangles", found.len());
+        for color in [blue, red] {
+            let is_near = |known: &[f32; 4]| known.iter().zip(color).all(|(known, color)| (known - color).abs() < 1e-3);
+            assert!(mesh.colors.iter().filter(|known| is_near(known)).count() > 500);
+        }
+        // And where the stage has it, in its own size.
+        assert_eq!(back.clip.frames(), motion.clip.frames());
+        let shown = shown_size(&session, motion);
+        let mut director = Director::default();
+        let mut farthest = 0.0f32;
+        for frame in 0..motion.clip.frames() {
+            set(&mut session, Key::Time, Value::Number(motion.clip.time_of(frame)));
+            let pane = staged(&mut director, &session);
+            let skin = pane.figures[0].skin.as_ref().unwrap();
+            // A link keeps the time to the millisecond.
+            let pose = back.clip.sample(session.now_secs(), Interpolation::Linear).unwrap();
+            let world = world_pose(skeleton, &pose);
+            for (joint, bind) in skin.mesh.bind.iter().enumerate() {
+                let drawn = (pane.joints[skin.joints.start + joint] * bind.inverse()).translation;
+                farthest = farthest.max((drawn * shown).distance(world.positions[joint]));
+            }
+        }
+        assert!(farthest < 1e-3, "{size}: {farthest} m apart");
+        let plain = ExportOptions {
+            body: ExportBody::Plain,
+            ..options
+        };
+        let bytes = export(motion, Some(&character), &[], &plain).unwrap();
+        let back = import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
+        assert_eq!(names(back.clip.skeleton()), names(motion.clip.skeleton()));
+        assert!(back.mesh.is_none());
+    }
 }

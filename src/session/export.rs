@@ -3,10 +3,11 @@
 use super::motion::{Motion, curve_kind, joint_of};
 use super::params::{Key, Params};
 use super::recipe::{Outcome, Source};
-use crate::clip::{CurveKind, joint_curve};
+use crate::clip::{Clip, CurveKind, joint_curve};
 use crate::formats::bvh::{self, RotationOrder};
 use crate::formats::csv::{CsvInputs, CsvOptions, write_csv};
-use crate::formats::gltf::{GlbError, GlbOptions, write_glb};
+use crate::formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
+use crate::skin::{Character, Drive};
 
 /// A kind of file that motions are saved as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,7 +52,8 @@ impl ExportFormat {
     }
 }
 
-/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all of it, GLB the frame rate, CSV nothing.
+/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all of it but the body, GLB frame rate and
+/// body, CSV nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
     /// The kind of file.
@@ -62,16 +64,48 @@ pub struct ExportOptions {
     pub rotation_order: Option<RotationOrder>,
     /// Frames per second; the clip's own where `None`.
     pub fps: Option<f64>,
+    /// Whose body the file has, where the format has bodies.
+    pub body: ExportBody,
+}
+
+/// Whose body a file has beside its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExportBody {
+    /// That of the character on the stage, on its own skeleton, in its own size; where there is none that the motion can move, the plain one.
+    #[default]
+    Character,
+    /// One made around the clip's own skeleton.
+    Plain,
+}
+
+impl ExportBody {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Character, Self::Plain];
+
+    /// Its name in the API.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Character => "character",
+            Self::Plain => "plain",
+        }
+    }
+
+    /// The body of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|body| body.name() == name)
+    }
 }
 
 /// A number per frame that goes into a table beside the joints, under its name.
 pub type Column = (String, Vec<f32>);
 
-/// Writes a motion as a file. `columns` go into a table only.
+/// Writes a motion as a file. `columns` go into a table only. `character` is who is on the stage in place of a plain body: see [`ExportBody`].
 ///
 /// # Errors
 /// [`GlbError`] when the motion is too large for the format.
-pub fn export(motion: &Motion, columns: &[Column], options: &ExportOptions) -> Result<Vec<u8>, GlbError> {
+pub fn export(motion: &Motion, character: Option<&Character>, columns: &[Column], options: &ExportOptions) -> Result<Vec<u8>, GlbError> {
     match options.format {
         ExportFormat::Bvh => {
             let how = bvh::WriteOptions {
@@ -90,14 +124,23 @@ pub fn export(motion: &Motion, columns: &[Column], options: &ExportOptions) -> R
             };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
-        ExportFormat::Glb => write_glb(
-            &motion.clip,
-            &GlbOptions {
+        ExportFormat::Glb => {
+            let how = GlbOptions {
                 fps: options.fps,
                 smooth: true,
-            },
-        ),
+            };
+            let character = character.filter(|_| options.body == ExportBody::Character);
+            match character.and_then(|character| Some((led(motion, character)?, character))) {
+                Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
+                None => write_glb(&motion.clip, &how),
+            }
+        }
     }
+}
+
+/// The motion as the character on the stage has it; `None` where it moves no joint of the character.
+fn led(motion: &Motion, character: &Character) -> Option<Clip> {
+    Drive::new(&motion.clip, &motion.roles, character)?.clip(&motion.clip).ok()
 }
 
 /// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the clip has no such joint.
@@ -168,6 +211,7 @@ mod tests {
             assert_eq!(ExportFormat::from_name(format.name()), Some(format));
             let bytes = export(
                 motion,
+                None,
                 &[],
                 &ExportOptions {
                     format,
@@ -200,7 +244,7 @@ mod tests {
             fps: Some(30.0),
             ..ExportOptions::default()
         };
-        let text = String::from_utf8(export(motion, &[], &options).unwrap()).unwrap();
+        let text = String::from_utf8(export(motion, None, &[], &options).unwrap()).unwrap();
         assert!(text.contains("Xrotation Yrotation Zrotation") && !text.contains("Zrotation Xrotation"));
         let clip = read_back(text.as_bytes(), "x.bvh");
         assert_eq!(clip.fps().round(), 30.0);
@@ -209,7 +253,7 @@ mod tests {
             format: ExportFormat::Glb,
             ..options
         };
-        assert_eq!(read_back(&export(motion, &[], &glb).unwrap(), "x.glb").fps().round(), 30.0);
+        assert_eq!(read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(), 30.0);
     }
 
     #[test]

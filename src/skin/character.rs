@@ -1,9 +1,10 @@
 //! A character of a file, moved by clips of other skeletons.
 
 use super::{RigidTransform, SkinnedMesh};
-use crate::clip::Clip;
+use crate::clip::{Clip, ClipError};
 use crate::math::stats;
-use crate::skeleton::{JointMap, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use crate::skeleton::{JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Frames of a clip that are looked at for where its ground is.
@@ -169,6 +170,22 @@ impl Drive {
         }
     }
 
+    /// Returns the motion of the character that a clip moves: a clip of the character's skeleton, frame by frame as [`Drive::pose`] has it.
+    ///
+    /// # Errors
+    /// [`ClipError`] when the clip is not one of the skeleton that the drive was prepared for.
+    pub fn clip(&self, clip: &Clip) -> Result<Clip, ClipError> {
+        let Some(way) = &self.way else { return Ok(clip.clone()) };
+        let poses = (0..clip.frames()).map(|frame| {
+            let pose = way.pose(&clip.pose(frame));
+            Pose {
+                root_translation: pose.root_translation + Vec3::Y * self.lift,
+                ..pose
+            }
+        });
+        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.target), clip.fps(), poses)?.with_provenance(clip.provenance()))
+    }
+
     /// The transforms that move the character's mesh for a pose of the clip's skeleton: [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
     pub fn transforms(&self, source: &WorldPose, mesh: &SkinnedMesh, out: &mut Vec<RigidTransform>) {
         let mut pose = WorldPose::default();
@@ -207,7 +224,7 @@ impl Drive {
 
 /// The lowest vertices of a character's feet, each with the joint that it follows most.
 struct Sole {
-    points: Vec<(usize, glam::Vec3)>,
+    points: Vec<(usize, Vec3)>,
 }
 
 impl Sole {
@@ -219,7 +236,7 @@ impl Sole {
             .flatten()
             .collect();
         let vertices = mesh.positions.iter().zip(&mesh.joints);
-        let mut points: Vec<(usize, glam::Vec3)> = vertices
+        let mut points: Vec<(usize, Vec3)> = vertices
             .filter_map(|(&position, joints)| {
                 let joint = usize::from(*joints.first()?);
                 let in_joint = mesh.bind.get(joint)?.point(position);
@@ -238,7 +255,7 @@ impl Sole {
     }
 
     fn height(&self, pose: &WorldPose) -> Option<f32> {
-        let height = |&(joint, point): &(usize, glam::Vec3)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y);
+        let height = |&(joint, point): &(usize, Vec3)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y);
         self.points.iter().filter_map(height).min_by(f32::total_cmp)
     }
 }

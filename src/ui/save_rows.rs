@@ -8,10 +8,13 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
 use eframe::egui::{Rect, Ui};
 use segue::formats::bvh::RotationOrder;
-use segue::session::export::ExportFormat;
+use segue::session::export::{ExportBody, ExportFormat};
 
 /// What files are saved in, with its name.
 const UNITS: [(Option<f64>, &str); 3] = [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];
+
+/// Whose body a file has.
+const BODIES: [(ExportBody, &str); 2] = [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
 
 const ORDERS: [(Option<RotationOrder>, &str); 7] = [
     (None, text::AS_FILE),
@@ -64,7 +67,12 @@ pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: 
     match export.format {
         ExportFormat::Csv => {}
         ExportFormat::Glb => {
-            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| rate_ui(&mut export.fps, ui));
+            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {
+                if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
+                    export.body = body;
+                }
+                rate_ui(&mut export.fps, ui);
+            });
         }
         ExportFormat::Bvh => {
             kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {

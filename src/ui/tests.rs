@@ -188,7 +188,7 @@ fn file(session: &Session) -> String {
         .find("walk")
         .and_then(|entry| entry.motion.clone())
         .expect("a page as the tests need it");
-    let text = String::from_utf8(export(&motion, &[], &ExportOptions::default()).expect("a page as the tests need it"))
+    let text = String::from_utf8(export(&motion, None, &[], &ExportOptions::default()).expect("a page as the tests need it"))
         .expect("a page as the tests need it");
     let (head, rows) = text.split_once("MOTION\n").expect("a page as the tests need it");
     let frames = motion.clip.frames();

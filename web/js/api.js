@@ -51,7 +51,7 @@ export function makeApi(handle, { stopped, onLost }) {
     time: () => call("time"),
     pose: (which, seconds) => call("pose", which, seconds),
     metrics: () => call("metrics"),
-    export: (which, format) => call("exportClip", which, format),
+    export: (which, format, body) => call("exportClip", which, format, body),
     keep: (which) => call("keep", which),
     report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),

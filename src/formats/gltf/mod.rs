@@ -19,7 +19,7 @@ mod skin;
 mod write;
 
 pub use read::read;
-pub use write::{GlbError, GlbOptions, write_glb};
+pub use write::{GlbError, GlbOptions, write_character_glb, write_glb};
 
 /// Whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
 #[must_use]

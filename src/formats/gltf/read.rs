@@ -4,7 +4,7 @@ use super::document::Document;
 use super::node::Nodes;
 use super::rate::{Rate, rate};
 use super::skin::mesh;
-use super::write::GENERATOR;
+use super::write::{GENERATOR, MADE_BODY};
 use crate::clip::UpAxis;
 use crate::formats::measure::measure;
 use crate::formats::raw::{RawMotion, Y_UP_FROM_Z_UP};
@@ -240,8 +240,10 @@ impl Context<'_> {
 
     /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.
     fn is_own(&self) -> bool {
-        let generator = self.document.root.asset.generator.as_deref();
-        generator.is_some_and(|generator| generator.starts_with(GENERATOR))
+        let root = &self.document.root;
+        let is_made = |mesh: &gltf::json::Mesh| mesh.name.as_deref() == Some(MADE_BODY);
+        let generator = root.asset.generator.as_deref();
+        generator.is_some_and(|generator| generator.starts_with(GENERATOR)) && root.meshes.iter().all(is_made)
     }
 
     /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.

@@ -9,13 +9,21 @@ use std::sync::Arc;
 
 /// How the name of the program that wrote a file begins, where that was Segue.
 pub(super) const GENERATOR: &str = "Segue ";
+/// What a body that Segue made around the bones is called in a file: whoever reads the file has it already.
+pub(super) const MADE_BODY: &str = "Body";
+/// What the mesh of a character is called.
+const CHARACTER: &str = "Character";
+/// What an index of 16 bits can tell apart.
+const MOST_JOINTS: usize = 1 << 16;
+/// The colour of a body that has none, linear.
+const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
 
 /// How to write a `.glb` file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GlbOptions {
     /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
     pub fps: Option<f64>,
-    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around`] instead of simple bones: about half a megabyte.
+    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around_clip`] instead of simple bones: about half a megabyte.
     #[serde(default)]
     pub smooth: bool,
 }
@@ -41,11 +49,32 @@ pub enum GlbError {
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
 pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
-    /// What an index of 16 bits can tell apart.
-    const MOST_JOINTS: usize = 1 << 16;
+    // The body is made around the joints that carry it, not around what the file has above them.
+    let skeleton = clip.skeleton();
+    if skeleton.len() > MOST_JOINTS {
+        return Err(GlbError::TooManyJoints(skeleton.len()));
+    }
+    let mesh = if options.smooth {
+        SkinnedMesh::around_clip(clip, &Roles::detect(skeleton), 1.0)
+    } else {
+        let positions = standing_rest(skeleton);
+        Bones::around(skeleton, &positions).into_mesh(&positions)
+    };
+    write_with(clip, mesh, MADE_BODY, options)
+}
+
+/// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own mesh: `clip` is one of the skeleton that `mesh` is
+/// bound to. Each colour of the mesh is a material.
+///
+/// # Errors
+/// [`GlbError`] when the clip is too large for the format.
+pub fn write_character_glb(clip: &Clip, mesh: &SkinnedMesh, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+    write_with(clip, mesh.clone(), CHARACTER, options)
+}
+
+fn write_with(clip: &Clip, mut mesh: SkinnedMesh, name: &str, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
     let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
-    // The body is made around the joints that carry it, not around what the file has above them.
     let body = Arc::clone(clip.skeleton());
     let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
     let skeleton: &Skeleton = clip.skeleton();
@@ -55,13 +84,7 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     let mut file = File::default();
     let mut nodes = nodes(skeleton);
     let body_node = nodes.len();
-    nodes.push(json!({ "name": "Body", "mesh": 0, "skin": 0 }));
-    let mut mesh = if options.smooth {
-        SkinnedMesh::around(&body, &Roles::detect(&body), 1.0)
-    } else {
-        let positions = standing_rest(&body);
-        Bones::around(&body, &positions).into_mesh(&positions)
-    };
+    nodes.push(json!({ "name": name, "mesh": 0, "skin": 0 }));
     if let Some(above) = body.above() {
         let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
             .map(|&position| RigidTransform {
@@ -80,15 +103,19 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
         .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
         .collect();
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
-    let primitive = primitive(&mut file, &mesh, skeleton.len());
+    let (mut primitives, mut materials) = (Vec::new(), Vec::new());
+    for (part, color) in parts(&mesh) {
+        primitives.push(primitive(&mut file, &part, skeleton.len(), materials.len()));
+        materials.push(material(&color, name, materials.len()));
+    }
     let mut root = json!({
         "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0, body_node] }],
         "nodes": nodes,
         "skins": [{ "joints": (0..skeleton.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
-        "meshes": [{ "name": "Body", "primitives": [primitive] }],
-        "materials": [{ "name": "Clay", "pbrMetallicRoughness": { "baseColorFactor": [0.7, 0.7, 0.7, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8 } }],
+        "meshes": [{ "name": name, "primitives": primitives }],
+        "materials": materials,
     });
     if clip.frames() > 0 {
         root["animations"] = json!([animation(&mut file, &clip)]);
@@ -127,7 +154,78 @@ fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     joints.iter().zip(children).map(node).chain(ends).collect()
 }
 
-fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize) -> Value {
+/// The parts of a mesh that have one colour (linear) each, in the order in which the colours come up. A triangle has the colour of its first corner.
+fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
+    let color_of = |triangle: &[u32; 3]| mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits));
+    let mut colors: Vec<Option<[u32; 4]>> = Vec::new();
+    let mut triangles: Vec<Vec<[u32; 3]>> = Vec::new();
+    let mut last = 0;
+    for triangle in &mesh.triangles {
+        let color = color_of(triangle);
+        if colors.get(last) != Some(&color) {
+            last = colors.iter().position(|known| *known == color).unwrap_or(colors.len());
+        }
+        if last == colors.len() {
+            colors.push(color);
+            triangles.push(Vec::new());
+        }
+        triangles[last].push(*triangle);
+    }
+    let linear = |color: Option<[u32; 4]>| {
+        color.map_or(CLAY, |color| {
+            let [r, g, b, a] = color.map(f32::from_bits);
+            [decoded(r), decoded(g), decoded(b), a]
+        })
+    };
+    if colors.len() <= 1 {
+        return vec![(Cow::Borrowed(mesh), linear(colors.first().copied().flatten()))];
+    }
+    let parts = triangles.into_iter().zip(colors);
+    parts
+        .map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color)))
+        .collect()
+}
+
+/// The vertices of some triangles, in their order.
+fn part(mesh: &SkinnedMesh, triangles: &[[u32; 3]]) -> SkinnedMesh {
+    let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let index = |vertex: u32| vertices.partition_point(|known| *known < vertex) as u32;
+    SkinnedMesh {
+        triangles: triangles.iter().map(|triangle| triangle.map(index)).collect(),
+        positions: picked(&mesh.positions, &vertices),
+        normals: picked(&mesh.normals, &vertices),
+        joints: picked(&mesh.joints, &vertices),
+        weights: picked(&mesh.weights, &vertices),
+        ..SkinnedMesh::default()
+    }
+}
+
+fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
+    let value = |&vertex: &u32| values.get(vertex as usize).copied().unwrap_or_default();
+    vertices.iter().map(value).collect()
+}
+
+/// A part of a colour as written in a palette, linear (IEC 61966-2-1).
+fn decoded(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Clay for a body that was made; for a character, whose surfaces may be open, the colour from both sides.
+fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
+    let surface = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
+    if name == MADE_BODY {
+        return json!({ "name": "Clay", "pbrMetallicRoughness": surface });
+    }
+    json!({ "name": format!("{name} {}", index + 1), "pbrMetallicRoughness": surface, "doubleSided": true })
+}
+
+fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize) -> Value {
     let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
     let low = mesh.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = mesh.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
@@ -172,7 +270,7 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize) -> Value {
     json!({
         "attributes": { "POSITION": position, "NORMAL": normal, "JOINTS_0": followed, "WEIGHTS_0": weights },
         "indices": indices,
-        "material": 0,
+        "material": material,
     })
 }
 

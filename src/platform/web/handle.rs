@@ -200,12 +200,12 @@ impl SegueHandle {
         self.change(|segue| segue.stop(name))
     }
 
-    /// A motion as the bytes of a file.
+    /// A motion as the bytes of a file, a GLB file with the body that `body` names: "character" or "plain".
     #[wasm_bindgen(js_name = exportClip)]
-    pub fn export_clip(&self, which: &str, format: &str) -> Result<Vec<u8>, JsValue> {
+    pub fn export_clip(&self, which: &str, format: &str, body: Option<String>) -> Result<Vec<u8>, JsValue> {
         Ok(self
             .borrow()?
-            .export(which, format)
+            .export(which, format, body.as_deref())
             .map_err(|reason| error(format!("export: {reason}")))?
             .bytes)
     }
