@@ -1,7 +1,7 @@
 use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
 use super::features::{Features, Layout, RATE};
 use super::motion::{FeatureJoints, Motion, mirrored_contacts};
-use super::round;
+use super::pace::Pace;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
@@ -291,6 +291,7 @@ impl DatabaseBuilder {
                         masks: index.masks(&tags),
                         index: Arc::new(index),
                         moving: moving_joints_of(self.motions.iter().map(|motion| &**motion.clip())),
+                        pace: Pace::of_all(self.motions.iter().map(|motion| motion.pace())),
                         motions: self.motions,
                         starts: sorting.starts,
                         features: sorting.features,

@@ -1,5 +1,6 @@
 use super::features::{FeatureOptions, RATE};
 use super::motion::Motion;
+use super::pace::Pace;
 use super::search::{BoxIndex, BoxMasks, Candidates, Question};
 use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
@@ -78,6 +79,7 @@ pub struct Database {
     pub(super) tags: Vec<TagSet>,
     pub(super) masks: BoxMasks,
     pub(super) skipped: Vec<MatchError>,
+    pub(super) pace: Pace,
 }
 
 impl Database {
@@ -143,6 +145,12 @@ impl Database {
     #[must_use]
     pub fn skipped(&self) -> &[MatchError] {
         &self.skipped
+    }
+
+    /// How fast its motions go.
+    #[must_use]
+    pub fn pace(&self) -> &Pace {
+        &self.pace
     }
 
     /// The normalised features of all frames. Those of frames that cannot be found go on behind the end of their motion as it did last.

@@ -86,7 +86,8 @@ mod error;
 mod features;
 mod made;
 mod motion;
-mod round;
+mod pace;
+
 mod scenario;
 pub mod search;
 mod simulation;
@@ -104,6 +105,7 @@ pub use error::MatchError;
 pub use features::{Block, FeatureOptions, Features, Layout, Normalisation, RATE, Weights};
 pub use made::{made_clip, made_clips, made_params};
 pub use motion::Motion;
+pub use pace::Pace;
 pub use scenario::Scenario;
 pub use search::{Found, Hit};
 pub use simulation::simulation_roots;

@@ -1,6 +1,5 @@
 use super::features::{BODY, Layout, RATE};
-use super::round::{moved_by, standing};
-use super::simulation::simulation_roots_of_cycle;
+use super::pace::Pace;
 use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
 use crate::clip::{Clip, Contacts, character_frames, estimate_ground};
@@ -17,6 +16,7 @@ pub struct Motion {
     contacts: Contacts,
     ground_m: f32,
     body: Vec<[f32; BODY]>,
+    pace: Pace,
     source: usize,
     mirrored: bool,
     /// Where a round of a clip that goes round leads: `clip_from_clip`.
@@ -70,7 +70,7 @@ impl Motion {
             return Err(MatchError::NotFinite { name });
         }
         Ok(Self {
-            ground_m: estimate_ground(&clip, roles, &contacts),
+            pace: Pace::of(&clip, &roots),
             clip,
             roots,
             contacts,
@@ -92,6 +92,12 @@ impl Motion {
     #[must_use]
     pub fn roots(&self) -> &[Planar] {
         &self.roots
+    }
+
+    /// How fast it goes.
+    #[must_use]
+    pub fn pace(&self) -> &Pace {
+        &self.pace
     }
 
     /// When the feet are on the ground.

@@ -50,6 +50,38 @@ impl Inertialization {
         }
     }
 
+    /// The same with all its times so many times as long; but for how long an old velocity runs on.
+    #[must_use]
+    fn stretched(self, times: f64) -> Self {
+        match self {
+            Self::Offset(Decay::Spring { half_life_secs }) => Self::Offset(Decay::Spring {
+                half_life_secs: half_life_secs * times,
+            }),
+            Self::Offset(Decay::Cubic { blend_secs }) => Self::Offset(Decay::Cubic {
+                blend_secs: blend_secs * times,
+            }),
+            Self::Offset(Decay::Quintic { blend_secs }) => Self::Offset(Decay::Quintic {
+                blend_secs: blend_secs * times,
+            }),
+            Self::DeadBlend {
+                blend_secs,
+                extrapolation_half_life_secs,
+            } => Self::DeadBlend {
+                blend_secs: blend_secs * times,
+                extrapolation_half_life_secs,
+            },
+        }
+    }
+
+    /// How fast an offset of 1 at rest is at most while it dies away, per second: the extremum of the curve's derivative.
+    fn fastest(self) -> f64 {
+        match self {
+            Self::Offset(Decay::Spring { half_life_secs }) => spring::rate(half_life_secs) / std::f64::consts::E,
+            Self::Offset(Decay::Quintic { blend_secs }) => 1.875 / blend_secs,
+            Self::Offset(Decay::Cubic { blend_secs }) | Self::DeadBlend { blend_secs, .. } => 1.5 / blend_secs,
+        }
+    }
+
     /// Seconds until only `share` (above 0, below 1) is left.
     #[must_use]
     pub fn secs_until(self, share: f64) -> f64 {
@@ -68,6 +100,11 @@ impl Inertialization {
         }
     }
 }
+
+/// Of the speed that a joint usually does not exceed, what an offset may add to it while it dies away.
+const ADDED_SPEED: f32 = 0.75;
+/// An offset takes no more than so many times as long as others.
+const MOST_STRETCH: f32 = 6.0;
 
 /// The fade's weight of the old motion, and how fast it changes, per second: [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to
 /// an offset without velocity.
@@ -102,6 +139,8 @@ struct Turn {
     angular_velocity: Vec3,
     /// The difference that was applied last; the next one is taken in its hemisphere, so that it does not jump to the other way round.
     last: Quat,
+    /// So many times as long as others it takes to die away, from 1 on.
+    stretch: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -143,16 +182,32 @@ impl Inertializer {
     /// A jump from one motion to another: what the old one does at this moment and what the new one does, both as they are without inertia. What
     /// is still left of an earlier jump is taken along. Joints that one of the two does not have are left out.
     pub fn trigger(&mut self, old: &MovingPose, new: &MovingPose) {
+        self.trigger_within(old, new, &[]);
+    }
+
+    /// As [`trigger`](Self::trigger), with what angular speed each joint usually does not exceed, radians per second: a joint whose offset would die away
+    /// faster than three quarters of that takes as much longer, up to six times as long. So an arm that hangs in one motion and is bent in the other comes
+    /// up in its own time, while the legs are in step at once.
+    pub fn trigger_within(&mut self, old: &MovingPose, new: &MovingPose, usual_radps: &[f32]) {
+        let fastest = self.how.fastest() as f32;
+        let stretch = |joint: usize, offset: Vec3| {
+            let usual = usual_radps.get(joint).copied().unwrap_or(f32::INFINITY);
+            let times = offset.length() * fastest / (ADDED_SPEED * usual);
+            // What takes no time at all is a cut, and stays one.
+            if times.is_finite() { times.clamp(1.0, MOST_STRETCH) } else { 1.0 }
+        };
         let mut playing = old.clone();
         self.carry(&mut playing);
         let turns = playing.rotations.iter().zip(&playing.angular_velocities);
         let into = new.rotations.iter().zip(&new.angular_velocities);
         self.turns = turns
             .zip(into)
-            .map(|((&from, &angular_velocity), (&to, &new_velocity))| {
+            .enumerate()
+            .map(|(joint, ((&from, &angular_velocity), (&to, &new_velocity)))| {
                 let difference = quat::shorter_way(from * to.conjugate());
                 let offset = quat::log(difference);
                 Turn {
+                    stretch: stretch(joint, offset),
                     offset,
                     rate: quat::vector_rate(offset, angular_velocity - difference * new_velocity),
                     from,
@@ -195,9 +250,10 @@ impl Inertializer {
 
     /// Puts what is left of the offsets on a pose: rotations and translations as in [`MovingPose`].
     pub fn apply(&mut self, rotations: &mut [Quat], translations: &mut [Vec3]) {
+        let (how, secs) = (self.how, self.elapsed_secs);
         let now = self.now();
         for (turn, rotation) in self.turns.iter_mut().zip(rotations) {
-            let offset = now.turned(turn, *rotation);
+            let offset = now.of_turn(turn, how, secs).turned(turn, *rotation);
             *rotation = quat::renormalize(quat::exp(offset) * *rotation);
         }
         for (shift, translation) in self.shifts.iter().zip(translations) {
@@ -226,9 +282,11 @@ impl Inertializer {
 
     /// Puts what is left on a pose and on its velocities.
     fn carry(&mut self, pose: &mut MovingPose) {
+        let (how, secs) = (self.how, self.elapsed_secs);
         let now = self.now();
         let rotations = pose.rotations.iter_mut().zip(&mut pose.angular_velocities);
         for (turn, (rotation, velocity)) in self.turns.iter_mut().zip(rotations) {
+            let now = now.of_turn(turn, how, secs);
             let offset = now.turned(turn, *rotation);
             let rate = now.turning(turn, *velocity);
             let turned = quat::exp(offset);
@@ -283,6 +341,15 @@ impl Now {
                     run_on_secs: run_on_secs as f32,
                 }
             }
+        }
+    }
+
+    /// The same for a joint that takes its own time.
+    fn of_turn(self, turn: &Turn, how: Inertialization, secs: f64) -> Self {
+        if turn.stretch > 1.0 {
+            Self::new(how.stretched(f64::from(turn.stretch)), secs)
+        } else {
+            self
         }
     }
 

@@ -236,7 +236,7 @@ impl Controller {
     /// Goes on at another place; what differs dies away.
     fn jump(&mut self, to: Place) {
         let (old, new) = (self.moving(self.place), self.moving(to));
-        self.inertializer.trigger(&old, &new);
+        self.inertializer.trigger_within(&old, &new, &self.database.pace().joints_radps);
         self.place = to;
         self.jumps += 1;
         self.last_jump = Some(self.tick);

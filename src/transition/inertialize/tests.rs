@@ -272,3 +272,53 @@ fn agrees_with_scipy() {
     }
     assert!(golden.turns.len() >= 3);
 }
+
+#[test]
+fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
+    let turned = |angle: f32| MovingPose {
+        rotations: vec![Quat::from_rotation_x(angle); 2],
+        angular_velocities: vec![Vec3::ZERO; 2],
+        ..MovingPose::default()
+    };
+    let (old, new) = (turned(1.2), turned(0.0));
+    let (usual, dt) = ([1.0, 100.0], 1.0 / 240.0);
+    for kind in KINDS {
+        // The fastest that each joint turns, radians per second, and what is left after a second and at last.
+        let played = |usual: &[f32]| {
+            let mut inertia = Inertializer::new(kind);
+            inertia.trigger_within(&old, &new, usual);
+            let (mut fastest, mut before) = ([0.0_f32; 2], [1.2_f32; 2]);
+            let mut left = Vec::new();
+            for tick in 1..=2400 {
+                inertia.advance(dt);
+                let mut rotations = new.rotations.clone();
+                inertia.apply(&mut rotations, &mut []);
+                let now = [0, 1].map(|joint: usize| quat::log(rotations[joint]).x);
+                for joint in 0..2 {
+                    fastest[joint] = fastest[joint].max((before[joint] - now[joint]).abs() / dt as f32);
+                }
+                before = now;
+                if tick % 240 == 0 {
+                    left.push(now);
+                }
+            }
+            (fastest, left)
+        };
+        let (free, _) = played(&[]);
+        let (held, left) = played(&usual);
+        assert!(free[0] > 1.5 && (free[0] - free[1]).abs() < 1e-4, "{kind:?}: {free:?}");
+        assert!(held[0] <= 0.76 && (held[1] - free[1]).abs() < 1e-3, "{kind:?}: {held:?}");
+        assert!(left[0][0] > 0.3 && left[0][1] < 0.02, "{kind:?}: {left:?}");
+        assert!(left[9][0].abs() < 1e-3, "{kind:?}: {left:?}");
+        // A jump in the middle of it goes on from where it is.
+        let mut inertia = Inertializer::new(kind);
+        inertia.trigger_within(&old, &new, &usual);
+        (0..60).for_each(|_| inertia.advance(dt));
+        let mut before = new.rotations.clone();
+        inertia.apply(&mut before, &mut []);
+        inertia.trigger_within(&new, &new, &usual);
+        let mut after = new.rotations.clone();
+        inertia.apply(&mut after, &mut []);
+        assert!(quat::angle_between(before[0], after[0]) < 1e-4, "{kind:?}");
+    }
+}
