@@ -10,8 +10,8 @@ use segue::session::{Command, write_ids};
 use trials::folder::{Motions, encoded};
 use trials::trial::{Came, Trial, try_all};
 
-/// Labs whose results on close pairs have no artefact of their own.
-const SMOOTH: [&str; 6] = ["blend", "transition", "speed", "loop", "layers", "register"];
+/// Labs whose results on close pairs, and on sets of takes, have no artefact of their own.
+const SMOOTH: [&str; 7] = ["blend", "transition", "speed", "loop", "layers", "register", "match"];
 
 /// What holds for all results; how many there are.
 fn what_holds_everywhere(trials: &[Trial]) -> usize {

@@ -692,3 +692,29 @@ fn contacts_of_a_mirror_image_are_swapped() {
     let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
     assert_eq!(motion::mirrored_contacts(&contacts), swapped);
 }
+
+#[test]
+fn walks_are_neither_pulled_along_at_a_run_nor_spun_around() {
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let roles = Roles::detect(clip.skeleton());
+    let database = Arc::new(Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &DatabaseOptions::default()).unwrap());
+    let mut controller = Controller::new(Arc::clone(&database), options(), &Planar::IDENTITY).unwrap();
+    let (rate, pace) = (RATE as f64, database.pace());
+    assert!(pace.travel_mps < 1.6 && pace.turn_radps < 0.5, "{pace:?}");
+    let (mut fastest, mut fastest_turn, mut farthest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for tick in 0..480 {
+        let velocity = if tick < 240 { DVec2::new(0.0, 3.2) } else { DVec2::new(0.0, -3.2) };
+        let before = controller.root();
+        controller.tick(&Control::new(velocity, None));
+        let (root, simulation) = (controller.root(), controller.simulation());
+        fastest = fastest.max(root.shift.distance(before.shift) * rate);
+        fastest_turn = fastest_turn.max(wrap_angle(root.yaw - before.yaw).abs() * rate);
+        farthest = farthest.max(root.shift.distance(simulation.position));
+    }
+    assert!(fastest < 1.2 * pace.travel_mps, "{fastest}");
+    assert!(fastest_turn < 2.0, "{fastest_turn}");
+    assert!(farthest <= 0.35 + 1e-9, "{farthest}");
+    // It came around all the same, as far as it is held to what is asked for.
+    let off = wrap_angle(controller.root().yaw - std::f64::consts::PI).abs();
+    assert!(off < 1.01, "{off}");
+}

@@ -312,6 +312,11 @@ impl Leg {
         })
     }
 
+    /// Thigh, shin and foot.
+    pub(crate) fn joints(&self) -> [usize; 3] {
+        self.joints
+    }
+
     /// The axis about which this knee bends over some poses, in the thigh's frame.
     pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
         usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())

@@ -6,7 +6,7 @@ use segue::clip::{Clip, mirror};
 use segue::math::stats;
 use segue::metrics::{Artefacts, MotionTrace};
 use segue::path::GroundSpline;
-use segue::session::{Command, Motion, Outcome, Session, write_ids};
+use segue::session::{Command, CycleMade, Motion, Outcome, Session, write_ids};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -322,6 +322,8 @@ impl<'a> Bench<'a> {
                 let bound = !asks_much && (is_close || way.lab == "match") && way.lab != "graph";
                 let numbers = |outcome: &Outcome| {
                     let values: Vec<f64> = outcome.metrics.iter().filter_map(|metric| metric.value).collect();
+                    let part = cut_part(outcome, &first);
+                    let feet: Vec<&MotionTrace> = feet.iter().copied().chain(&part).collect();
                     measured(&outcome.motion, &values, &beside, &feet)
                 };
                 trials.push(self.trial(way.lab, way.method.clone(), locked, bound, opened, numbers));
@@ -463,6 +465,16 @@ fn measured(motion: &Motion, values: &[f64], sources: &[&MotionTrace], feet: &[&
         stance_cm: median(trace.stances_cm()),
         source_stance_cm: median(&stances),
     }
+}
+
+/// The part of A that goes round: it may skate more than the whole of A, in which the feet also stand or fly.
+fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
+    let CycleMade::Cut { from_secs, to_secs, .. } = outcome.cycle?.made else {
+        return None;
+    };
+    let frame = |secs: f64| (secs * a.clip.fps()).round() as usize;
+    let part = a.clip.crop(frame(from_secs)..(frame(to_secs) + 1).min(a.clip.frames())).ok()?;
+    Some(MotionTrace::new(&part, &a.roles))
 }
 
 /// The middle one of some numbers.

@@ -24,6 +24,11 @@ use std::sync::Arc;
 
 /// Seconds of a tick.
 const TICK_SECS: f64 = 1.0 / RATE as f64;
+/// A character is pulled along no faster than this share of the fastest that its clips go.
+const PULL_SHARE: f64 = 1.1;
+/// Clips that go nowhere, or straight on alone, count as this fast, metres and radians per second: 0.5 m/s and 80° per second.
+const LEAST_PULL_MPS: f64 = 0.5;
+const LEAST_TWIST_RADPS: f64 = 1.4;
 /// After a pause of the page nobody wants to wait for all that was missed, ticks.
 const MOST_TICKS_AT_ONCE: usize = 30;
 
@@ -275,6 +280,9 @@ impl Controller {
     }
 
     /// Draws the character to the simulation object, and holds it near (Holden, "Code vs Data Driven Displacement", 2021).
+    ///
+    /// It is drawn and held no faster than anything in the clips goes: walks alone cannot be pulled along at a run, nor spun around. The simulation object
+    /// then waits, so that it is never farther away than it may be.
     fn follow(&mut self, travelled: &Planar) {
         let Some(following) = self.options.following else { return };
         let (off, turn) = (
@@ -289,10 +297,23 @@ impl Controller {
         let turned = (turn * share).clamp(-most_turn, most_turn);
         let left = (off - drawn).clamp_length_max(following.most_m);
         let left_turn = (turn - turned).clamp(-following.most_radians, following.most_radians);
+        let pace = self.database.pace();
+        let room = |fastest: f64, own: f64| (fastest * TICK_SECS - own).max(0.0);
+        let most_pull = room(PULL_SHARE * pace.travel_mps.max(LEAST_PULL_MPS), travelled.shift.length());
+        let most_twist = room(PULL_SHARE * pace.turn_radps.max(LEAST_TWIST_RADPS), travelled.yaw.abs());
+        let pulled = (off - left).clamp_length_max(most_pull);
+        let twisted = (turn - left_turn).clamp(-most_twist, most_twist);
         self.root = Planar {
-            yaw: wrap_angle(self.simulation.yaw - left_turn),
-            shift: self.simulation.position - left,
+            yaw: wrap_angle(self.root.yaw + twisted),
+            shift: self.root.shift + pulled,
         };
+        if pulled.length() < (off - left).length() {
+            self.simulation.position = self.root.shift + (off - pulled).clamp_length_max(following.most_m);
+        }
+        if twisted.abs() < (turn - left_turn).abs() {
+            let ahead = (turn - twisted).clamp(-following.most_radians, following.most_radians);
+            self.simulation.yaw = wrap_angle(self.root.yaw + ahead);
+        }
     }
 
     fn write_pose(&mut self) {
@@ -321,7 +342,8 @@ impl Controller {
             .extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
         let planted = Side::BOTH.map(|side| motion.contacts().planted(side, frame));
         let planting = self.options.planting.as_ref();
-        self.planted = self.feet.apply(self.database.skeleton(), pose, planted, planting, TICK_SECS);
+        let usual = &self.database.pace().joints_radps;
+        self.planted = self.feet.apply(self.database.skeleton(), pose, planted, planting, usual, TICK_SECS);
     }
 
     /// Stands where the simulation object is.
