@@ -71,6 +71,7 @@ impl Motion {
         }
         Ok(Self {
             pace: Pace::of(&clip, &roots),
+            ground_m: estimate_ground(&clip, roles, &contacts),
             clip,
             roots,
             contacts,

@@ -124,7 +124,7 @@ impl Feet {
                 None if planted && !foot.let_go => foot.rate = Vec3::ZERO,
                 None => (foot.shift, foot.rate) = spring::response(options.half_life_secs, dt_secs).of_vec3(foot.shift, foot.rate),
             }
-            let shift = foot.shift + Vec3::Y * (-lowest).max(0.0);
+            let shift = foot.shift + Vec3::Y * (self.ground_m - lowest).max(0.0);
             let free = foot.leg.joints().map(|joint| pose.rotations[joint]);
             // A hundredth of a millimetre is not seen.
             if shift.length_squared() > 1e-10 {
