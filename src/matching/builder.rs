@@ -2,6 +2,7 @@ use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
 use super::features::{Features, Layout, RATE};
 use super::motion::{FeatureJoints, Motion, mirrored_contacts};
 use super::pace::Pace;
+use super::round;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};

@@ -87,7 +87,7 @@ mod features;
 mod made;
 mod motion;
 mod pace;
-
+mod round;
 mod scenario;
 pub mod search;
 mod simulation;

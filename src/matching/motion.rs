@@ -1,5 +1,7 @@
 use super::features::{BODY, Layout, RATE};
 use super::pace::Pace;
+use super::round::{moved_by, standing};
+use super::simulation::simulation_roots_of_cycle;
 use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
 use crate::clip::{Clip, Contacts, character_frames, estimate_ground};
