@@ -11,8 +11,8 @@ use segue::clip::{Clip, ContactOptions, Contacts};
 use segue::formats::{ImportOptions, import};
 use segue::math::{Planar, quat};
 use segue::path::{
-    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Orientation, PathEdit, PathEditError, PathEditor, Pins,
-    Road, Timing, carry, hard_turns,
+    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset, Orientation, PathEdit, PathEditError, PathEditor,
+    Pins, Road, SplineEnds, Timing, carry, hard_turns,
 };
 use segue::skeleton::Roles;
 use segue::synth::{Action, Params, presets, synthesize};
@@ -46,7 +46,19 @@ fn options(control_points: usize) -> FitOptions {
 }
 
 fn every_option() -> impl Iterator<Item = CarryOptions> {
-    let of = |timing| [Orientation::Path, Orientation::World].map(|orientation| CarryOptions { timing, orientation });
+    let ways = [
+        (Orientation::Path, Offset::Path),
+        (Orientation::World, Offset::Path),
+        (Orientation::Path, Offset::World),
+        (Orientation::World, Offset::World),
+    ];
+    let of = move |timing| {
+        ways.map(|(orientation, offset)| CarryOptions {
+            timing,
+            orientation,
+            offset,
+        })
+    };
     TIMINGS.into_iter().flat_map(of)
 }
 
@@ -258,6 +270,84 @@ fn the_body_faces_as_before_where_it_shall() {
     for ((held, turned), frame) in place(&out.clip).iter().zip(place(&turned.clip)).zip(0..) {
         assert!(quat::angle_between(out.clip.rotations(frame)[0], clip.rotations(frame)[0]) < 1e-3);
         assert!(held.shift.distance(turned.shift) < 1e-4, "{frame}");
+    }
+}
+
+#[test]
+fn the_offset_from_the_path_stays_in_the_world_where_it_shall() {
+    let (path, roles, edited) = bow(2.0);
+    for orientation in [Orientation::Path, Orientation::World] {
+        let options = CarryOptions {
+            orientation,
+            offset: Offset::World,
+            ..CarryOptions::default()
+        };
+        let out = carry(&path, &edited, &options).unwrap();
+        let stands = Source::new(Arc::new(out.clip.clone()), &roles).frames().to_vec();
+        let rows = stands
+            .iter()
+            .zip(&out.characters)
+            .zip(path.source().frames())
+            .zip(&out.places)
+            .zip(path.places());
+        for ((((found, told), stood), place), old) in rows {
+            let (offset, was) = (found.shift - place.frame.shift, stood.shift - old.frame.shift);
+            assert!(offset.distance(was) < 1e-4, "{offset} {was}");
+            assert!(found.shift.distance(told.shift) < 1e-4);
+        }
+    }
+}
+
+#[test]
+fn unclamped_control_points_make_the_same_path() {
+    for count in [4, 5, 9] {
+        let with = |ends| {
+            let (source, _) = made(&Params {
+                turn_rate_dps: 40.0,
+                duration_secs: 6.0,
+                ..Params::new(Action::Walk)
+            });
+            let options = FitOptions { ends, ..options(count) };
+            FittedPath::new(source, &options).unwrap().road().spline().clone()
+        };
+        let (clamped, uniform) = (with(SplineEnds::Clamped), with(SplineEnds::Uniform));
+        assert_eq!((clamped.ends(), uniform.ends()), (SplineEnds::Clamped, SplineEnds::Uniform));
+        for k in 0..=100 {
+            let u = f64::from(k) / 100.0;
+            assert!(clamped.position(u).distance(uniform.position(u)) < 1e-9);
+        }
+        // The matrix of a uniform piece: the path begins in (P0 + 4 P1 + P2)/6, and leaves there along P2 - P0.
+        let (p, end) = (uniform.points(), uniform.points().len() - 1);
+        let mean = |a: DVec2, b: DVec2, c: DVec2| (a + b * 4.0 + c) / 6.0;
+        assert!(mean(p[0], p[1], p[2]).distance(uniform.position(0.0)) < 1e-9);
+        assert!(mean(p[end], p[end - 1], p[end - 2]).distance(uniform.position(1.0)) < 1e-9);
+        let way = p[2] - p[0];
+        assert!((way.x.atan2(way.y) - uniform.heading(0.0)).abs() < 1e-9);
+        // The first point moves the path where its share is 1/6 at most; clamped it takes the start along.
+        let by = DVec2::new(0.6, 0.0);
+        let start = |spline: &GroundSpline, pins: Pins| {
+            let to = spline.points()[0] + by;
+            let moved = spline.edited(&PathEdit::Move { index: 0, to }, pins)?;
+            Ok::<DVec2, PathEditError>(moved.position(0.0) - spline.position(0.0))
+        };
+        assert!(start(&uniform, FREE).unwrap().distance(by / 6.0) < 1e-9);
+        assert!(start(&clamped, FREE).unwrap().distance(by) < 1e-9);
+        let pinned = Pins { start: true, ..FREE };
+        assert_eq!(start(&uniform, pinned), Err(PathEditError::Pinned));
+        // Everything else that is done to it is done to the curve.
+        for edit in [
+            PathEdit::Insert { at: 0.4 },
+            PathEdit::Rotate { radians: 0.5 },
+            PathEdit::Straighten { share: 0.3 },
+        ] {
+            let (one, other) = (clamped.edited(&edit, pinned), uniform.edited(&edit, pinned));
+            let (one, other) = (one.unwrap(), other.unwrap());
+            assert_eq!(other.ends(), SplineEnds::Uniform);
+            for k in 0..=20 {
+                let u = f64::from(k) / 20.0;
+                assert!(one.position(u).distance(other.position(u)) < 1e-8, "{edit:?}");
+            }
+        }
     }
 }
 

@@ -132,7 +132,11 @@ fn there_are_numbers_at_the_ends_too() {
                 continue;
             }
             for (align, root) in [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::World)] {
-                let options = TransitionOptions { method, align, root };
+                let options = TransitionOptions {
+                    align,
+                    root,
+                    ..TransitionOptions::new(method)
+                };
                 let out = concatenate(a.source(), leave, b.source(), enter, &options).expect("frames are in the clips");
                 assert_eq!(out.clip.frames(), leave + last_b - enter);
                 let metrics = measured(&out, enter, a, b, roles);

@@ -1,5 +1,5 @@
 use super::assembly::{Assembly, moving_joints, translation_of};
-use super::{BlendError, Concatenation, WeightLaw, align_onto};
+use super::{BlendError, Concatenation, WeightLaw, align_facing, align_onto};
 use crate::clip::{Clip, character_frames};
 use crate::math::{Planar, nearest_turn, quat, wrap_angle};
 use crate::registration::limb_weights;
@@ -17,6 +17,16 @@ pub enum RootBlend {
     World,
 }
 
+/// By what of the two clips B is laid on A.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum AlignBy {
+    /// All joints over the whole window: the least squares of Kovar, Gleicher, Pighin 2002, section 3.1 ([`align_onto`]).
+    #[default]
+    Window,
+    /// Place and facing of the first posture alone ([`align_facing`]).
+    FirstPose,
+}
+
 /// What a dissolve is made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct DissolveOptions {
@@ -27,6 +37,8 @@ pub struct DissolveOptions {
     /// Whether B is first laid on A. Without, B stays where its file put it, and the way over the ground is blended in the world whatever `root`
     /// says: the character flies to B's place during the window, or flashes there at a cut.
     pub align: bool,
+    /// By what it is laid there.
+    pub align_by: AlignBy,
     /// How the way over the ground is blended.
     pub root: RootBlend,
 }
@@ -37,6 +49,7 @@ impl Default for DissolveOptions {
             window: 30,
             law: WeightLaw::default(),
             align: true,
+            align_by: AlignBy::default(),
             root: RootBlend::default(),
         }
     }
@@ -124,7 +137,7 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     // A cut right behind A's last frame is aligned by that frame.
     let meets = leave.min(a.clip.frames().saturating_sub(1));
     let aligned_b = if options.align {
-        laid_on(a, meets, b, enter, window)?
+        laid_on(a, meets, b, enter, window, options.align_by)?
     } else {
         Planar::IDENTITY
     };
@@ -177,8 +190,11 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     })
 }
 
-/// Where B lies when its window lies best on A's: `a_world_from_b_world`.
-pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, window: usize) -> Result<Planar, BlendError> {
+/// Where B lies when its window lies best on A's, or its first posture on A's: `a_world_from_b_world`.
+pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, window: usize, by: AlignBy) -> Result<Planar, BlendError> {
+    if by == AlignBy::FirstPose {
+        return Ok(align_facing(&a.frames[frame_a], &b.frames[frame_b]));
+    }
     let facing = a.frames[frame_a].yaw - b.frames[frame_b].yaw;
     Ok(align_onto(&a.clip, frame_a, &b.clip, frame_b, window.max(1), &a.weights, facing)?.transform)
 }

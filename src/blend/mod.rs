@@ -90,7 +90,7 @@ mod weight_curve;
 
 pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, translation_of};
 pub use concatenation::Concatenation;
-pub use dissolve::{DissolveOptions, RootBlend, Source, dissolve};
+pub use dissolve::{AlignBy, DissolveOptions, RootBlend, Source, dissolve};
 pub(crate) use dissolve::{check, laid_on};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};

@@ -328,4 +328,18 @@ impl Clip {
         }
         moved
     }
+
+    /// Returns the clip with each frame turned and moved over the ground by a transform of its own; a frame without one stays where it is.
+    #[must_use]
+    pub fn transformed_by_frame(&self, world_from_clip: &[Planar]) -> Self {
+        let mut moved = self.clone();
+        let poses = moved.rotations.chunks_exact_mut(self.skeleton.len());
+        for ((pose, translation), world_from_clip) in poses.zip(&mut moved.root_translations).zip(world_from_clip) {
+            *translation = world_from_clip.apply(*translation);
+            if let Some(root) = pose.first_mut() {
+                *root = crate::math::quat::renormalize(world_from_clip.rotation() * *root);
+            }
+        }
+        moved
+    }
 }

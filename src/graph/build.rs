@@ -30,7 +30,7 @@ pub struct GraphOptions {
     pub edge_threshold_cm: f64,
     /// One does not go to what is less than so many seconds away in the same clip.
     pub min_jump_secs: f64,
-    /// The most transitions out of a stretch; the closest are kept.
+    /// The most transitions out of a stretch; the closest are kept, and [`MotionGraph::left_out`] counts the others.
     pub most_ways_out: usize,
 }
 
@@ -198,6 +198,7 @@ pub struct MotionGraph {
     pub(super) options: GraphOptions,
     pub(super) graph: DiGraph<Stretch, Way>,
     pub(super) jumps: Vec<Jump>,
+    left_out: usize,
 }
 
 impl MotionGraph {
@@ -240,6 +241,7 @@ impl MotionGraph {
             options: *options,
             graph: DiGraph::new(),
             jumps: Vec::new(),
+            left_out: 0,
         };
         made.add_stretches(&chosen);
         let (starting, ending) = (made.nodes_at(|stretch| stretch.start), made.nodes_at(|stretch| stretch.end));
@@ -254,9 +256,11 @@ impl MotionGraph {
                 frame: jump.leave.frame + made.departure(),
                 ..jump.leave
             };
-            if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives))
-                && ways_out[from.index()] < options.most_ways_out
-            {
+            if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives)) {
+                if ways_out[from.index()] >= options.most_ways_out {
+                    made.left_out += 1;
+                    continue;
+                }
                 ways_out[from.index()] += 1;
                 made.graph.add_edge(from, to, Way::Jump(made.jumps.len()));
                 made.jumps.push(jump);
@@ -355,6 +359,12 @@ impl MotionGraph {
         &self.jumps
     }
 
+    /// Transitions below the threshold that are no part of the graph, because as many closer ones as there may be leave the same stretch.
+    #[must_use]
+    pub fn left_out(&self) -> usize {
+        self.left_out
+    }
+
     /// The transition of an edge; `None` where the clip goes on, and where there is no such edge.
     #[must_use]
     pub fn jump(&self, edge: EdgeIndex) -> Option<&Jump> {
@@ -427,6 +437,7 @@ impl MotionGraph {
             options: self.options,
             graph: DiGraph::new(),
             jumps: Vec::new(),
+            left_out: self.left_out,
         };
         let mut new = vec![None; self.graph.node_count()];
         for &node in kept {

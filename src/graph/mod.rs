@@ -8,7 +8,7 @@
 //! switch throws a die.
 //!
 //! ```text
-//! p(the clip goes on) = c                       c: continuity
+//! p(the clip goes on) = c                       c: continuity; or w₀ / (w₀ + Σ w)
 //! p(jump k)           = (1 - c) · w_k / Σ w     w = 1/D, exp(-(D - D₀)/σ), 1, or (wrong) D
 //! mean run            = 1 / (1 - c) stretches   before the next jump
 //! ```
@@ -118,7 +118,7 @@ pub use overview::{DistanceDetail, DistanceOverview};
 pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};
-pub use weights::{Choices, DistanceLaw, RunLength, WeightOptions};
+pub use weights::{Choices, Continuity, DistanceLaw, RunLength, WeightOptions};
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
 use super::{FrameSet, GraphError, MotionGraph, Place, Stay};
-use crate::blend::{Assembly, RootBlend, Source, WeightLaw};
+use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, laid_on};
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
@@ -17,9 +17,11 @@ pub enum WalkMistake {
     /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the right place, and goes on in the direction in which it
     /// was recorded.
     FirstFrameOnly,
-    /// `atan` in place of `atan2`: a turn of more than 90° is off by half a turn. So that it shows at every transition, each clip is taken to face the other way in
-    /// its file, and is laid on with its back to the front.
-    AtanForAtan2,
+    /// The transform is applied to the entered clip's first frame alone: all others stay in the place and the direction in which they were recorded, and the
+    /// character goes back there.
+    FirstFrameThenRecorded,
+    /// That of a single transition, made at each.
+    Transition(Mistake),
 }
 
 /// How transitions are made.
@@ -27,30 +29,39 @@ pub enum WalkMistake {
 pub struct StitchOptions {
     /// The method.
     pub method: Method,
+    /// By what a clip is laid on the one that is left.
+    pub align_by: AlignBy,
+    /// How the way over the ground is made.
+    pub root: RootBlend,
     /// A mistake to be made.
     pub mistake: Option<WalkMistake>,
 }
 
 impl StitchOptions {
+    /// A method, with nothing wrong.
+    #[must_use]
+    pub fn new(method: Method) -> Self {
+        Self {
+            method,
+            align_by: AlignBy::default(),
+            root: RootBlend::default(),
+            mistake: None,
+        }
+    }
+
     /// A dissolve over the graph's blend window.
     #[must_use]
     pub fn dissolve(window: usize) -> Self {
-        Self {
-            method: Method::Dissolve {
-                window,
-                law: WeightLaw::default(),
-            },
-            mistake: None,
-        }
+        Self::new(Method::Dissolve {
+            window,
+            law: WeightLaw::default(),
+        })
     }
 
     /// Inertialization by a spring.
     #[must_use]
     pub fn inertialize(half_life_secs: f64) -> Self {
-        Self {
-            method: Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs })),
-            mistake: None,
-        }
+        Self::new(Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs })))
     }
 }
 
@@ -209,21 +220,42 @@ impl Stitcher {
 
     fn joined(&self, tail: &Tail, incoming: &Source, enter: usize) -> Result<Joined, GraphError> {
         let (a, leave) = (&tail.source, tail.leave);
-        let options = TransitionOptions::new(self.options.method);
+        let options = TransitionOptions {
+            align_by: self.options.align_by,
+            root: self.options.root,
+            ..TransitionOptions::new(self.options.method)
+        };
+        let in_the_world = TransitionOptions {
+            align: false,
+            root: RootBlend::World,
+            ..options
+        };
         let (made, moved) = match self.options.mistake {
             None => (concatenate(a, leave, incoming, enter, &options)?, Planar::IDENTITY),
-            Some(WalkMistake::AtanForAtan2) => (
-                concatenate_mistaken(a, leave, incoming, enter, &options, Mistake::AtanForAtan2)?,
+            Some(WalkMistake::Transition(mistake)) => (
+                concatenate_mistaken(a, leave, incoming, enter, &options, mistake)?,
                 Planar::IDENTITY,
             ),
             Some(WalkMistake::FirstFrameOnly) => {
                 let moved = first_frame_only(tail, incoming, enter);
-                let options = TransitionOptions {
-                    align: false,
-                    root: RootBlend::World,
-                    ..options
+                (concatenate(a, leave, &incoming.moved(&moved), enter, &in_the_world)?, moved)
+            }
+            Some(WalkMistake::FirstFrameThenRecorded) => {
+                let window = match options.method {
+                    Method::Dissolve { window, .. } => window,
+                    _ => 0,
                 };
-                (concatenate(a, leave, &incoming.moved(&moved), enter, &options)?, moved)
+                let here_from_there = laid_on(
+                    a,
+                    leave.min(a.clip().frames().saturating_sub(1)),
+                    incoming,
+                    enter,
+                    window,
+                    options.align_by,
+                )?;
+                let recorded = tail.world_from_here.inverse();
+                let incoming = first_frame_then_recorded(incoming, enter, &here_from_there, &recorded);
+                (concatenate(a, leave, &incoming, enter, &in_the_world)?, recorded)
             }
         };
         let tail_from_piece = made.world_from_b.after(&moved);
@@ -254,6 +286,19 @@ fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
     let turned = Planar::new(wrap_angle(-tail.world_from_here.yaw), 0.0, 0.0);
     let shift = here.shift - turned.apply_ground(there.shift);
     Planar { shift, ..turned }
+}
+
+/// The incoming clip with the transform on its frames up to the one where it is entered, and where it was recorded from the next one on.
+fn first_frame_then_recorded(incoming: &Source, enter: usize, transform: &Planar, recorded: &Planar) -> Source {
+    let place = |frame: usize| if frame <= enter { transform } else { recorded };
+    let clip = incoming.clip();
+    let frames = incoming
+        .frames()
+        .iter()
+        .enumerate()
+        .map(|(frame, stands)| place(frame).after(stands));
+    let moves: Vec<Planar> = (0..clip.frames()).map(|frame| *place(frame)).collect();
+    incoming.with_motion(clip.transformed_by_frame(&moves), frames.collect())
 }
 
 /// Some frames of a clip, with what is known of it.

@@ -6,8 +6,10 @@ use crate::math::Planar;
 use crate::registration::fixtures::Walk;
 use crate::registration::rms_cm;
 use crate::skeleton::Roles;
+use crate::transition::Mistake;
 use glam::DVec2;
 use petgraph::graph::NodeIndex;
+use petgraph::visit::EdgeRef;
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -444,7 +446,7 @@ fn a_long_walk_is_as_curious_as_a_short_one() {
         let mut walker = self::walker(
             &graph,
             &WeightOptions {
-                continuity: 0.5,
+                continuity: Continuity::Share(0.5),
                 ..WeightOptions::default()
             },
             4,
@@ -543,7 +545,11 @@ fn shares_add_up_and_follow_their_law() {
     ];
     for law in laws {
         for continuity in [0.0, 0.3, 1.0] {
-            let choices = Choices::new(&graph, &WeightOptions { continuity, law }).unwrap();
+            let weights = WeightOptions {
+                continuity: Continuity::Share(continuity),
+                law,
+            };
+            let choices = Choices::new(&graph, &weights).unwrap();
             for node in graph.graph().node_indices() {
                 let whole: u64 = choices.ways(node).iter().map(|way| way.1).sum();
                 assert_eq!(whole, 1 << 32);
@@ -573,7 +579,7 @@ fn shares_add_up_and_follow_their_law() {
         Choices::new(
             &graph,
             &WeightOptions {
-                continuity: 1.1,
+                continuity: Continuity::Share(1.1),
                 ..WeightOptions::default()
             }
         )
@@ -593,11 +599,54 @@ fn shares_add_up_and_follow_their_law() {
 }
 
 #[test]
+fn a_constant_weight_of_going_on_stays_less_often_the_more_ways_lead_out() {
+    let graph = minima_graph();
+    let shares = |weight: f64| {
+        let weights = WeightOptions {
+            continuity: Continuity::Weight(weight),
+            law: DistanceLaw::Proportional,
+        };
+        let choices = Choices::new(&graph, &weights).unwrap();
+        let mut of_nodes: Vec<(f64, f64)> = Vec::new();
+        for node in graph.graph().node_indices() {
+            assert_eq!(choices.ways(node).iter().map(|way| way.1).sum::<u64>(), 1 << 32);
+            let jumps: Vec<f64> = choices
+                .probabilities(node)
+                .filter_map(|(edge, _)| Some(graph.jump(edge)?.distance_cm.max(0.01)))
+                .collect();
+            if jumps.len() < choices.ways(node).len() && !jumps.is_empty() {
+                let sum: f64 = jumps.iter().sum();
+                let p = choices.p_continue(&graph, node);
+                assert!((p - weight / (weight + sum)).abs() < 1e-9, "{weight}: {p}");
+                of_nodes.push((sum, p));
+            }
+        }
+        of_nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        of_nodes
+    };
+    // With the same constant, the more there is to choose from the less often the clip goes on; with 1,000 it nearly always does.
+    let (one, thousand) = (shares(1.0), shares(1_000.0));
+    assert!(one.first().unwrap().1 > 1.5 * one.last().unwrap().1, "{one:?}");
+    assert!(
+        one.iter()
+            .zip(&thousand)
+            .all(|(one, thousand)| thousand.1 > one.1 && thousand.1 > 0.5)
+    );
+    for wrong in [0.0, -1.0, f64::NAN] {
+        let weights = WeightOptions {
+            continuity: Continuity::Weight(wrong),
+            ..WeightOptions::default()
+        };
+        assert!(Choices::new(&graph, &weights).is_err(), "{wrong}");
+    }
+}
+
+#[test]
 fn runs_are_as_long_as_expected() {
     let graph = minima_graph();
     for continuity in [0.2, 0.8] {
         let weights = WeightOptions {
-            continuity,
+            continuity: Continuity::Share(continuity),
             ..WeightOptions::default()
         };
         let expected = Choices::new(&graph, &weights).unwrap().expected_run_secs(&graph).unwrap();
@@ -632,7 +681,7 @@ fn a_pruned_graph_has_no_end_and_a_seed_gives_one_walk() {
     let mut walker = walker(
         &whole,
         &WeightOptions {
-            continuity: 1.0,
+            continuity: Continuity::Share(1.0),
             ..WeightOptions::default()
         },
         1,
@@ -679,7 +728,7 @@ fn pieces_follow_each_other_without_a_jump() {
         let mut walker = walker(
             &graph,
             &WeightOptions {
-                continuity: 0.4,
+                continuity: Continuity::Share(0.4),
                 ..WeightOptions::default()
             },
             9,
@@ -735,7 +784,7 @@ fn overlapping_blends_do_not_jump_either() {
     let mut walker = walker(
         &graph,
         &WeightOptions {
-            continuity: 0.1,
+            continuity: Continuity::Share(0.1),
             ..WeightOptions::default()
         },
         1,
@@ -754,7 +803,7 @@ fn mistakes_spin() {
         let mut walker = walker(
             &graph,
             &WeightOptions {
-                continuity: 0.4,
+                continuity: Continuity::Share(0.4),
                 ..WeightOptions::default()
             },
             9,
@@ -766,7 +815,9 @@ fn mistakes_spin() {
         WalkMetrics::measure(&pieces(&graph, &mut walker, &options, 60), &graph, &profile)
     };
     assert_eq!(measured(None).spins(), 0);
-    for mistake in [WalkMistake::FirstFrameOnly, WalkMistake::AtanForAtan2] {
+    let of_transition = [Mistake::AtanForAtan2, Mistake::DegreesInTransform, Mistake::WrongFacingAxis].map(WalkMistake::Transition);
+    let of_walk = [WalkMistake::FirstFrameOnly, WalkMistake::FirstFrameThenRecorded];
+    for mistake in of_walk.into_iter().chain(of_transition) {
         let wrong = measured(Some(mistake));
         assert!(wrong.spins() > 0, "{mistake:?}");
         assert_eq!(wrong.secs, measured(None).secs);
@@ -857,6 +908,71 @@ fn pictures_and_histograms_count_every_pair() {
 }
 
 /// Distance, centimetres; clip and frame that are left; clip and frame that are entered.
+#[test]
+fn a_clip_whose_first_frame_alone_is_moved_goes_back_to_where_it_was_recorded() {
+    let graph = minima_graph();
+    let window = 12;
+    let mut walker = walker(&graph, &WeightOptions::default(), 9);
+    let options = StitchOptions {
+        mistake: Some(WalkMistake::FirstFrameThenRecorded),
+        ..StitchOptions::dissolve(window)
+    };
+    let pieces = pieces(&graph, &mut walker, &options, 12);
+    assert!(pieces.len() > 5);
+    for piece in &pieces {
+        let recorded = graph.set().clip(piece.stay.clip).unwrap();
+        for frame in (piece.seam.map_or(0, |seam| seam.frames)..piece.clip.frames()).step_by(7) {
+            let stands = piece.world_from_piece.after(&piece.frames[frame]);
+            let stood = recorded.frames()[piece.stay.from + frame];
+            assert!(stands.shift.distance(stood.shift) < 1e-4 && (stands.yaw - stood.yaw).abs() < 1e-4);
+            let root = piece.world_from_piece.apply(piece.clip.root_translations()[frame]);
+            assert!(root.distance(recorded.clip().root_translations()[piece.stay.from + frame]) < 1e-4);
+        }
+    }
+    // In the frame of the seam it stands where the last clip does.
+    let (_, frames) = assembled(&pieces).unwrap().unwrap();
+    for piece in pieces.iter().filter(|piece| piece.seam.is_some()) {
+        let step = frames[piece.start - 1].shift.distance(frames[piece.start].shift);
+        assert!(step < 0.06, "{step}");
+    }
+}
+
+#[test]
+fn transitions_beyond_the_most_ways_out_are_counted() {
+    let set = three([300, 260, 240]);
+    let all = GraphOptions {
+        most_ways_out: 1_000,
+        ..options(Construction::Segments { segment_size: 30 }, 12, 20.0)
+    };
+    let graph = built(&set, &all).unwrap();
+    assert_eq!(graph.left_out(), 0);
+    let few = built(&set, &GraphOptions { most_ways_out: 2, ..all }).unwrap();
+    assert!(few.left_out() > 0);
+    assert_eq!(few.jumps().len() + few.left_out(), graph.jumps().len());
+    assert_eq!(few.pruned().unwrap().left_out(), few.left_out());
+    for node in few.graph().node_indices() {
+        let mut jumps = few
+            .graph()
+            .edges(node)
+            .filter_map(|edge| few.jump(edge.id()))
+            .map(|jump| jump.distance_cm)
+            .collect::<Vec<_>>();
+        assert!(jumps.len() <= 2);
+        // The closest stay.
+        let mut of_all = graph
+            .graph()
+            .edges(node)
+            .filter_map(|edge| graph.jump(edge.id()))
+            .map(|jump| jump.distance_cm)
+            .collect::<Vec<_>>();
+        for distances in [&mut jumps, &mut of_all] {
+            distances.sort_by(f64::total_cmp);
+        }
+        of_all.truncate(2);
+        assert_eq!(jumps, of_all);
+    }
+}
+
 type GoldenJump = (f64, (usize, usize), (usize, usize));
 
 #[derive(serde::Deserialize)]
@@ -898,7 +1014,7 @@ fn graph_and_walk_are_those_of_numpy() {
     let graph = Arc::new(graph.pruned().unwrap());
     assert_eq!(nodes(&graph), golden.kept);
     let weights = WeightOptions {
-        continuity: golden.continuity,
+        continuity: Continuity::Share(golden.continuity),
         law: DistanceLaw::Inverse,
     };
     let mut walker = walker(&graph, &weights, golden.seed);

@@ -17,11 +17,25 @@ pub enum DistanceLaw {
     Proportional,
 }
 
+/// How probable it is that a clip goes on where it can and there are transitions.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Continuity {
+    /// With this probability, 0 to 1, however many transitions there are.
+    Share(f64),
+    /// With this weight, above 0, among the weights that [`DistanceLaw`] gives the transitions: every further way out makes it less probable.
+    Weight(f64),
+}
+
+impl Continuity {
+    /// The largest weight that can be given.
+    pub const MOST_WEIGHT: f64 = 1e6;
+}
+
 /// How probable each way out of a stretch is.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WeightOptions {
-    /// The probability that a clip goes on where it can and there are transitions, 0 to 1.
-    pub continuity: f64,
+    /// How probable it is that the clip goes on.
+    pub continuity: Continuity,
     /// How the transitions share the rest.
     pub law: DistanceLaw,
 }
@@ -29,7 +43,7 @@ pub struct WeightOptions {
 impl Default for WeightOptions {
     fn default() -> Self {
         Self {
-            continuity: 0.95,
+            continuity: Continuity::Share(0.95),
             law: DistanceLaw::Inverse,
         }
     }
@@ -56,7 +70,7 @@ impl Choices {
     /// transitions only; one without transitions goes on; one without both has none.
     ///
     /// # Errors
-    /// [`GraphError::Setting`] when the continuity is not from 0 to 1, or σ not above 0.
+    /// [`GraphError::Setting`] when the continuity is out of range, or σ not above 0.
     pub fn new(graph: &MotionGraph, options: &WeightOptions) -> Result<Self, GraphError> {
         let setting = |what, value: f64, least: f64, most: f64| {
             if (least..=most).contains(&value) {
@@ -65,7 +79,10 @@ impl Choices {
                 Err(GraphError::Setting { what, value, least, most })
             }
         };
-        setting("a continuity", options.continuity, 0.0, 1.0)?;
+        match options.continuity {
+            Continuity::Share(share) => setting("a continuity", share, 0.0, 1.0)?,
+            Continuity::Weight(weight) => setting("a weight of going on", weight, 1e-6, Continuity::MOST_WEIGHT)?,
+        }
         if let DistanceLaw::Exponential { sigma_cm } = options.law {
             setting("a width of the exponential law", sigma_cm, 1e-3, 1e6)?;
         }
@@ -238,8 +255,12 @@ fn share_out(edges: &[(EdgeIndex, Option<f64>)], options: &WeightOptions, ways: 
     };
     let sum: f64 = distances().map(weight).sum();
     let goes_on = edges.iter().any(|&(_, distance)| distance.is_none());
+    let going_on = match options.continuity {
+        Continuity::Share(share) => share,
+        Continuity::Weight(weight) => weight / (weight + sum),
+    };
     let share = match (goes_on, sum > 0.0) {
-        (true, true) => (options.continuity * WHOLE as f64).round() as u64,
+        (true, true) => (going_on * WHOLE as f64).round() as u64,
         (true, false) => WHOLE,
         (false, _) => 0,
     };

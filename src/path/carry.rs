@@ -27,6 +27,16 @@ pub enum Orientation {
     World,
 }
 
+/// What becomes of the way from the path to the character where the path turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Offset {
+    /// It turns with the path: what swayed to the left of the path still does (Gleicher 2001, section 4).
+    #[default]
+    Path,
+    /// It stays as it was in the world: on a path that has turned by a quarter, sway to the side becomes a surge ahead. The naive way, for comparison.
+    World,
+}
+
 /// How a motion is laid on another path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
@@ -35,6 +45,8 @@ pub struct CarryOptions {
     pub timing: Timing,
     /// What the body does.
     pub orientation: Orientation,
+    /// What the way from the path to the character does.
+    pub offset: Offset,
 }
 
 /// A motion on another path.
@@ -86,12 +98,17 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
         };
         let turned = place.frame.after(&old.frame.inverse());
         let stood = path.character(frame);
-        let planar = match options.orientation {
-            Orientation::Path => turned,
-            Orientation::World => Planar {
-                yaw: 0.0,
-                shift: turned.apply_ground(stood.shift) - stood.shift,
-            },
+        let stands = match options.offset {
+            Offset::Path => turned.apply_ground(stood.shift),
+            Offset::World => stood.shift + (place.frame.shift - old.frame.shift),
+        };
+        let turn = match options.orientation {
+            Orientation::Path => Planar::new(turned.yaw, 0.0, 0.0),
+            Orientation::World => Planar::IDENTITY,
+        };
+        let planar = Planar {
+            shift: stands - turn.apply_ground(stood.shift),
+            ..turn
         };
         characters.push(planar.after(&stood));
         moves.push(planar);

@@ -1,5 +1,5 @@
 use super::spline::{MOST_POINTS, uniform_knots};
-use super::{GroundSpline, PathEditError};
+use super::{GroundSpline, PathEditError, SplineEnds};
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use glam::{DVec2, I64Vec2};
@@ -11,17 +11,19 @@ const UNIT_M: f64 = 0.01;
 const KNOT_UNIT: f64 = 1.0 / 1_048_576.0;
 const CLOSED: u64 = 1;
 const KNOTS: u64 = 2;
+const UNCLAMPED: u64 = 4;
 
 impl GroundSpline {
     /// The path as a short word for links, letters, digits, `-` and `_`: control points to 1 cm, about three letters to a point and coordinate.
     ///
-    /// The word is base64 of numbers of seven bits to a byte: a flag for "closed" and one for "has knots of its own", the number of points, the differences of
+    /// The word is base64 of numbers of seven bits to a byte: a flag for "closed", one for "has knots of its own" and one for "unclamped", the number of points, the differences of
     /// their coordinates, and the differences of the inner knots where they are not uniform. The ends of a closed path follow from its other points and are left out.
     #[must_use]
     pub fn to_code(&self) -> String {
         let uniform = self.inner_knots() == uniform_knots(self.points().len());
         let mut bytes = Vec::new();
-        let flags = u64::from(self.is_closed()) * CLOSED + u64::from(!uniform) * KNOTS;
+        let unclamped = self.ends() == SplineEnds::Uniform;
+        let flags = u64::from(self.is_closed()) * CLOSED + u64::from(!uniform) * KNOTS + u64::from(unclamped) * UNCLAMPED;
         write(&mut bytes, flags);
         write(&mut bytes, self.points().len() as u64);
         let mut before = I64Vec2::ZERO;
@@ -60,10 +62,10 @@ impl GroundSpline {
         let (flags, count) = (next()?, next()?);
         super::spline::check_count(usize::try_from(count).unwrap_or(usize::MAX))?;
         let count = count as usize;
-        if flags > CLOSED | KNOTS {
+        let (closed, unclamped) = (flags & CLOSED != 0, flags & UNCLAMPED != 0);
+        if flags > CLOSED | KNOTS | UNCLAMPED || (closed && unclamped) {
             return Err(PathEditError::Code);
         }
-        let closed = flags & CLOSED != 0;
         let mut points = vec![DVec2::ZERO; count];
         let mut here = [0i64; 2];
         let own = own_points(count, closed);
@@ -75,8 +77,8 @@ impl GroundSpline {
             }
             *point = DVec2::new(here[0] as f64, here[1] as f64) * UNIT_M;
         }
-        let spline = if flags & KNOTS == 0 {
-            Self::uniform(points)?
+        let knots = if flags & KNOTS == 0 {
+            uniform_knots(count)
         } else {
             let mut knots = Vec::with_capacity(count);
             let mut knot = 0u64;
@@ -84,6 +86,11 @@ impl GroundSpline {
                 knot = knot.checked_add(next()?).ok_or(PathEditError::Knots)?;
                 knots.push(knot as f64 * KNOT_UNIT);
             }
+            knots
+        };
+        let spline = if unclamped {
+            Self::unclamped(points, &knots)?
+        } else {
             Self::with_knots(points, &knots)?
         };
         if bytes.next().is_some() {
@@ -143,7 +150,8 @@ mod tests {
                 path = path.joined();
             }
             let refined = path.refined(at).unwrap_or_else(|_| path.clone());
-            for path in [path, refined] {
+            let unclamped = [&path, &refined].map(|path| path.with_ends(SplineEnds::Uniform));
+            for path in [path, refined].into_iter().chain(unclamped) {
                 let back = GroundSpline::from_code(&path.to_code()).unwrap();
                 let own = own_points(path.points().len(), path.is_closed());
                 for (a, b) in path.points()[own.clone()].iter().zip(&back.points()[own]) {

@@ -1,5 +1,5 @@
 use super::fit::{FitOptions, fit_with_knots};
-use super::{GroundSpline, PathEditError, Road};
+use super::{GroundSpline, PathEditError, Road, SplineEnds};
 use crate::math::wrap_angle;
 use glam::DVec2;
 use std::f64::consts::TAU;
@@ -88,6 +88,9 @@ impl GroundSpline {
     /// # Errors
     /// [`PathEditError`] says what is wrong: a point that is not there, a pinned end that would have to move, a number out of range, too few or too many points.
     pub fn edited(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
+        if self.ends() == SplineEnds::Uniform {
+            return self.edited_unclamped(edit, pins);
+        }
         let held = pins.start || pins.end;
         let all = |f: &dyn Fn(DVec2) -> DVec2| self.with_points(self.points().iter().map(|&p| f(p)).collect());
         match *edit {
@@ -148,6 +151,24 @@ impl GroundSpline {
             PathEdit::Close => self.closed(pins),
             PathEdit::Open => Self::with_knots(self.points().to_vec(), self.inner_knots()),
         }
+    }
+
+    /// A control point that is moved is the unclamped path's own; all else is done to the same curve, clamped.
+    fn edited_unclamped(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
+        let count = self.points().len();
+        let PathEdit::Move { index, to } = *edit else {
+            return Ok(self
+                .with_ends(SplineEnds::Clamped)
+                .edited(edit, pins)?
+                .with_ends(SplineEnds::Uniform));
+        };
+        // Three points have a say at either end.
+        if (pins.start && index < 3) || (pins.end && index + 3 >= count) {
+            return Err(PathEditError::Pinned);
+        }
+        let mut points = self.points().to_vec();
+        *points.get_mut(index).ok_or(PathEditError::NoSuchPoint { index, points: count })? = to;
+        self.with_points(points)
     }
 
     fn with_moved(&self, index: usize, to: DVec2, pins: Pins) -> Result<Self, PathEditError> {

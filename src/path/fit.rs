@@ -1,5 +1,5 @@
 use super::PathEditError;
-use super::spline::{GroundSpline, bounds, check_count, uniform_knots};
+use super::spline::{GroundSpline, SplineEnds, bounds, check_count, uniform_knots};
 use glam::DVec2;
 
 /// How a path is fitted.
@@ -12,6 +12,8 @@ pub struct FitOptions {
     pub smoothing: f64,
     /// The path starts in the first and ends in the last point.
     pub pin_ends: bool,
+    /// Whose control points come out; the curve is the same.
+    pub ends: SplineEnds,
 }
 
 impl Default for FitOptions {
@@ -20,6 +22,7 @@ impl Default for FitOptions {
             control_points: 8,
             smoothing: 0.0,
             pin_ends: false,
+            ends: SplineEnds::default(),
         }
     }
 }
@@ -119,7 +122,8 @@ pub(super) fn fit_with_knots(
     let relative = solve(options.smoothing)
         .or_else(|| solve(options.smoothing.max(FILL)))
         .ok_or(PathEditError::Parameters)?;
-    GroundSpline::with_knots(relative.into_iter().map(|point| point + first).collect(), inner_knots)
+    let fitted = GroundSpline::with_knots(relative.into_iter().map(|point| point + first).collect(), inner_knots)?;
+    Ok(fitted.with_ends(options.ends))
 }
 
 /// A curve drawn by hand, (x, z) in metres in the order of drawing, as a path with uniform knots over its chord length.

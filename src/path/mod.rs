@@ -80,13 +80,13 @@ mod road;
 mod spline;
 mod turning;
 
-pub use carry::{Carried, CarryOptions, Orientation, Timing, carry};
+pub use carry::{Carried, CarryOptions, Offset, Orientation, Timing, carry};
 pub use edit::{PathEdit, Pins};
 pub use fit::{FitOptions, MOST_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath};
 pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
 pub use road::{Road, Waypoint};
-pub use spline::{FARTHEST_M, GroundSpline, Jet, LEAST_POINTS, MOST_POINTS};
+pub use spline::{FARTHEST_M, GroundSpline, Jet, LEAST_POINTS, MOST_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 
 /// Why a path cannot be fitted, edited or walked.

@@ -16,15 +16,26 @@ const LEAST_INSERT: f64 = 1e-3;
 /// A shorter derivative has no direction of its own, metres per unit of the parameter.
 const LEAST_SPEED: f64 = 1e-6;
 
-/// A path over the ground: a clamped cubic B-spline in (x, z), metres, over the parameter `[0, 1]`.
+/// Where a path lies beside its first and its last control point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum SplineEnds {
+    /// It begins in the first and ends in the last: the outer knots coincide.
+    #[default]
+    Clamped,
+    /// It begins and ends between three points: the knots go on evenly beyond its ends, and every piece has the same matrix (1, 4, 1)/6.
+    Uniform,
+}
+
+/// A path over the ground: a cubic B-spline in (x, z), metres, over the parameter `[0, 1]`.
 ///
-/// It starts in its first control point and ends in its last. Knots are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
+/// Clamped, which is how it is fitted and edited, it starts in its first control point and ends in its last; [`Self::with_ends`] gives the same curve the control
+/// points of an unclamped one. Knots are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
 /// to. Position, direction and curvature are continuous (C²). A *closed* path ends where it starts, in the same direction (C¹ there).
 /// Source: de Boor, A Practical Guide to Splines, chapters IX and X.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundSpline {
     points: Vec<DVec2>,
-    /// All knots: four at 0, the inner ones, four at 1.
+    /// All knots: four up to 0, the inner ones, four from 1 on.
     knots: Vec<f64>,
     closed: bool,
     /// The same curve piece by piece, made of the points and knots.
@@ -63,6 +74,12 @@ impl Piece {
                 third / 6.0,
             ],
         }
+    }
+
+    /// The polar form of the piece: the control point of a B-spline whose three inner knots these are (Ramshaw, Blossoms are Polar Forms, 1989).
+    fn blossom(&self, knots: [f64; 3]) -> DVec2 {
+        let ([r, s, t], [a, b, c, d]) = (knots.map(|knot| knot - self.start), self.powers);
+        a + b * ((r + s + t) / 3.0) + c * ((r * s + s * t + t * r) / 3.0) + d * (r * s * t)
     }
 
     /// The first derivative by the parameter.
@@ -122,12 +139,7 @@ impl GroundSpline {
         if let Some(index) = points.iter().position(|point| !is_place(*point)) {
             return Err(PathEditError::Point { index });
         }
-        let knots: Vec<f64> = [0.0; DEGREE + 1]
-            .iter()
-            .chain(inner_knots)
-            .chain(&[1.0; DEGREE + 1])
-            .copied()
-            .collect();
+        let knots = all_knots(inner_knots, SplineEnds::Clamped);
         let apart = knots[DEGREE..knots.len() - DEGREE]
             .windows(2)
             .all(|pair| pair[1] - pair[0] >= LEAST_SPAN);
@@ -168,7 +180,41 @@ impl GroundSpline {
     /// The same knots with other points; a closed path stays closed.
     pub(super) fn with_points(&self, points: Vec<DVec2>) -> Result<Self, PathEditError> {
         let spline = Self::with_knots(points, self.inner_knots())?;
-        Ok(if self.closed { spline.joined() } else { spline })
+        Ok(match self.ends() {
+            SplineEnds::Clamped if self.closed => spline.joined(),
+            SplineEnds::Clamped => spline,
+            SplineEnds::Uniform => Self::of(spline.points, self.knots.clone(), false),
+        })
+    }
+
+    /// Where the path lies beside its outer control points.
+    #[must_use]
+    pub fn ends(&self) -> SplineEnds {
+        if self.knots[0] < self.knots[DEGREE] {
+            SplineEnds::Uniform
+        } else {
+            SplineEnds::Clamped
+        }
+    }
+
+    /// The same curve with control points for other ends; a closed path is clamped whatever is asked for. Exact but for rounding.
+    #[must_use]
+    pub fn with_ends(&self, ends: SplineEnds) -> Self {
+        if self.closed || ends == self.ends() {
+            return self.clone();
+        }
+        let knots = all_knots(self.inner_knots(), ends);
+        let points = (0..self.points.len()).map(|i| {
+            // On every piece that a control point has a say in, the polar form gives the same.
+            self.pieces[i.saturating_sub(DEGREE)].blossom([knots[i + 1], knots[i + 2], knots[i + 3]])
+        });
+        Self::of(points.collect(), knots, false)
+    }
+
+    /// The path of unclamped control points.
+    pub(super) fn unclamped(points: Vec<DVec2>, inner_knots: &[f64]) -> Result<Self, PathEditError> {
+        let checked = Self::with_knots(points, inner_knots)?;
+        Ok(Self::of(checked.points, all_knots(inner_knots, SplineEnds::Uniform), false))
     }
 
     /// Closed: both ends are put where the path goes on through them without a step in its derivative, between their neighbours.
@@ -206,7 +252,7 @@ impl GroundSpline {
         let jet = self.piece(u).jet(u);
         match self.points.last() {
             // The path ends in its last point, without a digit lost on the way there.
-            Some(&position) if u == 1.0 => Jet { position, ..jet },
+            Some(&position) if u == 1.0 && self.ends() == SplineEnds::Clamped => Jet { position, ..jet },
             _ => jet,
         }
     }
@@ -279,6 +325,17 @@ impl GroundSpline {
 pub(super) fn uniform_knots(points: usize) -> Vec<f64> {
     let pieces = points.saturating_sub(DEGREE);
     (1..pieces).map(|k| k as f64 / pieces as f64).collect()
+}
+
+/// The inner knots with the four up to 0 and the four from 1 on.
+fn all_knots(inner: &[f64], ends: SplineEnds) -> Vec<f64> {
+    let (first, last) = match ends {
+        SplineEnds::Clamped => (0.0, 0.0),
+        SplineEnds::Uniform => (inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0)),
+    };
+    let before = (0..=DEGREE).rev().map(|k| -first * k as f64);
+    let behind = (0..=DEGREE).map(|k| 1.0 + last * k as f64);
+    before.chain(inner.iter().copied()).chain(behind).collect()
 }
 
 /// A parameter brought into `[0, 1]`; 0 for NaN.

@@ -141,7 +141,7 @@ impl Director {
                     self.draw_crowd(session, &shown, &look, colors, pane);
                 }
                 let rest = resting_point(outcome, &shown.place);
-                let followed = self.followed_point(&shown, params);
+                let followed = self.followed_point(&shown, session);
                 self.aim(index, followed, rest, params, dt_secs, pane);
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
@@ -448,8 +448,8 @@ impl Director {
     }
 
     /// The point of the figure that the camera stays with; `None` when it follows nothing.
-    fn followed_point(&mut self, shown: &Shown<'_>, params: &Params) -> Option<Vec3> {
-        let outcome = shown.outcome;
+    fn followed_point(&mut self, shown: &Shown<'_>, session: &Session) -> Option<Vec3> {
+        let (params, outcome) = (session.params(), shown.outcome);
         let wanted = match params.text(Key::Follow) {
             "off" => return None,
             "a" => Some(Slot::A),
@@ -457,9 +457,20 @@ impl Director {
             _ => None,
         };
         let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
+        let other = (params.text(Key::Follow) == "other").then(|| {
+            let place = (params.number(Key::FollowOther) as usize).saturating_sub(1);
+            session.company().get(place)?.motion.as_ref().ok()
+        });
         let source_pose;
         let (motion, world) = match source {
-            None => (&outcome.motion, &shown.world),
+            // Whoever is not on the stage is not followed: then it is the result.
+            None => match other.flatten() {
+                None => (&outcome.motion, &shown.world),
+                Some(motion) => {
+                    source_pose = pose_at(motion, session.now_secs(), &Planar::IDENTITY)?;
+                    (motion, &source_pose)
+                }
+            },
             Some(source) => {
                 let (at, world_from_clip) =
                     (outcome.source_at(source, shown.now)).unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));

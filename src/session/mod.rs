@@ -85,7 +85,7 @@ pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
 pub use recipe::write_ids;
 pub use recipe::{At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, graph_of, write_jump, write_path, write_visits};
-pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered};
+pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
 pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use recipe::{HandTag, own_words, write_tags};
 pub use recipe::{MOST_ALSO, weight_curve, write_also, write_pairs};

@@ -246,6 +246,8 @@ const MISTAKES: &[Choice] = &[
     choice("euler", "Euler angles mixed"),
     choice("degrees", "degrees for radians"),
     choice("atan", "atan for atan2"),
+    choice("transform_degrees", "transform in degrees"),
+    choice("facing", "wrong facing axis"),
     choice("alignment", "no alignment"),
     choice("velocity", "velocity divided twice"),
     choice("world_root", "root mixed in the world"),
@@ -271,6 +273,13 @@ const KEEPS: &[Choice] = &[
     choice("duration", "duration"),
     choice("whole", "whole way"),
 ];
+const SPLINES: &[Choice] = &[choice("clamped", "clamped"), choice("uniform", "uniform")];
+const OFFSETS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it was")];
+const ROOT_MOTIONS: &[Choice] = &[
+    choice("world", "over the ground"),
+    choice("in_place", "in place"),
+    choice("residual", "beside its path"),
+];
 const FACINGS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it did")];
 const CONSTRUCTIONS: &[Choice] = &[choice("segments", "segments"), choice("minima", "local minima")];
 const EDGE_WEIGHTS: &[Choice] = &[
@@ -279,9 +288,20 @@ const EDGE_WEIGHTS: &[Choice] = &[
     choice("uniform", "uniform"),
     choice("proportional", "d, wrong"),
 ];
+const GOING_ON: &[Choice] = &[choice("share", "a share"), choice("constant", "a constant weight")];
 const WALK_METHODS: &[Choice] = &[choice("dissolve", "dissolve"), choice("inertialize", "inertialize")];
-const TRANSFORMS: &[Choice] = &[choice("whole", "whole clip"), choice("first", "first frame only")];
-const ATANS: &[Choice] = &[choice("atan2", "atan2"), choice("atan", "atan, wrong")];
+const ALIGNMENTS: &[Choice] = &[choice("window", "whole window"), choice("first", "first posture")];
+const TRANSFORMS: &[Choice] = &[
+    choice("whole", "whole clip"),
+    choice("first", "first frame only"),
+    choice("teleport", "first frame, then as recorded"),
+];
+const ATANS: &[Choice] = &[
+    choice("atan2", "atan2"),
+    choice("atan", "atan, wrong"),
+    choice("degrees", "degrees, wrong"),
+    choice("facing", "rotation · Y, wrong"),
+];
 const SCENARIOS: &[Choice] = &[
     choice("own", "my own"),
     choice("straight", "walk straight"),
@@ -324,7 +344,13 @@ const STAGES: &[Choice] = &[
     choice("light", "light"),
     choice("paper", "paper"),
 ];
-const FOLLOW: &[Choice] = &[choice("off", "off"), choice("result", "result"), choice("a", "A"), choice("b", "B")];
+const FOLLOW: &[Choice] = &[
+    choice("off", "off"),
+    choice("result", "result"),
+    choice("a", "A"),
+    choice("b", "B"),
+    choice("other", "one of the others"),
+];
 const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
 const CURVES: &[Choice] = &[
     choice("speed", "speed"),
@@ -345,6 +371,7 @@ parameters! {
     EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
     WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
+    AlignBy "align_by" "Align by" Blend Kind::Choice(ALIGNMENTS), Start::Word("window"), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
@@ -382,6 +409,11 @@ parameters! {
     KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
+    RootMotion "root_motion" "Way over the ground" View Kind::Choice(ROOT_MOTIONS), Start::Word("world"), "", "Over the ground: as it was recorded. In place: where the body stands and faces is taken out of every frame. Beside its path: a smooth path and its direction are taken out, and the sway about it stays.";
+    PlaceX "place_x" "Starts at x" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
+    PlaceZ "place_z" "Starts at z" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
+    PlaceHeading "place_heading" "Starts facing" View auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";
+
     WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
     WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
@@ -400,6 +432,8 @@ parameters! {
     PathSmoothing "path_smoothing" "Smoothing" Path number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
     PathKeep "keep" "Keep" Path Kind::Choice(KEEPS), Start::Word("speed"), "", "What stays when the path becomes longer or shorter.";
     PathFacing "path_facing" "Body faces" Path Kind::Choice(FACINGS), Start::Word("path"), "", "Whether the body turns where the path turns, or faces as it did before.";
+    PathOffset "path_offset" "Sway of the hips" Path Kind::Choice(OFFSETS), Start::Word("path"), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
+    PathSpline "path_spline" "Spline" Path Kind::Choice(SPLINES), Start::Word("clamped"), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
     Path "path" "Path" Path Kind::Text, Start::Word(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
     PathGrid "path_grid" "Snap to grid" Path number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
     PinStart "pin_start" "Pin the start" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
@@ -410,14 +444,17 @@ parameters! {
     SegmentSize "segment_size" "Segment size" Graph number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
     EdgeThreshold "edge_threshold" "Edge threshold" Graph number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
     MinJump "min_jump" "Shortest jump" Graph number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
+    MostWaysOut "most_ways_out" "Ways out at most" Graph logarithmic(1.0, 10_000.0, 1.0), Start::Number(64.0), "", "How many transitions may leave one segment: the closest stay. More of them take longer to build and to choose from.";
     EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EDGE_WEIGHTS), Start::Word("inverse"), "", "How the distance of a transition makes it more or less probable.";
     EdgeSigma "edge_sigma" "Width σ" Graph logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
     Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
+    GoingOn "going_on" "Going on has" Graph Kind::Choice(GOING_ON), Start::Word("share"), "", "Share: the same chance to stay everywhere. Constant weight: one weight beside those of the transitions, so that the chance to stay falls with every further way out.";
+    ContinuityWeight "continuity_weight" "Weight of going on" Graph logarithmic(0.1, 10_000.0, 0.1), Start::Number(1_000.0), "", "What the next segment of the same clip weighs beside the transitions: the higher, the longer a clip is left unbroken.";
     VisitedDiscount "visited_discount" "Worth after a visit" Graph number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
     Prune "prune" "Largest component only" Graph Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
     WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WALK_METHODS), Start::Word("dissolve"), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
-    Transform "transform" "Transform" Graph Kind::Choice(TRANSFORMS), Start::Word("whole"), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake.";
-    Atan "atan" "Angle of the transform" Graph Kind::Choice(ATANS), Start::Word("atan2"), "", "Taken by atan2, or by atan, which cannot tell a direction from its opposite.";
+    Transform "transform" "Transform" Graph Kind::Choice(TRANSFORMS), Start::Word("whole"), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
+    Atan "atan" "Angle of the transform" Graph Kind::Choice(ATANS), Start::Word("atan2"), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
     WalkSeconds "walk_seconds" "Measured walk" Graph number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
     GoTo "go_to" "Go to" Graph Kind::Text, Start::Word(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
     WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Word(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
@@ -491,6 +528,7 @@ parameters! {
     Curve "curve" "Curve" Stage Kind::Choice(CURVES), Start::Word("speed"), "", "What of the chosen joint is plotted.";
     Contacts "contacts" "Foot contacts" Stage Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
     Follow "follow" "Follow" Camera Kind::Choice(FOLLOW), Start::Word("result"), "", "Which character the camera stays with.";
+    FollowOther "follow_other" "Which other" Camera number(1.0, 6.0, 1.0), Start::Number(1.0), "", "Which of the others the camera stays with, by their order.";
     FollowJoint "follow_joint" "Follow joint" Camera Kind::Text, Start::Word("hips"), "", "The joint that the camera stays with.";
     FollowHalfLife "follow_half_life" "Camera half-life" Camera logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
     Camera "camera" "Camera" Camera Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";

@@ -1,7 +1,7 @@
 use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
-    Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, dissolve, laid_on, moving_joints,
+    AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, dissolve, laid_on, moving_joints,
 };
 use crate::math::{Planar, nearest_turn, quat, wrap_angle};
 use glam::Vec3;
@@ -30,6 +30,8 @@ pub struct TransitionOptions {
     /// Whether B is first laid on A, on the ground and in facing. Without, B stays where its file put it, and the way over the ground is made in
     /// the world whatever `root` says.
     pub align: bool,
+    /// By what it is laid there.
+    pub align_by: AlignBy,
     /// How the way over the ground is made.
     pub root: RootBlend,
 }
@@ -41,6 +43,7 @@ impl TransitionOptions {
         Self {
             method,
             align: true,
+            align_by: AlignBy::default(),
             root: RootBlend::Velocity,
         }
     }
@@ -72,8 +75,15 @@ pub fn concatenate(a: &Source, leave: usize, b: &Source, enter: usize, options: 
         Method::Dissolve { window, law } => (window, law),
         Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options, |_, _| {}),
     };
-    let (align, root) = (options.align, options.root);
-    dissolve(a, leave, b, enter, &DissolveOptions { window, law, align, root })
+    let &TransitionOptions { align, align_by, root, .. } = options;
+    let options = DissolveOptions {
+        window,
+        law,
+        align,
+        align_by,
+        root,
+    };
+    dissolve(a, leave, b, enter, &options)
 }
 
 /// `seen` gets the two poses between which the differences are taken, and the frame rate, before they are.
@@ -90,7 +100,7 @@ pub(super) fn inertialize(
     check(a, leave, b, enter, 0)?;
     let (from, to) = (a.clip(), b.clip());
     let aligned_b = if options.align {
-        laid_on(a, leave.min(from.frames().saturating_sub(1)), b, enter, 0)?
+        laid_on(a, leave.min(from.frames().saturating_sub(1)), b, enter, 0, options.align_by)?
     } else {
         Planar::IDENTITY
     };

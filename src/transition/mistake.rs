@@ -6,9 +6,9 @@
 use super::concatenate::inertialize;
 use super::moving::{MovingPose, View};
 use super::{Inertialization, Method, TransitionOptions, concatenate};
-use crate::blend::{BlendError, Concatenation, RootBlend, Source, WeightLaw, laid_on};
+use crate::blend::{BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, laid_on};
 use crate::clip::Clip;
-use crate::math::{Decay, Planar, quat, spring};
+use crate::math::{Decay, Planar, quat, spring, wrap_angle};
 use crate::registration::limb_weights;
 use glam::{DVec2, EulerRot, Quat, Vec3};
 use std::f64::consts::PI;
@@ -26,6 +26,12 @@ pub enum Mistake {
     /// The turn that lays B on A is `atan(A / B)`: half of all turns are off by half a turn. So that it shows, B is taken to face the other way in
     /// its file where it does not do so already.
     AtanForAtan2,
+    /// The turn that lays B on A is told in degrees and used as if it were in radians. B is taken to face the other way in its file, as for
+    /// [`Self::AtanForAtan2`].
+    DegreesInTransform,
+    /// B is laid on A by the first posture, and what counts as its facing is the root's own Y axis, `rotation · Y`. That axis points up, so that its
+    /// shadow on the ground says which way the hips tilt.
+    WrongFacingAxis,
     /// B stays where its file has it.
     NoAlignment,
     /// Differences from frame to frame are divided by the frame rate where they must be multiplied by it to be velocities. A dissolve has only the
@@ -37,11 +43,13 @@ pub enum Mistake {
 
 impl Mistake {
     /// All of them, for a list to choose from.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::NoHemisphereCheck,
         Self::EulerLerp,
         Self::DegreesForRadians,
         Self::AtanForAtan2,
+        Self::DegreesInTransform,
+        Self::WrongFacingAxis,
         Self::NoAlignment,
         Self::VelocityDividedTwice,
         Self::WorldRoot,
@@ -55,7 +63,12 @@ impl Mistake {
             Method::Dissolve { window, .. } => *window > 1,
             Method::Inertialize(_) => true,
         };
-        mixes || matches!(self, Self::AtanForAtan2 | Self::NoAlignment)
+        mixes || self.is_of_placing() || self == Self::NoAlignment
+    }
+
+    /// Whether B is laid on A by a wrong transform.
+    fn is_of_placing(self) -> bool {
+        matches!(self, Self::AtanForAtan2 | Self::DegreesInTransform | Self::WrongFacingAxis)
     }
 }
 
@@ -80,7 +93,9 @@ pub fn concatenate_mistaken(
         Mistake::NoHemisphereCheck => mixed(Mix::AsSigned),
         Mistake::EulerLerp => mixed(Mix::Euler),
         Mistake::DegreesForRadians => mixed(Mix::Degrees),
-        Mistake::AtanForAtan2 => laid_by_atan(a, leave, b, enter, options),
+        Mistake::AtanForAtan2 | Mistake::DegreesInTransform | Mistake::WrongFacingAxis => {
+            laid_wrongly(a, leave, b, enter, options, mistake)
+        }
         Mistake::NoAlignment => right(&TransitionOptions { align: false, ..*options }),
         Mistake::VelocityDividedTwice => {
             if let Method::Inertialize(how) = options.method {
@@ -271,16 +286,29 @@ fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, 
         .with_provenance(clip.provenance()))
 }
 
-/// Lays B on A by a turn from `atan`, and leaves it there.
-fn laid_by_atan(a: &Source, leave: usize, b: &Source, enter: usize, options: &TransitionOptions) -> Result<Concatenation, BlendError> {
+/// Lays B on A by a wrong transform, and leaves it there.
+fn laid_wrongly(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    options: &TransitionOptions,
+    mistake: Mistake,
+) -> Result<Concatenation, BlendError> {
     // Refuses what cannot be joined, before its frames are looked at.
     concatenate(a, leave, b, enter, options)?;
     let window = match options.method {
         Method::Dissolve { window, .. } if window > 1 => window,
         _ => 1,
     };
-    let right = laid_on(a, leave.min(a.clip().frames().saturating_sub(1)), b, enter, window)?;
-    let wrong = by_atan(&right, middle(b.clip(), enter, window));
+    let meets = leave.min(a.clip().frames().saturating_sub(1));
+    let wrong = if mistake == Mistake::WrongFacingAxis {
+        align_facing(&standing_by_y(a, meets), &standing_by_y(b, enter))
+    } else {
+        let right = laid_on(a, meets, b, enter, window, options.align_by)?;
+        let turn = if mistake == Mistake::AtanForAtan2 { by_atan } else { by_degrees };
+        turned_wrongly(&right, middle(b.clip(), enter, window), turn)
+    };
     let made = concatenate(a, leave, &b.moved(&wrong), enter, &TransitionOptions { align: false, ..*options })?;
     let placed = |world_from_moved: &Planar| world_from_moved.after(&wrong);
     Ok(Concatenation {
@@ -291,12 +319,30 @@ fn laid_by_atan(a: &Source, leave: usize, b: &Source, enter: usize, options: &Tr
     })
 }
 
-/// The alignment that a program finds which writes `atan(A / B)`: the right one turns the point cloud about its middle by another angle.
-fn by_atan(right: &Planar, middle: DVec2) -> Planar {
-    // As if B's file had it face the other way, where the turn is one that `atan` gets right.
+/// What a program finds that writes `atan(A / B)`.
+fn by_atan(yaw: f64) -> f64 {
+    (yaw.sin() / yaw.cos()).atan()
+}
+
+/// What a program turns by that hands degrees to a function of radians.
+fn by_degrees(yaw: f64) -> f64 {
+    wrap_angle(wrap_angle(yaw).to_degrees())
+}
+
+/// Where the character stands, facing along the shadow of its root's Y axis.
+fn standing_by_y(source: &Source, frame: usize) -> Planar {
+    let axis = source.clip().rotations(frame).first().map_or(Vec3::Y, |root| *root * Vec3::Y);
+    Planar {
+        yaw: f64::from(axis.x).atan2(axis.z.into()),
+        ..source.frames()[frame]
+    }
+}
+
+/// The alignment of a program that gets the angle wrong: the right one, with the point cloud turned about its middle by another angle.
+fn turned_wrongly(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
+    // As if B's file had it face the other way: the turn is one that hides no mistake.
     let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
-    let yaw = right.yaw - facing;
-    let mistaken = (yaw.sin() / yaw.cos()).atan() + facing;
+    let mistaken = wrong(right.yaw - facing) + facing;
     let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };
     let to = right.after(&Planar { yaw: 0.0, shift: middle });
     let back = turned(mistaken).after(&Planar { yaw: 0.0, shift: -middle });

@@ -49,12 +49,15 @@ fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     compared_clips_ui(session, out, ui);
     foot_rows_ui(session, out, ui);
-    let is_held = session.params().is_on(Key::FootLock);
-    if is_held {
+    for key in [Key::RootMotion, Key::PlaceX, Key::PlaceZ, Key::PlaceHeading] {
+        param_row_ui(key, &Detail::default(), session, out, ui);
+    }
+    let is_made = session.view_is_changed();
+    if is_made {
         keep_ui(0, session, out, ui);
     }
     if let Some(entry) = session.slot(Slot::A) {
-        let saved = if is_held { "result:0" } else { entry.id.as_str() };
+        let saved = if is_made { "result:0" } else { entry.id.as_str() };
         ui.push_id(&entry.id, |ui| clip_panel_ui(entry, saved, session, state, out, ui));
     }
 }
@@ -124,6 +127,7 @@ fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) 
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
@@ -251,6 +255,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     }
     ui.add_space(space::XS);
     param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);

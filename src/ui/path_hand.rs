@@ -3,8 +3,8 @@
 use super::out::Out;
 use super::text;
 use glam::DVec2;
-use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, drawn_path};
-use segue::session::{Command, Key, OnPath, Pane, Session, Value, sentence};
+use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
+use segue::session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
 
 /// The hand on the path, remembered between frames.
 #[derive(Clone, Debug, Default)]
@@ -86,6 +86,7 @@ impl PathHand {
             control_points: if is_loop { wanted.max(LOOP_POINTS) } else { wanted },
             smoothing: DRAWN_SMOOTHING,
             pin_ends: true,
+            ends: spline_ends(session.params()),
         };
         let path = drawn_path(drawn, &options).and_then(|path| {
             if is_loop {
@@ -103,7 +104,7 @@ impl PathHand {
     /// One more control point: behind the chosen one, or where there is most room.
     pub(super) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
         let spline = path.road.spline();
-        let ends = spline.greville();
+        let ends = spline.with_ends(SplineEnds::Clamped).greville();
         let gaps = || ends.windows(2).enumerate();
         let widest = gaps()
             .max_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))

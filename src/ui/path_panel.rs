@@ -63,6 +63,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
     kit::note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
+    param_row_ui(Key::PathOffset, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
     foot_rows_ui(session, out, ui);
     if path.is_some_and(|path| path.awaits_feet) {
@@ -168,6 +169,7 @@ fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) 
     if !on && kit::button_ui(Button::new(text::FOUR_EIGHT_SIXTEEN), ui).clicked() {
         compare_points(session, out);
     }
+    param_row_ui(Key::PathSpline, &Detail::default(), session, out, ui);
     param_row_ui(Key::PathSmoothing, &Detail::default(), session, out, ui);
     let Some(path) = path else { return };
     let error = path.fitted.error();

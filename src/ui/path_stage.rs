@@ -9,7 +9,7 @@ use super::text;
 use super::theme::space;
 use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 use glam::DVec2;
-use segue::path::{GroundSpline, PathEdit};
+use segue::path::{GroundSpline, PathEdit, SplineEnds};
 use segue::session::{Command, Group, Key, OnPath, Session};
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
@@ -181,7 +181,12 @@ fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session
     state.path.place = Some((place, parameter));
     ui.ctx().set_cursor_icon(CursorIcon::Copy);
     if stage.double_clicked() && state.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out) {
-        let before = spline.greville().iter().filter(|&&at| at < parameter).count();
+        let before = spline
+            .with_ends(SplineEnds::Clamped)
+            .greville()
+            .iter()
+            .filter(|&&at| at < parameter)
+            .count();
         state.path.chosen = Some(before);
     }
 }

@@ -48,6 +48,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
         };
         param_row_ui(Key::WarpFrom, &detail, session, out, ui);
         param_row_ui(Key::WarpTo, &detail, session, out, ui);
+        param_row_ui(Key::WeightLaw, &plain, session, out, ui);
     }
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);

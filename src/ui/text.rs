@@ -598,6 +598,10 @@ pub(crate) fn mistake(key: &str) -> &'static str {
         "euler" => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
         "degrees" => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
         "atan" => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
+        "transform_degrees" => "B goes off in a direction of its own: its turn in degrees was taken for radians.",
+        "facing" => {
+            "B is turned to wherever the hips happen to tilt: the root's Y axis points up, and its shadow on the ground is no facing."
+        }
         "alignment" => "The character flies to where B's file has it: nobody laid B on A.",
         "velocity" => "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small.",
         "world_root" => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
@@ -713,17 +717,22 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "Windows: full, half, third",
         help: "A long one drags, a short one bursts.",
-        query: "construction=minima&blend_window=30&compare=blend_window:30,15,10",
+        query: "construction=segments&segment_size=60&blend_window=30&compare=blend_window:30,15,10",
     },
     Experiment {
         name: "Segments: full, half, third",
-        help: "Long segments repeat little, short ones never come to rest.",
-        query: "construction=segments&blend_window=15&segment_size=60&compare=segment_size:60,30,20",
+        help: "Long segments repeat little, short ones never come to rest. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
+        query: "construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
     },
     Experiment {
         name: "Continuity: low, middle, high",
         help: "How long a clip is left unbroken.",
-        query: "compare=continuity:0.3,0.8,0.98",
+        query: "going_on=share&compare=continuity:0.3,0.8,0.98",
+    },
+    Experiment {
+        name: "Weight of going on: 1 and 1000",
+        help: "One constant beside the distances: the more ways lead out, the less it holds.",
+        query: "going_on=constant&edge_weight=proportional&compare=continuity_weight:1,1000",
     },
     Experiment {
         name: "atan for atan2",
@@ -731,11 +740,30 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
         query: "transform=whole&compare=atan:atan2,atan",
     },
     Experiment {
+        name: "Degrees for radians",
+        help: "A turn in degrees that is taken for radians: every clip goes off in a direction of its own.",
+        query: "transform=whole&compare=atan:atan2,degrees",
+    },
+    Experiment {
         name: "First frame only",
-        help: "The clip starts in the right place and goes off as it was recorded.",
-        query: "atan=atan2&compare=transform:whole,first",
+        help: "The clip starts in the right place and goes off as it was recorded, or flies back to where it was recorded.",
+        query: "atan=atan2&compare=transform:whole,first,teleport",
     },
 ];
+
+/// What the limit of ways out has left out; `None` where that is nothing.
+pub(crate) fn ways_left_out(built: &Built) -> Option<String> {
+    let most = built.options().most_ways_out;
+    match built.whole().left_out() {
+        0 => None,
+        1 => Some(format!(
+            "1 transition is left out: no more than {most} leave one stretch. Raise the ways out to have it."
+        )),
+        count => Some(format!(
+            "{count} transitions are left out: no more than {most} leave one stretch. Raise the ways out to have them."
+        )),
+    }
+}
 
 /// What there is of a graph.
 pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {

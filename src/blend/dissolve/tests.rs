@@ -44,7 +44,7 @@ proptest! {
     #[test]
     fn a_clip_dissolved_into_itself_is_itself((law, root) in laws(), window in 0usize..60, at in 0usize..59, turning in -1.0f32..1.0) {
         let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
-        let out = dissolve(&a, at, &a, at, &DissolveOptions { window, law, align: true, root }).unwrap();
+        let out = dissolve(&a, at, &a, at, &DissolveOptions { window, law, root, ..DissolveOptions::default() }).unwrap();
         let worst = worst_distance(&out.clip, a.clip());
         prop_assert!(worst < 1e-5, "{worst}");
         let angle = (0..120).flat_map(|f| out.clip.rotations(f).iter().zip(a.clip().rotations(f))).map(|(p, q)| quat::angle_between(*p, *q));
@@ -56,7 +56,7 @@ proptest! {
         let (a, b) = two();
         let roles = Roles::detect(b.clip().skeleton());
         let moved = Source::new(Arc::new(b.clip().transformed(&Planar::new(yaw, x, z))), &roles);
-        let options = DissolveOptions { window: 20, law, align: true, root };
+        let options = DissolveOptions { window: 20, law, root, ..DissolveOptions::default() };
         let (here, there) = (dissolve(&a, 50, &b, 10, &options).unwrap(), dissolve(&a, 50, &moved, 10, &options).unwrap());
         let worst = worst_distance(&here.clip, &there.clip);
         prop_assert!(worst < 2e-4, "{worst}");
@@ -65,7 +65,7 @@ proptest! {
     #[test]
     fn before_the_window_is_a_and_its_last_frame_and_all_after_is_b((law, root) in laws(), window in 0usize..40, align in any::<bool>()) {
         let (a, b) = two();
-        let out = dissolve(&a, 55, &b, 7, &DissolveOptions { window, law, align, root }).unwrap();
+        let out = dissolve(&a, 55, &b, 7, &DissolveOptions { window, law, align, root, ..DissolveOptions::default() }).unwrap();
         let overlap = if window < 2 { 0 } else { window };
         prop_assert_eq!(out.transition.clone(), 55..55 + overlap);
         prop_assert_eq!(out.clip.frames(), 55 + 80 - 7);
@@ -202,7 +202,7 @@ fn without_alignment_the_character_flies_to_b() {
                     window,
                     align,
                     root,
-                    law: WeightLaw::Smooth,
+                    ..DissolveOptions::default()
                 },
             )
             .unwrap();
@@ -409,6 +409,7 @@ fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
             align,
             root: RootBlend::World,
             law: WeightLaw::Linear,
+            ..DissolveOptions::default()
         };
         let out = dissolve(&a, 30, &b, 10, &options).unwrap();
         let steady = PI / 40.0 + 2.0 * 0.08 * 0.5;
@@ -429,4 +430,38 @@ fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
             assert!(apart < 0.02, "the body faces where its frame does: {apart}");
         }
     }
+}
+
+#[test]
+fn the_first_posture_alone_may_say_where_b_lies() {
+    let (a, b) = (
+        source(Walk {
+            turning: 0.6,
+            ..Walk::default()
+        }),
+        source(Walk::default()),
+    );
+    let options = DissolveOptions {
+        window: 30,
+        align_by: AlignBy::FirstPose,
+        root: RootBlend::World,
+        ..DissolveOptions::default()
+    };
+    let out = dissolve(&a, 40, &b, 12, &options).unwrap();
+    let (stands, wanted) = (out.aligned_b.after(&b.frames()[12]), a.frames()[40]);
+    assert!(stands.shift.distance(wanted.shift) < 1e-9 && wrap_angle(stands.yaw - wanted.yaw).abs() < 1e-9);
+    assert_eq!(out.world_from_b, out.aligned_b);
+    // The window as a whole turns on, and lies better elsewhere.
+    let by_window = dissolve(
+        &a,
+        40,
+        &b,
+        12,
+        &DissolveOptions {
+            align_by: AlignBy::Window,
+            ..options
+        },
+    )
+    .unwrap();
+    assert!(wrap_angle(by_window.aligned_b.yaw - out.aligned_b.yaw).abs() > 0.02);
 }

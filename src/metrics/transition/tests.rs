@@ -330,7 +330,7 @@ fn the_ways_to_blend_differ_where_they_should() {
                 window,
                 align,
                 root,
-                law: WeightLaw::Smooth,
+                ..DissolveOptions::default()
             },
         )
         .1

@@ -52,6 +52,7 @@ fn least_squares_are_those_of_scipy() {
             control_points: fit.control_points,
             smoothing: fit.smoothing,
             pin_ends: fit.pin_ends,
+            ..FitOptions::default()
         };
         let spline = fit_spline(&way, &parameters, &options).unwrap();
         for (own, other) in spline.points().iter().zip(points(&fit.found)) {
@@ -121,7 +122,7 @@ proptest! {
         let spline = GroundSpline::uniform(control.clone()).unwrap();
         let parameters: Vec<f64> = (0..=100).map(|k| f64::from(k) / 100.0).collect();
         let of = |spline: &GroundSpline| parameters.iter().map(|&u| spline.position(u)).collect::<Vec<_>>();
-        let options = FitOptions { control_points: control.len(), smoothing: 0.0, pin_ends };
+        let options = FitOptions { control_points: control.len(), pin_ends, ..FitOptions::default() };
         let found = fit_spline(&of(&spline), &parameters, &options).unwrap();
         for (a, b) in found.points().iter().zip(&control) {
             prop_assert!(a.distance(*b) < 1e-9);
@@ -144,6 +145,7 @@ fn smoothing_trades_distance_for_straightness() {
             control_points: 14,
             smoothing,
             pin_ends: true,
+            ..FitOptions::default()
         };
         let spline = fit_spline(&way, &parameters, &options).unwrap();
         assert_eq!((spline.points()[0], spline.points()[13]), (way[0], way[89]));
@@ -186,7 +188,7 @@ fn what_cannot_be_fitted_is_said() {
         let options = FitOptions {
             control_points,
             smoothing,
-            pin_ends: false,
+            ..FitOptions::default()
         };
         fit_spline(&way, &u, &options)
     };

@@ -31,7 +31,7 @@ use super::recipe::{
     Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
     read_also, read_pins, read_weights,
 };
-use super::recipe::{made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
+use super::recipe::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::transport::Span;
 use super::undo::History;
 use crate::skin::Character;
@@ -488,10 +488,19 @@ impl Session {
             Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
             Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
             Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
+            Key::PlaceX => Some(outcome.motion.standing_at(0.0).shift.x),
+            Key::PlaceZ => Some(outcome.motion.standing_at(0.0).shift.y),
+            Key::PlaceHeading => Some(outcome.motion.standing_at(0.0).yaw.to_degrees()),
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
         }
+    }
+
+    /// Whether the View lab shows its clip otherwise than it is: with its feet held, moved, or in place.
+    #[must_use]
+    pub fn view_is_changed(&self) -> bool {
+        self.params.text(Key::Lab) == "view" && !is_as_it_is(&self.params)
     }
 
     /// The distances that the Register lab looks at: those of the first pane, newer ones where it has no result for them.

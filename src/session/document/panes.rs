@@ -558,7 +558,7 @@ impl Session {
             "match" => return self.match_inputs(params),
             "view" => {
                 let motion = self.motion_read(params.text(Key::A), params)?;
-                return Ok(self.viewer.inputs(&motion, params.is_on(Key::FootLock)).map(Inputs::View));
+                return Ok(self.viewer.inputs(&motion, params).map(Inputs::View));
             }
             "make" => Ok(Inputs::Make(made_id(params))),
             "loop" => (self.motion_read(params.text(Key::A), params))

@@ -1,7 +1,7 @@
 use super::feet::{slide_before, with_feet};
 use super::pair::Pair;
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
-use crate::blend::{RootBlend, WeightLaw};
+use crate::blend::{AlignBy, RootBlend, WeightLaw};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
 use crate::metrics::{Subject, TransitionMetrics};
@@ -63,6 +63,8 @@ fn mistake_of(params: &Params) -> Option<Mistake> {
         "euler" => Some(Mistake::EulerLerp),
         "degrees" => Some(Mistake::DegreesForRadians),
         "atan" => Some(Mistake::AtanForAtan2),
+        "transform_degrees" => Some(Mistake::DegreesInTransform),
+        "facing" => Some(Mistake::WrongFacingAxis),
         "alignment" => Some(Mistake::NoAlignment),
         "velocity" => Some(Mistake::VelocityDividedTwice),
         "world_root" => Some(Mistake::WorldRoot),
@@ -74,6 +76,32 @@ fn mistake_of(params: &Params) -> Option<Mistake> {
 #[must_use]
 pub fn mistake_shows(params: &Params) -> bool {
     mistake_of(params).is_none_or(|mistake| mistake.concerns(&method_of(params, params.number(Key::BlendWindow) as usize)))
+}
+
+/// How the weight moves from A to B.
+pub(super) fn weight_law(params: &Params) -> WeightLaw {
+    match params.text(Key::WeightLaw) {
+        "linear" => WeightLaw::Linear,
+        "smoother" => WeightLaw::Smoother,
+        _ => WeightLaw::Smooth,
+    }
+}
+
+/// By what B is laid on A.
+pub(super) fn align_by(params: &Params) -> AlignBy {
+    match params.text(Key::AlignBy) {
+        "first" => AlignBy::FirstPose,
+        _ => AlignBy::Window,
+    }
+}
+
+/// How the way over the ground is made.
+pub(super) fn root_blend(params: &Params) -> RootBlend {
+    if params.is_on(Key::RootBlend) {
+        RootBlend::Velocity
+    } else {
+        RootBlend::World
+    }
 }
 
 /// The method of the Transition lab; `window` is that of its dissolves.
@@ -175,11 +203,7 @@ impl Blender {
         let method = if in_transition {
             method_of(params, window)
         } else {
-            let law = match params.text(Key::WeightLaw) {
-                "linear" => WeightLaw::Linear,
-                "smoother" => WeightLaw::Smoother,
-                _ => WeightLaw::Smooth,
-            };
+            let law = weight_law(params);
             Method::Dissolve { window, law }
         };
         let match_window = match_window.min(most);
@@ -205,11 +229,6 @@ impl Blender {
             weights,
         };
         let place = self.place(pair, wanted)?;
-        let root = if params.is_on(Key::RootBlend) {
-            RootBlend::Velocity
-        } else {
-            RootBlend::World
-        };
         Ok(BlendInputs {
             pair: Arc::clone(pair),
             place,
@@ -218,7 +237,8 @@ impl Blender {
             options: TransitionOptions {
                 method,
                 align: params.is_on(Key::Align),
-                root,
+                align_by: align_by(params),
+                root: root_blend(params),
             },
         })
     }

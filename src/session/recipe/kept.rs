@@ -22,9 +22,12 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
         "speed" => group == Group::Speed || is_of_feet(key),
         "loop" => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
         "layers" => group == Group::Layers || is_of_feet(key),
-        "register" => group == Group::Register || is_of_feet(key),
+        "register" => group == Group::Register || key == Key::WeightLaw || is_of_feet(key),
         "path" => group == Group::Path || is_of_feet(key),
-        "graph" => group == Group::Graph || matches!(key, Key::BlendWindow | Key::HalfLife | Key::Seed) || is_of_feet(key),
+        "graph" => {
+            let of_blend = matches!(key, Key::BlendWindow | Key::WeightLaw | Key::AlignBy | Key::RootBlend);
+            group == Group::Graph || of_blend || matches!(key, Key::HalfLife | Key::Seed) || is_of_feet(key)
+        }
         "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
         _ => false,
     }
@@ -67,7 +70,7 @@ pub(in crate::session) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = 
 pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.text(Key::Lab);
     match lab {
-        "view" if !params.is_on(Key::FootLock) => return None,
+        "view" if is_as_it_is(params) => return None,
         "make" => return Some(made_id(params)),
         _ => {}
     }
@@ -115,7 +118,13 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
         set(Some(key).filter(|_| allowed)?, &value)?;
     }
     // A clip as it is has its own id.
-    (lab != "view" || params.is_on(Key::FootLock)).then_some(params)
+    (lab != "view" || !is_as_it_is(&params)).then_some(params)
+}
+
+/// Whether the View lab changes nothing of its clip.
+pub(in crate::session) fn is_as_it_is(params: &Params) -> bool {
+    let changes = |param: &Param| belongs_to(param.key, "view") && *params.get(param.key) != param.default_value();
+    !PARAMS.iter().any(changes)
 }
 
 /// What a person calls what the parameters make.
@@ -126,7 +135,22 @@ pub(in crate::session) fn recipe_name(params: &Params) -> String {
     });
     match params.text(Key::Lab) {
         "make" => made_id(params),
-        "view" => format!("{a}, feet held"),
+        "view" => {
+            let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
+                .iter()
+                .any(|&key| params.optional(key).is_some());
+            let held = if params.is_on(Key::FootLock) {
+                format!("{a}, feet held")
+            } else {
+                a
+            };
+            match params.text(Key::RootMotion) {
+                "in_place" => format!("{held}, in place"),
+                "residual" => format!("{held}, beside its path"),
+                _ if is_placed => format!("{held}, moved"),
+                _ => held,
+            }
+        }
         "loop" => format!("{a}, looped"),
         "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
         "layers" => format!("{a} with {b}"),

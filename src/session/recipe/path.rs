@@ -6,8 +6,8 @@ use super::{Outcome, Slot, Source};
 use crate::math::Planar;
 use crate::metrics::Metric;
 use crate::path::{
-    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Orientation, PathEditor, Road,
-    Timing, Waypoint,
+    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Offset, Orientation, PathEditor,
+    Road, SplineEnds, Timing, Waypoint,
 };
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -165,6 +165,7 @@ impl Paths {
             control_points: params.number(Key::ControlPoints) as usize,
             smoothing: params.number(Key::PathSmoothing),
             pin_ends: false,
+            ends: spline_ends(params),
         };
         let mut inputs = PathInputs {
             fitted: self.fitted(motion, options)?,
@@ -196,6 +197,15 @@ impl Paths {
     }
 }
 
+/// Whose control points a path has that is fitted or drawn.
+#[must_use]
+pub fn spline_ends(params: &Params) -> SplineEnds {
+    match params.text(Key::PathSpline) {
+        "uniform" => SplineEnds::Uniform,
+        _ => SplineEnds::Clamped,
+    }
+}
+
 fn carry_options(params: &Params) -> CarryOptions {
     CarryOptions {
         timing: match params.text(Key::PathKeep) {
@@ -206,6 +216,10 @@ fn carry_options(params: &Params) -> CarryOptions {
         orientation: match params.text(Key::PathFacing) {
             "world" => Orientation::World,
             _ => Orientation::Path,
+        },
+        offset: match params.text(Key::PathOffset) {
+            "world" => Offset::World,
+            _ => Offset::Path,
         },
     }
 }

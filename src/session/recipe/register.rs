@@ -9,6 +9,7 @@ pub use pairs::{MOST_ALSO, write_also, write_pairs};
 pub(in crate::session) use pairs::{read_also, read_pins, read_weights};
 pub(in crate::session) use registrar::Registrars;
 
+use super::blend::weight_law;
 use super::feet::{slide_before, with_feet};
 use super::pair::Pair;
 use super::{Outcome, Slot, Source, Transition};
@@ -113,6 +114,8 @@ enum Made {
     Join {
         /// Where it begins and ends, seconds in A.
         part_secs: [Option<f64>; 2],
+        /// How the weight moves from A to B meanwhile.
+        law: WeightLaw,
     },
 }
 
@@ -121,6 +124,7 @@ impl Made {
         if params.text(Key::WarpMode) == "join" {
             return Ok(Self::Join {
                 part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
+                law: weight_law(params),
             });
         }
         let keys = read_weights(params.text(Key::WarpCurve))?;
@@ -300,11 +304,10 @@ impl RegisterInputs {
         Ok([leave, arrive])
     }
 
-    fn join(&self, [leave, arrive]: [usize; 2]) -> Result<Draft, String> {
+    fn join(&self, [leave, arrive]: [usize; 2], law: WeightLaw) -> Result<Draft, String> {
         let [a, b] = self.sources();
         let [contacts_a, contacts_b] = self.contacts();
         let warp = self.found.registration.warp();
-        let law = WeightLaw::Smooth;
         let (joined, during, contacts) = if self.is_plain {
             let enter = (warp.at(leave as f64).round().max(0.0)) as usize;
             let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
@@ -356,9 +359,9 @@ impl RegisterInputs {
         let fps = pair.a.clip.fps();
         let (draft, part, is_join) = match &self.made {
             Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
-            Made::Join { part_secs } => {
+            Made::Join { part_secs, law } => {
                 let part = self.part(*part_secs)?;
-                (self.join(part)?, part.map(|frame| frame as f64), true)
+                (self.join(part, *law)?, part.map(|frame| frame as f64), true)
             }
         };
         let Draft {

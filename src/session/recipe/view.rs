@@ -1,10 +1,15 @@
-//! The View lab: a clip as it is, or with its planted feet held, and what there is to say of it in numbers.
+//! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
 
 use super::Outcome;
 use super::feet::{locking, slide_before};
+use super::pair::source_of;
+use crate::math::Planar;
 use crate::metrics::{ClipMeter, Metric, SlideMeter};
+use crate::path::{FitOptions, FittedPath};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
+use crate::session::notice::sentence;
+use crate::session::params::{Key, Params};
 use crate::transition::FootLocking;
 use std::sync::Arc;
 
@@ -18,6 +23,7 @@ const PER_SLICE: usize = 500;
 pub(in crate::session) struct ViewInputs {
     motion: Arc<Motion>,
     viewed: Option<Arc<Viewed>>,
+    ground: Ground,
 }
 
 impl PartialEq for ViewInputs {
@@ -27,7 +33,7 @@ impl PartialEq for ViewInputs {
             (None, None) => true,
             _ => false,
         };
-        Arc::ptr_eq(&self.motion, &other.motion) && same_view
+        Arc::ptr_eq(&self.motion, &other.motion) && same_view && self.ground == other.ground
     }
 }
 
@@ -37,12 +43,80 @@ impl ViewInputs {
         self.viewed.is_none()
     }
 
-    /// The clip, with what is known of it by now.
+    /// The clip, with what is known of it by now. Numbers are those of the clip on its own ground: what goes on the spot slides with every step.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        match &self.viewed {
-            None => Ok(Outcome::plain(Arc::clone(&self.motion))),
-            Some(viewed) => viewed.made.clone(),
+        let shown = match &self.viewed {
+            None => Outcome::plain(Arc::clone(&self.motion)),
+            Some(viewed) => viewed.made.clone()?,
+        };
+        let motion = self.ground.moved(&shown.motion)?;
+        Ok(Outcome { motion, ..shown })
+    }
+}
+
+/// What is taken out of the way over the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RootMotion {
+    /// Nothing.
+    World,
+    /// Where the character stands and faces, frame by frame.
+    InPlace,
+    /// Its path and the path's direction: what is left is the residual motion of path editing.
+    Residual,
+}
+
+/// Where on the ground a clip is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ground {
+    root_motion: RootMotion,
+    /// Where the first frame stands, (x, z) in metres, and what it faces, degrees; as it comes where nothing is given.
+    start: [Option<f64>; 2],
+    heading_deg: Option<f64>,
+}
+
+impl Ground {
+    fn of(params: &Params) -> Self {
+        Self {
+            root_motion: match params.text(Key::RootMotion) {
+                "in_place" => RootMotion::InPlace,
+                "residual" => RootMotion::Residual,
+                _ => RootMotion::World,
+            },
+            start: [Key::PlaceX, Key::PlaceZ].map(|key| params.optional(key)),
+            heading_deg: params.optional(Key::PlaceHeading),
         }
+    }
+
+    /// The motion there.
+    fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, String> {
+        let frames = &motion.ground_frames;
+        let mut moves = match self.root_motion {
+            RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => return Ok(Arc::clone(motion)),
+            RootMotion::World => vec![Planar::IDENTITY; frames.len()],
+            RootMotion::InPlace => frames.iter().map(Planar::inverse).collect(),
+            RootMotion::Residual => {
+                let source = source_of(motion);
+                let path = FittedPath::new(Arc::new(source), &FitOptions::default()).map_err(|error| sentence(&error.to_string()))?;
+                path.places().iter().map(|place| place.frame.inverse()).collect()
+            }
+        };
+        let Some(first) = frames.first().zip(moves.first()).map(|(frame, planar)| planar.after(frame)) else {
+            return Ok(Arc::clone(motion));
+        };
+        let wanted = Planar::new(
+            self.heading_deg.map_or(first.yaw, f64::to_radians),
+            self.start[0].unwrap_or(first.shift.x),
+            self.start[1].unwrap_or(first.shift.y),
+        );
+        let there = wanted.after(&first.inverse());
+        for planar in &mut moves {
+            *planar = there.after(planar);
+        }
+        Ok(Arc::new(Motion {
+            clip: Arc::new(motion.clip.transformed_by_frame(&moves)),
+            ground_frames: moves.iter().zip(frames).map(|(planar, frame)| planar.after(frame)).collect(),
+            ..Motion::clone(motion)
+        }))
     }
 }
 
@@ -105,9 +179,10 @@ impl Viewer {
         }
     }
 
-    /// The clip, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
+    /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
     /// comes at once, and again with its numbers.
-    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>, is_held: bool) -> Option<ViewInputs> {
+    pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
+        let is_held = params.is_on(Key::FootLock);
         let viewed = self.known(motion, is_held).or_else(|| {
             let index = self.begin(motion, is_held);
             while motion.clip.frames() <= AT_ONCE && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion)) {
@@ -118,6 +193,7 @@ impl Viewer {
         (viewed.is_some() || !is_held).then(|| ViewInputs {
             motion: Arc::clone(motion),
             viewed,
+            ground: Ground::of(params),
         })
     }
 

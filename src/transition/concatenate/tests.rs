@@ -50,7 +50,18 @@ fn two() -> (Source, Source) {
 
 fn made(a: &Source, leave: usize, b: &Source, enter: usize, how: Inertialization, (align, root): (bool, RootBlend)) -> Concatenation {
     let method = Method::Inertialize(how);
-    concatenate(a, leave, b, enter, &TransitionOptions { method, align, root }).unwrap()
+    concatenate(
+        a,
+        leave,
+        b,
+        enter,
+        &TransitionOptions {
+            align,
+            root,
+            ..TransitionOptions::new(method)
+        },
+    )
+    .unwrap()
 }
 
 /// The largest distance between joints of two clips, and the largest angle.
@@ -205,9 +216,8 @@ fn no_time_is_a_cut() {
             &b,
             10,
             &TransitionOptions {
-                method: Method::Cut,
-                align: true,
                 root,
+                ..TransitionOptions::new(Method::Cut)
             },
         )
         .unwrap();
@@ -242,8 +252,7 @@ fn all_methods_come_through_one_door() {
         &DissolveOptions {
             window,
             law,
-            align: true,
-            root: RootBlend::Velocity,
+            ..DissolveOptions::default()
         },
     )
     .unwrap();

@@ -46,7 +46,11 @@ fn walk_and_run() -> Pair {
 
 impl Pair {
     fn made(&self, method: Method, (align, root): (bool, RootBlend), mistake: Option<Mistake>) -> Concatenation {
-        let options = TransitionOptions { method, align, root };
+        let options = TransitionOptions {
+            align,
+            root,
+            ..TransitionOptions::new(method)
+        };
         let (a, b) = (self.a.source(), self.b.source());
         let made = match mistake {
             Some(mistake) => concatenate_mistaken(a, LEAVE, b, ENTER, &options, mistake),
@@ -99,6 +103,24 @@ fn wrong_places_turn_fly_and_slide() {
     let pair = walk_and_run();
     for (method, right, wrong) in with_and_without(&pair, Mistake::AtanForAtan2) {
         assert!(wrong.spin_deg.unwrap() > right.spin_deg.unwrap() + 140.0, "{method:?} {wrong:?}");
+    }
+    for (method, right, wrong) in with_and_without(&pair, Mistake::DegreesInTransform) {
+        // Half a turn is 180 radians then, which is 53° from where it should be.
+        assert!(wrong.spin_deg.unwrap() > right.spin_deg.unwrap() + 30.0, "{method:?} {wrong:?}");
+    }
+    for method in METHODS {
+        let wrong = pair.made(method, PLACES[0], Some(Mistake::WrongFacingAxis));
+        let (a, b) = (pair.a.source(), pair.b.source());
+        // The first posture stands where A's does, with the shadow of its Y axis on that of A's.
+        let stands = wrong.aligned_b.after(&b.frames()[ENTER]);
+        assert!(stands.shift.distance(a.frames()[LEAVE].shift) < 1e-6);
+        let shadow = |root: Quat| {
+            let axis = root * Vec3::Y;
+            f64::from(axis.x).atan2(axis.z.into())
+        };
+        let (of_a, of_b) = (a.clip().rotations(LEAVE)[0], b.clip().rotations(ENTER)[0]);
+        let apart = wrap_angle(shadow(wrong.aligned_b.rotation() * of_b) - shadow(of_a));
+        assert!(apart.abs() < 1e-3, "{method:?} {apart}");
     }
     for (method, right, wrong) in with_and_without(&pair, Mistake::NoAlignment) {
         assert!(wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 10.0, "{method:?} {wrong:?}");
@@ -166,7 +188,11 @@ fn right_differences_give_the_right_transition() {
         for place in PLACES {
             let right = pair.made(method, place, None);
             let (align, root) = place;
-            let options = TransitionOptions { method, align, root };
+            let options = TransitionOptions {
+                align,
+                root,
+                ..TransitionOptions::new(method)
+            };
             let again = Mixing::new(pair.a.source(), LEAVE, pair.b.source(), ENTER, &options, Mix::Right)
                 .mixed(right.clone())
                 .unwrap();

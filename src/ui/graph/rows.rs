@@ -167,12 +167,16 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if let Some(built) = session.graph_built() {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
         kit::note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
+        if let Some(words) = text::ways_left_out(built) {
+            kit::note_ui(&words, palette.warning, ui);
+        }
         if built.lacks_some() {
             kit::note_ui(text::GRAPH_LACKS_SOME, palette.warning, ui);
         }
     }
     param_row_ui(Key::Prune, &Detail::default(), session, out, ui);
     param_row_ui(Key::MinJump, &Detail::default(), session, out, ui);
+    param_row_ui(Key::MostWaysOut, &Detail::default(), session, out, ui);
 }
 
 /// What the seed does here.
@@ -189,7 +193,15 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(text::WALK, ui);
     let plain = Detail::default();
     param_row_ui(Key::Seed, &seed_detail(session), session, out, ui);
-    param_row_ui(Key::Continuity, &plain, session, out, ui);
+    param_row_ui(Key::GoingOn, &plain, session, out, ui);
+    let compared = session.compare().map(|compare| compare.key);
+    let is_constant = params.text(Key::GoingOn) == "constant";
+    if !is_constant || matches!(compared, Some(Key::GoingOn | Key::Continuity)) {
+        param_row_ui(Key::Continuity, &plain, session, out, ui);
+    }
+    if is_constant || matches!(compared, Some(Key::GoingOn | Key::ContinuityWeight)) {
+        param_row_ui(Key::ContinuityWeight, &plain, session, out, ui);
+    }
     param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
     if params.text(Key::EdgeWeight) == "exponential" {
         param_row_ui(Key::EdgeSigma, &plain, session, out, ui);
@@ -198,7 +210,11 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::WalkMethod, &plain, session, out, ui);
     if params.text(Key::WalkMethod) == "inertialize" {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
+    } else {
+        param_row_ui(Key::WeightLaw, &plain, session, out, ui);
     }
+    param_row_ui(Key::AlignBy, &plain, session, out, ui);
+    param_row_ui(Key::RootBlend, &plain, session, out, ui);
     foot_rows_ui(session, out, ui);
     for key in [Key::Transform, Key::Atan] {
         param_row_ui(key, &plain, session, out, ui);

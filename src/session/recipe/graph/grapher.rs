@@ -75,6 +75,7 @@ fn reaching(options: &GraphOptions) -> GraphOptions {
 fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
     let alike = GraphOptions {
         edge_threshold_cm: known.edge_threshold_cm,
+        most_ways_out: known.most_ways_out,
         ..*options
     };
     alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm

@@ -1,6 +1,9 @@
-use crate::graph::{Construction, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions};
+use crate::graph::{Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions};
+use crate::math::Decay;
 use crate::session::params::{Key, Params, Value};
+use crate::session::recipe::blend::{align_by, root_blend, weight_law};
 use crate::session::recipe::kept::{read_ids, write_ids};
+use crate::transition::{Inertialization, Method, Mistake};
 use glam::DVec2;
 use std::fmt::Write as _;
 
@@ -41,18 +44,28 @@ pub(super) struct GraphKey {
 impl Wanted {
     pub(super) fn of(params: &Params, clips: usize) -> Result<Self, String> {
         let window = params.number(Key::BlendWindow) as usize;
-        let (whole, atan2) = (params.text(Key::Transform) == "whole", params.text(Key::Atan) == "atan2");
-        let mistake = match (whole, atan2) {
-            (true, true) => None,
-            (false, true) => Some(WalkMistake::FirstFrameOnly),
-            (true, false) => Some(WalkMistake::AtanForAtan2),
-            (false, false) => {
-                return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
-            }
+        let of_transform = match params.text(Key::Transform) {
+            "first" => Some(WalkMistake::FirstFrameOnly),
+            "teleport" => Some(WalkMistake::FirstFrameThenRecorded),
+            _ => None,
         };
-        let stitch = match params.text(Key::WalkMethod) {
-            "inertialize" => StitchOptions::inertialize(params.number(Key::HalfLife)),
-            _ => StitchOptions::dissolve(window),
+        let of_angle = match params.text(Key::Atan) {
+            "atan" => Some(Mistake::AtanForAtan2),
+            "degrees" => Some(Mistake::DegreesInTransform),
+            "facing" => Some(Mistake::WrongFacingAxis),
+            _ => None,
+        };
+        if of_transform.is_some() && of_angle.is_some() {
+            return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
+        }
+        let method = match params.text(Key::WalkMethod) {
+            "inertialize" => Method::Inertialize(Inertialization::Offset(Decay::Spring {
+                half_life_secs: params.number(Key::HalfLife),
+            })),
+            _ => Method::Dissolve {
+                window,
+                law: weight_law(params),
+            },
         };
         let visits = read_visits(params.text(Key::GoTo))?;
         if let Some((_, clip)) = visits.iter().find(|(_, clip)| *clip >= clips) {
@@ -73,12 +86,15 @@ impl Wanted {
                     blend_window: window,
                     edge_threshold_cm: params.number(Key::EdgeThreshold),
                     min_jump_secs: params.number(Key::MinJump),
-                    ..GraphOptions::default()
+                    most_ways_out: params.number(Key::MostWaysOut) as usize,
                 },
                 pruned: params.is_on(Key::Prune),
             },
             weights: WeightOptions {
-                continuity: params.number(Key::Continuity),
+                continuity: match params.text(Key::GoingOn) {
+                    "constant" => Continuity::Weight(params.number(Key::ContinuityWeight)),
+                    _ => Continuity::Share(params.number(Key::Continuity)),
+                },
                 law: match params.text(Key::EdgeWeight) {
                     "exponential" => DistanceLaw::Exponential {
                         sigma_cm: params.number(Key::EdgeSigma),
@@ -90,7 +106,12 @@ impl Wanted {
             },
             seed: params.number(Key::Seed) as u64,
             discount: params.number(Key::VisitedDiscount),
-            stitch: StitchOptions { mistake, ..stitch },
+            stitch: StitchOptions {
+                align_by: align_by(params),
+                root: root_blend(params),
+                mistake: of_transform.or(of_angle.map(WalkMistake::Transition)),
+                ..StitchOptions::new(method)
+            },
             foot_lock: params.is_on(Key::FootLock),
             measured_secs: params.number(Key::WalkSeconds),
             visits,
