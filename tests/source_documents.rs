@@ -1,0 +1,563 @@
+//! Each experiment of the four documents that Segue was made to show again, as one link, with what the document reports of it: a course report on motion graphs, a
+//! program for motion path editing, homework on blending and motion matching, and an article on Gleicher's motion path editing.
+//!
+//! Motions are synthesised. Where the homework's own files lie beside the project they are used as well.
+
+mod formats_common;
+
+use glam::{DVec2, Vec3};
+use petgraph::visit::EdgeRef;
+use segue::blend::WeightLaw;
+use segue::graph::{Construction, MotionGraph};
+use segue::math::{Planar, quat, spring};
+use segue::path::SplineEnds;
+use segue::scene::{Colors, Director, Look, Viewport};
+use segue::session::{Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk};
+use std::sync::Arc;
+
+/// An angle by the shorter way round, radians.
+fn wrap_angle(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+/// A link, opened, with all its work done.
+fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.to_owned())).expect("a link is never refused");
+    while session.work() {}
+    let said: Vec<_> = session
+        .notices()
+        .list()
+        .iter()
+        .filter(|notice| notice.level != Level::Info)
+        .collect();
+    assert!(said.is_empty(), "{link}: {said:?}");
+    session
+}
+
+fn outcome(session: &Session, pane: usize) -> &Arc<Outcome> {
+    let pane: &Pane = &session.panes()[pane];
+    assert_eq!(pane.problem, None);
+    pane.outcome.as_ref().expect("a result")
+}
+
+fn motion(session: &Session, pane: usize) -> &Motion {
+    &outcome(session, pane).motion
+}
+
+fn walk(session: &Session, pane: usize) -> &Walk {
+    outcome(session, pane).walk.as_ref().expect("a walk")
+}
+
+fn graph(session: &Session, pane: usize) -> &MotionGraph {
+    walk(session, pane).built.graph()
+}
+
+fn number(session: &Session, pane: usize, id: &str) -> f64 {
+    let metrics = &outcome(session, pane).metrics;
+    let metric = metrics.iter().find(|metric| metric.id == id);
+    metric.and_then(|metric| metric.value).unwrap_or_else(|| panic!("no {id}"))
+}
+
+/// The number in every pane.
+fn numbers(session: &Session, id: &str) -> Vec<f64> {
+    (0..session.panes().len()).map(|pane| number(session, pane, id)).collect()
+}
+
+fn clip(session: &mut Session, id: &str) -> Arc<Motion> {
+    session.make_all();
+    session.library().find(id).and_then(|entry| entry.motion.clone()).expect("a clip")
+}
+
+fn is_rising(values: &[f64]) -> bool {
+    values.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+// The course report: motion graphs.
+
+#[test]
+fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
+    let mut session = opened("lab=view&a=walk_left&place_x=2&place_z=-1&place_heading=90");
+    let first = motion(&session, 0).ground_frames[0];
+    assert!(first.shift.distance(DVec2::new(2.0, -1.0)) < 1e-5 && (first.yaw.to_degrees() - 90.0).abs() < 1e-3);
+    let own = clip(&mut session, "walk_left");
+    let moved = first.after(&own.ground_frames[0].inverse());
+    let (there, here) = (&motion(&session, 0).clip, &own.clip);
+    assert_eq!(there.frames(), here.frames());
+    for frame in (0..here.frames()).step_by(17) {
+        let (p, q) = (there.world_pose(frame), here.world_pose(frame));
+        assert!(
+            p.positions
+                .iter()
+                .zip(&q.positions)
+                .all(|(p, q)| p.distance(moved.apply(*q)) < 1e-4)
+        );
+    }
+}
+
+#[test]
+fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
+    let link = "lab=blend&a=walk&b=run&blend_window=30&root_blend=off&weight_law=linear&align_by=first";
+    let session = opened(link);
+    let made = outcome(&session, 0);
+    let transition = made.transition.expect("a transition");
+    let [a, b] = [Slot::A, Slot::B].map(|slot| made.sources.iter().find(|source| source.slot == slot).expect("a source"));
+    let frame = |secs: f64| (secs * 60.0).round() as usize;
+    let (leave, enter, window) = (
+        frame(transition.leave_a_secs),
+        frame(transition.enter_b_secs),
+        transition.window_frames,
+    );
+    assert_eq!(window, 30);
+    // The first posture of B stands where A's does, and faces there.
+    let placed = b.world_from_clip.after(&b.motion.ground_frames[enter]);
+    let stands = a.motion.ground_frames[leave];
+    assert!(placed.shift.distance(stands.shift) < 1e-4 && wrap_angle(placed.yaw - stands.yaw).abs() < 1e-4);
+    let (clip_a, clip_b) = (&a.motion.clip, b.motion.clip.transformed(&b.world_from_clip));
+    for p in 0..window {
+        let weight = WeightLaw::Linear.alpha((p + 1) as f64 / window as f64) as f32;
+        assert!((weight - (1.0 - (p + 1) as f32 / window as f32)).abs() < 1e-6);
+        let root = clip_b.root_translations()[enter + p].lerp(clip_a.root_translations()[leave + p], weight);
+        assert!(root.distance(made.motion.clip.root_translations()[leave + p]) < 1e-4);
+        let (qa, qb) = (clip_a.rotations(leave + p), clip_b.rotations(enter + p));
+        for (joint, &found) in made.motion.clip.rotations(leave + p).iter().enumerate() {
+            // Toward the nearer of a rotation's two quaternions.
+            let near = if qa[joint].dot(qb[joint]) < 0.0 { -qa[joint] } else { qa[joint] };
+            assert!(quat::angle_between(found, qb[joint].slerp(near, weight)) < 1e-3, "{p} {joint}");
+        }
+    }
+}
+
+const SEGMENTS: &str = "lab=graph&construction=segments&segment_size=60&blend_window=15";
+
+#[test]
+fn segments_have_an_edge_to_the_next_and_to_all_that_are_near() {
+    let session = opened(&format!("{SEGMENTS}&prune=off&clips=walk,walk_left,walk_right&edge_threshold=10"));
+    let whole = walk(&session, 0).built.whole();
+    assert_eq!(whole.options().construction, Construction::Segments { segment_size: 60 });
+    let mut goes_on = 0;
+    for node in whole.graph().node_indices() {
+        let stretch = whole.graph()[node];
+        let length = whole.set().clips()[stretch.clip].clip().frames();
+        let edges: Vec<_> = whole.graph().edges(node).map(|edge| whole.jump(edge.id())).collect();
+        let next = edges.iter().filter(|jump| jump.is_none()).count();
+        // The last segment of a clip has no successor.
+        assert_eq!(next, usize::from(stretch.end < length));
+        goes_on += next;
+        assert!(edges.iter().flatten().all(|jump| jump.distance_cm <= 10.0 && jump.window == 15));
+    }
+    assert!(goes_on > 3 && !whole.jumps().is_empty());
+}
+
+#[test]
+fn a_weight_by_the_distance_itself_prefers_what_fits_worst() {
+    let link = format!("{SEGMENTS}&segment_size=30&edge_threshold=20&continuity=0&edge_weight=");
+    let [right, wrong] = ["inverse", "proportional"].map(|law| opened(&format!("{link}{law}")));
+    let graph = graph(&wrong, 0);
+    for node in graph.graph().node_indices() {
+        let ways: Vec<(f64, f64)> = (walk(&wrong, 0).choices.probabilities(node))
+            .filter_map(|(edge, p)| Some((graph.jump(edge)?.distance_cm, p)))
+            .collect();
+        let sum: f64 = ways.iter().map(|way| way.0).sum();
+        assert!(ways.iter().all(|(distance, p)| (p - distance / sum).abs() < 1e-6));
+    }
+    let mean_cm = |session: &Session| {
+        let walk = walk(session, 0);
+        let taken = walk
+            .passed
+            .iter()
+            .filter_map(|passed| walk.built.graph().jumps().get(passed.stay.jump?));
+        let distances: Vec<f64> = taken.map(|jump| jump.distance_cm).collect();
+        distances.iter().sum::<f64>() / distances.len() as f64
+    };
+    assert!(mean_cm(&right) < mean_cm(&wrong), "{} {}", mean_cm(&right), mean_cm(&wrong));
+}
+
+#[test]
+fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways_lead_out() {
+    let link = format!("{SEGMENTS}&edge_weight=proportional&going_on=constant&compare=continuity_weight:1,1000");
+    let session = opened(&link);
+    for (pane, weight) in [1.0, 1_000.0].into_iter().enumerate() {
+        let (graph, walk) = (graph(&session, pane), walk(&session, pane));
+        let mut by_ways = Vec::new();
+        for node in graph.graph().node_indices() {
+            let distances: Vec<f64> = (walk.choices.probabilities(node))
+                .filter_map(|(edge, _)| Some(graph.jump(edge)?.distance_cm))
+                .collect();
+            let sum: f64 = distances.iter().sum();
+            let stays = walk.choices.p_continue(graph, node);
+            if stays > 0.0 && stays < 1.0 {
+                assert!((stays - weight / (weight + sum)).abs() < 1e-6);
+                by_ways.push((distances.len(), stays));
+            }
+        }
+        by_ways.sort_by_key(|way: &(usize, f64)| way.0);
+        let [few, many] = [by_ways.first(), by_ways.last()].map(|way| way.expect("a choice").1);
+        assert!(few > many, "{few} {many}");
+    }
+    let per_min = numbers(&session, "seams_per_min");
+    assert!(per_min[0] > per_min[1], "{per_min:?}");
+}
+
+#[test]
+fn a_long_window_drags_and_a_short_one_bursts() {
+    let session = opened("lab=graph&construction=segments&segment_size=60&compare=blend_window:30,15,10");
+    let (lag, burst) = (numbers(&session, "walk_lag_s"), numbers(&session, "walk_seam_dps"));
+    assert!(lag[0] > lag[1] && lag[1] > lag[2], "{lag:?}");
+    assert!(is_rising(&burst), "{burst:?}");
+}
+
+#[test]
+fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
+    let session = opened("lab=graph&construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20");
+    let built = [0, 1].map(|pane| walk(&session, pane).built.clone());
+    let jumps = [0, 1].map(|pane| built[pane].whole().jumps().len());
+    let rings = [0, 1].map(|pane| built[pane].rings().to_vec());
+    // What there is to compare and to choose from grows.
+    assert!(jumps[1] > 2 * jumps[0]);
+    assert_eq!(
+        session.panes()[2].problem.as_deref(),
+        Some("A blend window of 20 frames leaves nothing of a segment of 20: lower the window to 19 or raise the segment to 21.")
+    );
+}
+
+#[test]
+fn the_higher_the_weight_of_going_on_the_longer_a_clip_stays() {
+    let session = opened("lab=graph&compare=continuity:0.3,0.8,0.98");
+    let per_min = numbers(&session, "seams_per_min");
+    assert!(per_min[0] > per_min[1] && per_min[1] > per_min[2], "{per_min:?}");
+}
+
+#[test]
+fn a_wrong_angle_spins() {
+    let session = opened("lab=graph&compare=atan:atan2,atan,degrees");
+    let spins = numbers(&session, "spins");
+    assert_eq!(spins[0], 0.0);
+    assert!(spins[1..].iter().all(|&spins| spins > 5.0), "{spins:?}");
+}
+
+#[test]
+fn a_transform_of_the_first_frame_alone_flashes() {
+    let session = opened("lab=graph&compare=transform:whole,first,teleport");
+    let [flashes, spins, slides] = ["flashes", "spins", "walk_skate_cm"].map(|id| numbers(&session, id));
+    assert_eq!((flashes[0], spins[0]), (0.0, 0.0));
+    assert!(flashes[1] > 0.0 && flashes[2] > 0.0);
+    assert!(slides[2] > slides[0] && slides[1] > slides[0]);
+    // Whatever is literally left as it was recorded stands where it was recorded.
+    let walk = walk(&session, 2);
+    for passed in walk.passed.iter() {
+        let settled = passed.start + passed.seam.map_or(0, |seam| seam.frames);
+        if settled < passed.end.min(walk.motion.ground_frames.len()) {
+            let recorded = &walk.built.cast().motions()[passed.stay.clip];
+            let stood = recorded.ground_frames[passed.stay.from + settled - passed.start];
+            let stands = walk.motion.ground_frames[settled];
+            assert!(stands.shift.distance(stood.shift) < 1e-3, "{stands:?} {stood:?}");
+        }
+    }
+}
+
+#[test]
+fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
+    let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=30&continuity=0.5";
+    let sessions =
+        ["", "&root_blend=off", "&root_blend=off&align_by=first", "&weight_law=linear"].map(|more| opened(&format!("{link}{more}")));
+    let places = |session: &Session| motion(session, 0).ground_frames.clone();
+    let usual = places(&sessions[0]);
+    for (other, name) in sessions[1..].iter().zip(["root", "alignment", "law"]) {
+        let found = places(other);
+        assert_eq!(found.len(), usual.len());
+        assert_eq!(
+            walk(other, 0).passed.len(),
+            walk(&sessions[0], 0).passed.len(),
+            "{name}: the same way"
+        );
+        assert!(found.iter().zip(&usual).any(|(p, q)| p.shift.distance(q.shift) > 1e-3), "{name}");
+    }
+}
+
+// The program for path editing.
+
+#[test]
+fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
+    let mut session = opened("lab=view&a=walk_left&compare=root_motion:world,in_place,residual");
+    let own = clip(&mut session, "walk_left");
+    assert!(Arc::ptr_eq(&motion(&session, 0).clip, &own.clip));
+    let still = motion(&session, 1);
+    let facing = segue::clip::character_frames(&still.clip, &still.roles);
+    for (frame, told) in facing.iter().zip(&still.ground_frames) {
+        for stands in [frame, told] {
+            assert!(stands.shift.length() < 1e-3 && stands.yaw.abs() < 1e-3, "{stands:?}");
+        }
+    }
+    // Beside its path the hips sway, and stay within a few centimetres.
+    let residual = &motion(&session, 2).ground_frames;
+    let far = residual
+        .iter()
+        .map(|frame| (frame.shift - residual[0].shift).length())
+        .fold(0.0, f64::max);
+    let turned = residual
+        .iter()
+        .map(|frame| wrap_angle(frame.yaw - residual[0].yaw).abs())
+        .fold(0.0, f64::max);
+    assert!(far > 0.005 && far < 0.25 && turned < 0.6);
+    // Heights and the body's own pose stay.
+    for pane in [1, 2] {
+        let there = &motion(&session, pane).clip;
+        for frame in (0..there.frames()).step_by(13) {
+            assert!((there.root_translations()[frame].y - own.clip.root_translations()[frame].y).abs() < 1e-5);
+            assert_eq!(there.rotations(frame)[1..], own.clip.rotations(frame)[1..]);
+        }
+    }
+}
+
+#[test]
+fn four_control_points_make_a_path_whose_residual_is_carried_along() {
+    let session = opened("lab=path&a=walk_left&control_points=4");
+    let own = outcome(&session, 0).path.as_ref().expect("a path");
+    assert_eq!(own.road.spline().points().len(), 4);
+    let error = number(&session, 0, "fit_rms_cm");
+    let finer = number(&opened("lab=path&a=walk_left&control_points=16"), 0, "fit_rms_cm");
+    assert!(finer < error);
+    // Not edited, it is the recording.
+    let recorded = &outcome(&session, 0).sources[0].motion.clip;
+    let made = &motion(&session, 0).clip;
+    let off = made
+        .root_translations()
+        .iter()
+        .zip(recorded.root_translations())
+        .map(|(p, q)| p.distance(*q));
+    assert!(off.fold(0.0, f32::max) < 1e-3);
+}
+
+#[test]
+fn a_timewarp_compares_five_frames_and_rises_by_at_most_two_in_a_row() {
+    let session = opened("lab=register&a=walk&b=slow_walk");
+    let params = session.params();
+    assert_eq!(
+        (
+            params.number(Key::RegistrationWindow),
+            params.number(Key::SlopeLimit),
+            params.number(Key::WarpWeight)
+        ),
+        (5.0, 2.0, 0.5)
+    );
+    let registered = outcome(&session, 0).registered.as_ref().expect("a registration");
+    let path: Vec<(usize, usize)> = registered.registration.path().cells.clone();
+    let (mut across, mut along) = (0, 0);
+    for step in path.windows(2) {
+        let (da, db) = (step[1].0 - step[0].0, step[1].1 - step[0].1);
+        assert!((da, db) == (1, 1) || (da, db) == (1, 0) || (da, db) == (0, 1));
+        across = if db == 0 { across + 1 } else { 0 };
+        along = if da == 0 { along + 1 } else { 0 };
+        assert!(across <= 2 && along <= 2);
+    }
+    // The average of the pair.
+    assert!(registered.beats.iter().all(|beat| (beat.weights[1] - 0.5).abs() < 1e-9));
+}
+
+#[test]
+fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
+    let of = |law: &str| {
+        let session = opened(&format!("lab=register&a=walk&b=run&warp_mode=join&weight_law={law}"));
+        let made = outcome(&session, 0).clone();
+        let transition = made.transition.expect("a transition");
+        let from = (transition.start_secs * made.motion.clip.fps()).round() as usize;
+        let beats = &made.registered.as_ref().expect("a registration").beats;
+        beats[from..from + transition.window_frames]
+            .iter()
+            .map(|beat| beat.weights[1])
+            .collect::<Vec<f64>>()
+    };
+    let (linear, smooth) = (of("linear"), of("smooth"));
+    assert!(linear.len() > 10 && linear.len() == smooth.len());
+    assert!(is_rising(&linear) && linear[0] < 0.05 && linear[linear.len() - 1] > 0.95);
+    // The same way along the registration, by the other law.
+    for (t, weight) in linear.iter().zip(&smooth) {
+        assert!((weight - (1.0 - WeightLaw::Smooth.alpha(*t))).abs() < 1e-6, "{t}: {weight}");
+    }
+}
+
+#[test]
+fn the_camera_stays_with_any_character_that_plays_along() {
+    let link = "lab=path&a=walk&others=walk_left,walk_right&play=off&t=2&follow=";
+    for (follow, other) in [
+        ("other&follow_other=1", Some(0)),
+        ("other&follow_other=2", Some(1)),
+        ("result", None),
+        ("other&follow_other=3", None),
+    ] {
+        let session = opened(&format!("{link}{follow}"));
+        let followed = match other {
+            Some(other) => session.company()[other].motion.clone().expect("it is there"),
+            None => outcome(&session, 0).motion.clone(),
+        };
+        let stage = Director::default().stage(&session, &[(0, Viewport::default())], 1.0, Look::DARK, &Colors::default(), 0.0);
+        let (focus, stands) = (stage.panes[0].focus, followed.standing_at(2.0).origin());
+        assert!(focus.distance(stands) < 0.2, "{follow}: {focus} {stands}");
+    }
+}
+
+// The article on Gleicher's motion path editing.
+
+const CURVE: &str = "lab=path&a=walk&path=AAgAABB-MHRKZmJQdDZ8Fn4J";
+
+#[test]
+fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
+    let session = opened(&format!("{CURVE}&compare=path_offset:path,world"));
+    let mut most: f64 = 0.0;
+    for (pane, is_local) in [(0, true), (1, false)] {
+        let made = outcome(&session, pane);
+        let path = made.path.as_ref().expect("a path");
+        assert!(path.is_edited);
+        let old = path.fitted.places().iter().zip(&path.fitted.motion().ground_frames);
+        for ((old, stood), (place, stands)) in old.zip(path.places.iter().zip(&made.motion.ground_frames)) {
+            let local = |place: &Planar, stands: &Planar| place.inverse().apply_ground(stands.shift);
+            let found = local(&place.frame, stands).distance(local(&old.frame, stood));
+            let world = (stands.shift - place.frame.shift).distance(stood.shift - old.frame.shift);
+            assert!((if is_local { found } else { world }) < 1e-4);
+            most = if is_local { most } else { most.max(found) };
+        }
+    }
+    // The sway of the hips is a few centimetres.
+    assert!(most > 0.01);
+}
+
+#[test]
+fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
+    let link = "lab=path&a=walk_left&control_points=4&compare=path_spline:clamped,uniform";
+    let session = opened(link);
+    let [clamped, uniform] = [0, 1].map(|pane| outcome(&session, pane).path.as_ref().expect("a path").road.spline().clone());
+    assert_eq!(uniform.ends(), SplineEnds::Uniform);
+    assert_eq!(clamped.position(0.0), clamped.points()[0]);
+    let p = uniform.points();
+    // The matrix of the article: (1, 4, 1, 0)/6 at 0 and (0, 1, 4, 1)/6 at 1.
+    let ends = [(p[0] + p[1] * 4.0 + p[2]) / 6.0, (p[1] + p[2] * 4.0 + p[3]) / 6.0];
+    for (u, place) in [(0.0, ends[0]), (1.0, ends[1])] {
+        assert!(uniform.position(u).distance(place) < 1e-9 && uniform.position(u).distance(clamped.position(u)) < 1e-9);
+    }
+    assert!(uniform.position(0.0).distance(p[0]) > 0.1);
+}
+
+#[test]
+fn a_body_faces_along_an_edited_path_or_as_it_did() {
+    let session = opened(&format!("{CURVE}&compare=path_facing:path,world"));
+    let turned = |pane: usize| {
+        let frames = &motion(&session, pane).ground_frames;
+        frames
+            .iter()
+            .map(|frame| wrap_angle(frame.yaw - frames[0].yaw).abs())
+            .fold(0.0, f64::max)
+    };
+    assert!(turned(0) > 0.4 && turned(1) < 0.3);
+}
+
+// The homework: blending, loops, transitions, matching.
+
+#[test]
+fn two_gaits_blend_to_one_and_a_half_metres_per_second() {
+    let session = opened("lab=speed&a=walk&b=run&speed=1.5");
+    let made = outcome(&session, 0);
+    let Some(CycleMade::Gait { asked_mps, .. }) = made.cycle.map(|cycle| cycle.made) else {
+        panic!("a gait")
+    };
+    let frames = &made.motion.ground_frames;
+    let way = frames[0].shift.distance(frames[frames.len() - 1].shift);
+    let speed = way / made.duration_secs();
+    assert!((asked_mps - 1.5).abs() < 1e-9 && (speed / 1.5 - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn springs_from_both_ends_close_a_loop_but_for_what_is_left_of_them() {
+    let session = opened("lab=loop&a=walk&loop_from=0.5&loop_to=1.4&half_life=0.2&loop_ratio=0.5&compare=loop_method:exact,both");
+    let (before, seam) = (numbers(&session, "loop_before_deg"), numbers(&session, "loop_seam_deg"));
+    // The springs reach the other end: (1 + yT) exp(-yT) of the difference is left there.
+    let left = |secs: f64| {
+        let yt = 2.0 * std::f64::consts::LN_2 / 0.2 * secs;
+        (1.0 + yt) * (-yt).exp()
+    };
+    assert!(seam[0] < 0.01 && seam[1] > 0.1 && seam[1] < before[1] * 2.0 * left(0.9));
+}
+
+#[test]
+fn a_half_life_leaves_six_tenths() {
+    // (1 + ln 4 · t/h · …): what a critically damped spring has left at its half-life, and when it has half.
+    let left = |t: f64| (1.0 + 2.0 * std::f64::consts::LN_2 * t) * (-2.0 * std::f64::consts::LN_2 * t).exp();
+    assert!((left(1.0) - 0.597).abs() < 1e-3 && (left(1.211) - 0.5).abs() < 1e-3);
+    assert!((spring::secs_until(0.27, 0.5) - 1.211 * 0.27).abs() < 1e-3);
+    let session = opened("lab=transition&a=walk&b=run&compare=half_life:0.1,0.27,0.6");
+    let lag = numbers(&session, "lag_s");
+    assert!(is_rising(&lag), "{lag:?}");
+}
+
+#[test]
+fn a_frame_by_hand_slides_and_a_foot_lock_mends_it() {
+    let link = "lab=transition&a=walk&b=run&half_life=0.27&mix_frame_b=20";
+    let [free, held] = ["", "&foot_lock=on"].map(|more| opened(&format!("{link}{more}")));
+    let entered = outcome(&free, 0).transition.expect("a transition").enter_b_secs;
+    assert!((entered * 60.0 - 20.0).abs() < 1e-6);
+    let slides = [&free, &held].map(|session| number(session, 0, "skate_cm"));
+    assert!(slides[1] < 0.5 * slides[0], "{slides:?}");
+    // The homework weighs positions by 0.6 and rotations by 0.4.
+    let params = free.params();
+    assert_eq!((params.number(Key::MatchPosition), params.number(Key::MatchRotation)), (0.6, 0.4));
+}
+
+#[test]
+fn velocities_divided_by_the_rate_stop_what_moves() {
+    let session = opened("lab=transition&a=walk&b=run&half_life=0.27&compare=mistake:none,velocity");
+    let seams = numbers(&session, "seam_dps");
+    assert!(seams[1] > 2.0 * seams[0], "{seams:?}");
+}
+
+#[test]
+fn a_character_that_is_driven_turns_as_the_stick_does() {
+    let link = "lab=match&hysteresis=votes&search_by=tree&scenario=";
+    for (scenario, degrees) in [("spin", 180.0), ("left", 90.0), ("right", -90.0)] {
+        let session = opened(&format!("{link}{scenario}"));
+        let frames = &motion(&session, 0).ground_frames;
+        let (mut turned, mut farthest) = (0.0_f64, 0.0_f64);
+        for pair in frames.windows(2) {
+            turned += wrap_angle(pair[1].yaw - pair[0].yaw).to_degrees();
+            farthest = if turned.abs() > farthest.abs() { turned } else { farthest };
+        }
+        // Half a turn may be made either way round.
+        let off = if scenario == "spin" {
+            farthest.abs() - degrees
+        } else {
+            farthest - degrees
+        };
+        assert!(off.abs() < 25.0, "{scenario}: {farthest}");
+    }
+}
+
+#[test]
+fn every_search_finds_the_same_frames() {
+    let made = ["tree", "boxes", "scan"].map(|by| opened(&format!("lab=match&scenario=left&search_by={by}")));
+    let roots = |session: &Session| motion(session, 0).clip.root_translations().to_vec();
+    let first: Vec<Vec3> = roots(&made[0]);
+    assert!(first.len() > 100 && made[1..].iter().all(|other| roots(other) == first));
+}
+
+/// The homework's own files, where they are.
+#[test]
+fn the_homeworks_own_files_are_shown_in_place_and_on_a_path() {
+    let Some(data) = formats_common::shared_data() else { return };
+    for name in ["walk_forward.bvh", "run_forward.bvh"] {
+        let Ok(bytes) = std::fs::read(data.join("games105").join(name)) else {
+            continue;
+        };
+        let mut session = Session::new();
+        session.load(name, bytes.into()).expect("a file that can be read");
+        let id = session.params().text(Key::A).to_owned();
+        assert!(id.starts_with(name.trim_end_matches(".bvh")), "{id}");
+        session
+            .apply(Command::OpenLink(format!("lab=view&a={id}&root_motion=in_place")))
+            .expect("a link is never refused");
+        while session.work() {}
+        let still = motion(&session, 0);
+        assert!(still.ground_frames.iter().all(|frame| frame.shift.length() < 1e-3));
+        session.apply(Command::Set(vec![(Key::Lab, Value::Choice("path"))])).expect("a lab");
+        while session.work() {}
+        assert!(number(&session, 0, "fit_rms_cm") < 5.0);
+    }
+}
