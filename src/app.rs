@@ -95,8 +95,6 @@ pub(crate) struct Segue {
     vault: Vault,
     /// What the tasks gave that the page's API began.
     read: BTreeMap<u64, Option<Result<api::LoadedClips, String>>>,
-    /// The bundled takes that are under way, by id.
-    samples: Vec<&'static str>,
     frames: Frames,
     events: Vec<Event>,
     told: Told,
@@ -179,7 +177,6 @@ impl Segue {
             inbox,
             address: AddressBar::default(),
             downloads: Downloads::default(),
-            samples: Vec::new(),
             frames: Frames::default(),
             events: Vec::new(),
             told: Told::default(),
@@ -295,7 +292,7 @@ impl Segue {
         let soon = self.session.jobs().iter().any(|job| job.task.is_none()) || matches!(self.session.lesson(), Some(Lesson::Waiting));
         self.keeper.is_waiting()
             || !self.downloads.is_empty()
-            || !self.samples.is_empty()
+            || !self.session.awaited_samples().is_empty()
             || self.session.is_reading_small()
             || self.picture.is_at_work()
             || soon

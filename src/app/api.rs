@@ -400,7 +400,7 @@ impl Segue {
     /// What is under way.
     fn jobs(&self) -> Vec<JobInfo> {
         let computed = self.session.jobs().into_iter().map(|job| (job.name, Some(job.progress)));
-        let samples = self.samples.iter().map(|id| ((*id).to_owned(), None));
+        let samples = self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
         computed
             .chain(self.downloads.under_way())
             .chain(samples)

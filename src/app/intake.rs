@@ -30,11 +30,12 @@ impl Segue {
             Incoming::Copied => self.session.say(Level::Info, self.copied),
             Incoming::Failed { reason } => self.session.say(Level::Error, reason),
             Incoming::Sample { sample, result } => {
-                self.samples.retain(|id| *id != sample.id);
-                let loaded = result.and_then(|packed| self.session.load_sample(sample, &packed).map_err(|error| error.to_string()));
-                if let Err(reason) = loaded {
-                    self.session
-                        .say(Level::Error, format!("{} could not be loaded: {reason}.", sample.label));
+                let loaded = result.map(|packed| self.session.load_sample(sample, &packed));
+                match loaded {
+                    Ok(Ok(())) => {}
+                    // It was said.
+                    Ok(Err(error)) => log::info!("{} was not loaded: {error}", sample.label),
+                    Err(reason) => self.session.fail_sample(sample, &reason),
                 }
             }
             Incoming::Lesson { source, result } => {
@@ -126,12 +127,7 @@ impl Segue {
     pub(super) fn send_requests(&mut self) {
         for request in self.session.take_requests() {
             match request {
-                Request::Sample(sample) => {
-                    if !self.samples.contains(&sample.id) {
-                        self.samples.push(sample.id);
-                        platform::load_sample(sample, &self.inbox);
-                    }
-                }
+                Request::Sample(sample) => platform::load_sample(sample, &self.inbox),
                 Request::Lesson(source) => platform::load_lesson(&source, &self.inbox),
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {

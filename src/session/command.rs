@@ -1,9 +1,9 @@
 use super::document::NoResult;
 use super::lesson::Source;
-use super::library::Sample;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::recipe::Slot;
+use super::samples::{Sample, SampleSet};
 use crate::formats::{ImportError, ImportOptions};
 use crate::matching::Control;
 use crate::skeleton::Role;
@@ -21,6 +21,8 @@ pub enum Command {
     OpenLink(String),
     /// Puts a clip into a slot.
     Assign(Slot, String),
+    /// Loads all takes of a bundled set into the library.
+    LoadSamples(&'static SampleSet),
     /// Takes a clip out of the library.
     Remove(String),
     /// Gives a clip another name.
@@ -97,7 +99,7 @@ pub enum CommandError {
 /// What the document needs from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`].
+    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to [`super::Session::fail_sample`] why there are none.
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load_fetched`].
     Fetch(String),

@@ -2,6 +2,7 @@
 
 use super::motion::Motion;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
+use super::samples::Sample;
 use crate::formats::{FileKind, ImportOptions};
 use crate::skeleton::Roles;
 use crate::skin::{Character, SkinnedMesh};
@@ -49,21 +50,6 @@ impl SourceFile {
     }
 }
 
-/// A bundled take.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Sample {
-    /// Its id in the library and in links.
-    pub id: &'static str,
-    /// Its name on screen.
-    pub label: &'static str,
-    /// Its file, packed with gzip, in the folder of samples.
-    pub file: &'static str,
-}
-
-/// The credit that goes with the bundled takes.
-pub const SAMPLES_CREDIT: &str =
-    "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
-
 /// A clip in the library.
 #[derive(Clone, Debug)]
 pub struct Entry {
@@ -73,7 +59,7 @@ pub struct Entry {
     pub name: String,
     /// Where it comes from.
     pub origin: Origin,
-    /// The motion; `None` for a sample that was not loaded yet, a preset that was not needed yet, and a file that is being read.
+    /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet, and a file that is being read.
     pub motion: Option<Arc<Motion>>,
     /// The mesh that the file has for the clip's skeleton.
     pub mesh: Option<Arc<SkinnedMesh>>,

@@ -57,6 +57,7 @@
 //! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it
 //! names a file, with the first digits of its SHA-256, and who opens the link must have that file.
 
+mod clip_sets;
 mod command;
 mod compare;
 mod document;
@@ -71,14 +72,16 @@ mod params;
 pub mod reading;
 mod recipe;
 mod report;
+mod samples;
 mod saved;
 pub mod transport;
 mod undo;
 
+pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
-pub use library::{Entry, Library, Origin, SAMPLES_CREDIT, Sample, SourceFile, file_id, split_reference};
+pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
@@ -90,4 +93,5 @@ pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, R
 pub use recipe::{HandTag, own_words, write_tags};
 pub use recipe::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use report::{ReportFacts, report};
+pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
 pub use saved::{Saved, SavedEntry};

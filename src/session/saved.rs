@@ -47,6 +47,9 @@ pub struct SavedEntry {
     pub file: Option<SavedFile>,
     /// Roles that were corrected by hand.
     pub roles: Option<Roles>,
+    /// Whether it is a bundled take. In what was stored without this mark, all takes are listed, whether they were asked for or not.
+    #[serde(default)]
+    pub is_sample: bool,
 }
 
 /// A file without its bytes.
@@ -95,6 +98,7 @@ impl From<&Entry> for SavedEntry {
             name: entry.name.clone(),
             file,
             roles: entry.roles_by_hand.clone(),
+            is_sample: matches!(entry.origin, Origin::Sample(_)),
         }
     }
 }
@@ -117,6 +121,7 @@ mod tests {
                 options: ImportOptions::default(),
             }),
             roles: None,
+            is_sample: false,
         };
         Saved {
             query: query.to_owned(),

@@ -244,11 +244,7 @@ impl Session {
     /// The database that the parameters ask for; `None` while it is built.
     pub(super) fn match_database(&mut self, params: &Params) -> Result<Option<Arc<Database>>, String> {
         let ids = read_ids(params.text(Key::MatchClips)).ok_or("The list of clips cannot be read: its brackets do not close.")?;
-        let mut clips = Vec::new();
-        for id in &ids {
-            self.bring(id);
-            clips.push(self.motion_of(id)?);
-        }
+        let clips = self.motions_of(&ids)?;
         let tags = read_tags(params.text(Key::Tags))?;
         filter_of(params)?;
         let database = self.driver.database(&MatchSource::new(clips, params))?;

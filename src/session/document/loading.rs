@@ -4,15 +4,13 @@ use super::slots::Came;
 use super::{Job, Session};
 use crate::formats::{FileKind, ImportError, ImportOptions, acclaim};
 use crate::session::command::{CommandError, Request};
-use crate::session::library::{Entry, Origin, Sample, SourceFile, file_id, file_stem};
+use crate::session::library::{Entry, Origin, SourceFile, file_id, file_stem};
 use crate::session::notice::{Level, sentence};
 use crate::session::params::{Key, Value};
 use crate::session::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
+use crate::session::samples::Sample;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// No bundled take unpacks to more. A damaged file must not fill the memory.
-const LARGEST_SAMPLE: usize = 64 << 20;
 
 /// What a file gave.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,7 +31,7 @@ pub(super) struct Reading {
 
 /// What becomes of what a file gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Purpose {
+pub(super) enum Purpose {
     /// Its clips join the library.
     New(Came),
     /// Its clips are there already, and only want their motion. Those that waited for a skeleton, which has come so, are offered A and B.
@@ -84,7 +82,7 @@ impl Session {
         self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
     }
 
-    fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
+    pub(super) fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
         self.tasks += 1;
         let task = ReadTask {
             id: self.tasks,
@@ -154,15 +152,17 @@ impl Session {
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
+                if let Purpose::Sample(sample) = purpose {
+                    // It would be asked for at once, and so on for ever: the next thing that is done asks for it.
+                    self.fail_sample(sample, &reason);
+                    return Some(Err(reason));
+                }
                 let text = format!("{} could not be read: {reason}.", task.name);
                 if let Purpose::Again(_) = purpose {
                     self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
                 }
                 self.say(Level::Error, text);
-                // A bundled take would be asked for at once, and so on for ever: the next thing that is done asks for it.
-                if !matches!(purpose, Purpose::Sample(_)) {
-                    self.refresh();
-                }
+                self.refresh();
                 return Some(Err(reason));
             }
         };
@@ -198,13 +198,7 @@ impl Session {
                 return None;
             }
             Purpose::New(came) => self.admit(report, &content, &task.setup, came),
-            Purpose::Sample(sample) => {
-                let taken = self.take_sample(sample, report);
-                if let Err(error) = &taken {
-                    self.say(Level::Error, error.to_string());
-                }
-                taken
-            }
+            Purpose::Sample(sample) => self.take_sample(sample, report).map(|()| Loaded::default()),
         };
         Some(loaded.map_err(|error| error.to_string()))
     }
@@ -565,48 +559,6 @@ impl Session {
         }
         self.history.before_change(&self.params, &library, None);
         Ok(())
-    }
-
-    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file. Where files are read elsewhere, so is it, and is
-    /// not there yet.
-    ///
-    /// # Errors
-    /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was read.
-    pub fn load_sample(&mut self, sample: &'static Sample, packed: &[u8]) -> Result<(), ImportError> {
-        let setup = ReadSetup {
-            options: ImportOptions {
-                max_bytes: LARGEST_SAMPLE,
-                ..ImportOptions::default()
-            },
-            ..ReadSetup::default()
-        };
-        let Some(read) = self.reads else {
-            let size = packed.len() as u64;
-            self.begin(sample.file, Content::Here(Arc::from(packed)), size, setup, Purpose::Sample(sample));
-            return Ok(());
-        };
-        let report = read(sample.file, packed, &setup, &mut |_| true).unwrap_or_default();
-        self.take_sample(sample, report).map(drop)
-    }
-
-    /// Gives a bundled take its motion.
-    fn take_sample(&mut self, sample: &'static Sample, report: ReadReport) -> Result<Loaded, ImportError> {
-        let clips = report.files.into_iter().next().map(|file| file.result).transpose()?;
-        if let Some(mut clips) = clips.filter(|clips| !clips.clips.is_empty()) {
-            let clip = clips.clips.swap_remove(0);
-            self.library.change(sample.id, |entry| {
-                entry.motion = Some(Arc::new(clip.motion.with_roles(entry.roles_by_hand.as_ref())));
-                entry.about = Some(clip.about);
-                entry.warnings = clips.warnings;
-            });
-            self.refresh();
-        }
-        Ok(Loaded::default())
-    }
-
-    /// Whether a bundled take has come and is being read.
-    pub(super) fn has_come(&self, sample: &'static Sample) -> bool {
-        self.reading.iter().any(|reading| reading.purpose == Purpose::Sample(sample))
     }
 }
 

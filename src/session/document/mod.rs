@@ -1,5 +1,6 @@
 //! The document itself: what it holds, and what commands do to it.
 
+mod bundled;
 mod company;
 mod driving;
 mod going_round;
@@ -21,7 +22,7 @@ pub use teaching::{Lesson, LessonPage};
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
 use super::lesson::Shelf;
-use super::library::{Entry, Library, Origin, Sample};
+use super::library::{Entry, Library, Origin};
 use super::link;
 use super::motion::{FeetReader, Motion};
 use super::notice::{Level, Notices};
@@ -32,35 +33,12 @@ use super::recipe::{
     read_also, read_pins, read_weights,
 };
 use super::recipe::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
+use super::samples;
 use super::transport::Span;
 use super::undo::History;
 use crate::skin::Character;
 use crate::synth;
 use std::sync::Arc;
-
-/// The bundled takes.
-static SAMPLES: [Sample; 4] = [
-    Sample {
-        id: "cmu_jump",
-        label: "CMU 01_01 · forward jumps",
-        file: "01_01.bvh.gz",
-    },
-    Sample {
-        id: "cmu_climb",
-        label: "CMU 01_03 · climb",
-        file: "01_03.bvh.gz",
-    },
-    Sample {
-        id: "cmu_run",
-        label: "CMU · run",
-        file: "run.bvh.gz",
-    },
-    Sample {
-        id: "cmu_pirouette",
-        label: "CMU · pirouette",
-        file: "pirouette.bvh.gz",
-    },
-];
 
 /// What the first visitor sees: the experiment of the course, running.
 const WELCOME: &str = "compare=blend_window:30,15,10";
@@ -115,6 +93,7 @@ pub struct Session {
     driving: driving::Driving,
     shelf: Shelf,
     requests: Vec<Request>,
+    awaited: bundled::AwaitedSamples,
     /// What reads small files at once; none where all reading is done elsewhere.
     reads: Option<Reads>,
     reading: Vec<Reading>,
@@ -151,7 +130,7 @@ impl Session {
         let mut session = Self {
             reads,
             params: Params::default(),
-            library: built_in_entries().collect(),
+            library: preset_entries().collect(),
             history: History::default(),
             notices: Notices::default(),
             panes: Vec::new(),
@@ -170,6 +149,7 @@ impl Session {
             driving: driving::Driving::default(),
             shelf: Shelf::default(),
             requests: Vec::new(),
+            awaited: bundled::AwaitedSamples::default(),
             reading: Vec::new(),
             tasks: 0,
             named: [false; 2],
@@ -225,12 +205,6 @@ impl Session {
     /// A pane by its number, counted from 0.
     pub(super) fn pane(&self, index: usize) -> Result<&Pane, CommandError> {
         self.panes.get(index).ok_or(CommandError::NotPossible("there is no such pane"))
-    }
-
-    /// The bundled takes.
-    #[must_use]
-    pub fn samples() -> &'static [Sample] {
-        &SAMPLES
     }
 
     /// Grows with every change of library content; tells storage when to save.
@@ -392,6 +366,7 @@ impl Session {
             return Ok(());
         }
         let mut held = Some(self.held());
+        self.forget_failed_samples();
         match command {
             Command::Set(values) => self.set(values)?,
             Command::Reset(key) => {
@@ -405,6 +380,7 @@ impl Session {
                 held = None;
             }
             Command::Assign(slot, id) => self.assign(slot, id)?,
+            Command::LoadSamples(set) => self.load_samples(set),
             Command::Remove(id) => self.remove(&id)?,
             Command::Rename(id, name) => {
                 let name = name.trim().to_owned();
@@ -788,14 +764,15 @@ impl Session {
 }
 
 /// What the library holds at first.
-fn built_in_entries() -> impl Iterator<Item = Entry> {
-    let presets = synth::presets()
+fn preset_entries() -> impl Iterator<Item = Entry> {
+    synth::presets()
         .into_iter()
-        .map(|preset| (preset.id.to_owned(), preset.title.to_owned(), Origin::Preset));
-    let samples = SAMPLES
-        .iter()
-        .map(|sample| (sample.id.to_owned(), sample.label.to_owned(), Origin::Sample(sample)));
-    presets.chain(samples).map(|(id, name, origin)| Entry::new(id, name, origin))
+        .map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
+}
+
+/// What comes with Segue: the presets, and the bundled takes, which join the library when they are asked for.
+fn built_in_entries() -> impl Iterator<Item = Entry> {
+    preset_entries().chain(samples::all().map(bundled::sample_entry))
 }
 
 fn clip_info(entry: &Entry) -> ClipInfo {
@@ -814,6 +791,8 @@ fn clip_info(entry: &Entry) -> ClipInfo {
     }
 }
 
+#[cfg(test)]
+mod bundled_tests;
 #[cfg(test)]
 mod driving_tests;
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use super::Session;
 use super::going_round::{Glide, durations};
 use crate::math::Planar;
-use crate::session::command::Request;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::{FeetReading, Motion};
@@ -372,11 +371,10 @@ impl Session {
         let id = entry.id.clone();
         let motion = match &entry.origin {
             Origin::Sample(sample) => {
-                let request = Request::Sample(sample);
-                if !self.requests.contains(&request) && !self.has_come(sample) {
-                    self.requests.push(request);
-                }
-                return Err(format!("{} is being loaded.", sample.label));
+                let sample = *sample;
+                self.ask_for_sample(sample);
+                let failed = self.library.get(&id).and_then(|entry| entry.unread.clone());
+                return Err(failed.unwrap_or_else(|| format!("{} is being loaded.", sample.label)));
             }
             Origin::Preset => Arc::new(preset_motion(&id)?),
             Origin::Made => {
@@ -405,6 +403,23 @@ impl Session {
         self.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
         self.revision += 1;
         Ok(motion)
+    }
+
+    /// The motions of several clips with their feet read as the parameters ask for, as [`Self::motions_of`].
+    fn motions_read(&mut self, ids: &[String], params: &Params) -> Result<Vec<Arc<Motion>>, String> {
+        let motions = self.motions_of(ids)?;
+        let reading = FeetReading::of(params);
+        Ok(motions.iter().map(|motion| self.feet.read(motion, reading)).collect())
+    }
+
+    /// The motions of several clips. What is not there yet is made or asked for, all of it, before the first that is missing is told.
+    pub(super) fn motions_of(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, String> {
+        let motion = |id: &String| {
+            self.bring(id);
+            self.motion_of(id)
+        };
+        let motions: Vec<_> = ids.iter().map(motion).collect();
+        motions.into_iter().collect()
     }
 
     /// What a recipe makes, once more: its clips may have to be made themselves, or loaded.
@@ -522,21 +537,19 @@ impl Session {
 
     /// The clips of the graph, with what a person calls them.
     fn graph_clips(&mut self, params: &Params) -> Result<Vec<(String, Arc<Motion>)>, String> {
-        let mut clips = Vec::new();
-        for id in clips_of(params.text(Key::Clips))? {
-            self.bring(&id);
-            let motion = self.motion_read(&id, params)?;
-            let name = self.library.find(&id).map_or(id, |entry| entry.name.clone());
-            clips.push((name, motion));
-        }
-        Ok(clips)
+        let ids = clips_of(params.text(Key::Clips))?;
+        let motions = self.motions_read(&ids, params)?;
+        let names = ids
+            .into_iter()
+            .map(|id| self.library.find(&id).map_or(id, |entry| entry.name.clone()));
+        Ok(names.zip(motions).collect())
     }
 
     /// A and B, made ready for each other.
     fn pair_of(&mut self, params: &Params) -> Result<Arc<Pair>, String> {
-        let a = self.motion_read(params.text(Key::A), params)?;
-        let b = self.motion_read(params.text(Key::B), params)?;
-        self.pairs.of(&a, &b)
+        // Both are asked for before one of them stops it: what is to be fetched comes together.
+        let [a, b] = [Key::A, Key::B].map(|key| self.motion_read(params.text(key), params));
+        self.pairs.of(&a?, &b?)
     }
 
     /// What a pane's result depends on; `None` while that is still being computed.
@@ -544,11 +557,8 @@ impl Session {
         let inputs = match params.text(Key::Lab) {
             "register" => {
                 let pair = self.pair_of(params)?;
-                let mut also = Vec::new();
-                for (id, weight) in read_also(params.text(Key::WarpAlso))? {
-                    self.bring(&id);
-                    also.push((self.motion_read(&id, params)?, weight));
-                }
+                let (ids, weights): (Vec<_>, Vec<_>) = read_also(params.text(Key::WarpAlso))?.into_iter().unzip();
+                let also: Vec<_> = self.motions_read(&ids, params)?.into_iter().zip(weights).collect();
                 return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
             }
             "graph" => {

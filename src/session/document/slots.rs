@@ -43,7 +43,26 @@ impl Session {
         let free = [Slot::A, Slot::B]
             .into_iter()
             .find(|slot| (is_looked_at && *slot == Slot::A) || self.is_free(*slot, came));
-        let Some(slot) = free else { return };
+        if let Some(slot) = free {
+            self.put_into(slot, id);
+        }
+    }
+
+    /// Offers clips that came together the slots in turn: in View that of the one that is looked at; else those with clips that nobody brought.
+    pub(super) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
+        let slots = match self.params.text(Key::Lab) {
+            "view" => vec![Slot::A],
+            _ => [Slot::A, Slot::B]
+                .into_iter()
+                .filter(|slot| self.is_free(*slot, Came::ByHand))
+                .collect(),
+        };
+        for (slot, id) in slots.into_iter().zip(ids) {
+            self.put_into(slot, id);
+        }
+    }
+
+    fn put_into(&mut self, slot: Slot, id: &str) {
         self.set_unchecked(slot.key(), Value::Text(id.to_owned()));
         forget_places(&mut self.params, slot, &[]);
         // Likewise of the whole that was played before.
@@ -127,9 +146,9 @@ impl Session {
             .keep_missing(|reference| missing.iter().any(|known| known == reference));
     }
 
-    /// Whether the clip is in the library, or can be made from its id.
+    /// Whether the clip is in the library, or can be made or fetched by its id.
     pub(super) fn bring(&mut self, reference: &str) -> bool {
-        if self.library.find(reference).is_some() {
+        if self.library.find(reference).is_some() || self.bring_sample(reference) {
             return true;
         }
         let Some(params) = recipe_params(reference) else { return false };
@@ -138,7 +157,7 @@ impl Session {
         true
     }
 
-    /// The built-in clip of that id, where it was taken out of the library.
+    /// The built-in clip of that id, where it is not in the library.
     fn removed_built_in(&self, id: &str) -> Option<Entry> {
         let is_gone = self.library.get(id).is_none();
         is_gone.then(|| built_in_entries().find(|entry| entry.id == id)).flatten()

@@ -1,6 +1,5 @@
 //! The work into storage, and back from it: before anything is shown, or later.
 
-use super::slots::is_built_in;
 use super::{Session, built_in_entries};
 use crate::formats::ImportOptions;
 use crate::session::library::{Entry, Origin, SourceFile};
@@ -62,8 +61,8 @@ impl Session {
         }
         let nothing_came = self.library.entries().is_empty();
         for entry in before.entries() {
-            // A built-in clip that is not stored was removed on an earlier visit. What the parameters name of these comes back.
-            let stays = nothing_came || !is_built_in(entry);
+            // A preset that is not stored was removed on an earlier visit. What the parameters name of these comes back.
+            let stays = nothing_came || !matches!(entry.origin, Origin::Preset);
             if stays && self.library.get(&entry.id).is_none() {
                 self.library.put_shared(Arc::clone(entry));
             }
@@ -104,6 +103,7 @@ impl Session {
                 // Whatever motion it has was made with other roles.
                 (Some(here), None) => Entry { motion: None, ..here },
                 (None, None) => match built_in_entries().find(|entry| entry.id == stored.id) {
+                    Some(entry) if matches!(entry.origin, Origin::Sample(_)) && !stored.is_sample => continue,
                     Some(entry) => entry,
                     None if recipe_params(&stored.id).is_some() => Entry::new(&stored.id, &stored.name, Origin::Made),
                     None => continue,
@@ -125,9 +125,10 @@ impl Session {
         }
     }
 
-    /// Reads the files of the library that have no motion yet. Those that cannot be read any more are named with those that are `lost` already;
+    /// Reads the files of the library that have no motion yet, and asks for the bundled takes. Those that cannot be read any more are named with those that are `lost` already;
     /// their clips are gone.
     pub(super) fn read_stored(&mut self, mut lost: Vec<String>) {
+        self.ask_for_missing_samples();
         let entries = self.library.entries().to_vec();
         for entry in entries {
             let Origin::File(file) = &entry.origin else { continue };

@@ -1,0 +1,82 @@
+//! Whose motion a lab works with: made, captured, or what the user brought.
+
+use super::document::Session;
+use super::library::{Entry, Origin};
+use super::link;
+use super::params::{Key, Value};
+use super::recipe::{graph_of, write_ids};
+use super::samples::SUBJECT_16;
+
+/// A choice of clips for the whole lab.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClipSet {
+    /// What the synthesiser makes: the lab's defaults.
+    Made,
+    /// The bundled takes of one actor.
+    Captured,
+    /// The user's own files, in labs that take any number of clips.
+    Own,
+}
+
+impl Session {
+    /// What is to be set so that the open lab works with these clips; `None` where it has nothing to choose, or there are no such clips.
+    #[must_use]
+    pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
+        let lab = self.params().text(Key::Lab);
+        let takes_list = matches!(lab, "graph" | "match");
+        match set {
+            ClipSet::Captured => captured(lab),
+            ClipSet::Made => captured(lab).map(|values| {
+                let default = |(key, _): (Key, Value)| (key, key.param().default_value());
+                values.into_iter().map(default).collect()
+            }),
+            ClipSet::Own => {
+                let own = self.library().entries().iter().filter(|entry| is_own_motion(entry));
+                let ids: Vec<String> = own.map(|entry| entry.id.clone()).take(MOST_OWN).collect();
+                (takes_list && !ids.is_empty()).then(|| listed(lab, &ids))
+            }
+        }
+    }
+
+    /// Whether the open lab works with these clips.
+    #[must_use]
+    pub fn uses_clip_set(&self, set: ClipSet) -> bool {
+        let names_clips = |key: Key| matches!(key, Key::A | Key::B | Key::Clips | Key::MatchClips);
+        self.clip_set(set).is_some_and(|values| {
+            let mut clips = values.iter().filter(|(key, _)| names_clips(*key));
+            clips.all(|(key, value)| self.params().get(*key) == value)
+        })
+    }
+}
+
+/// The Graph lab takes no more.
+const MOST_OWN: usize = 64;
+
+fn captured(lab: &str) -> Option<Vec<(Key, Value)>> {
+    let query = match lab {
+        "graph" | "match" => {
+            let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
+            return Some(listed(lab, &ids));
+        }
+        "loop" | "path" => "a=cmu16_walk",
+        "speed" => "a=cmu16_walk&b=cmu16_run",
+        "register" => "a=cmu16_walk&b=cmu16_fast_walk",
+        _ => return None,
+    };
+    Some(link::read(query).values)
+}
+
+/// A list of clips in a lab that takes one.
+fn listed(lab: &str, ids: &[String]) -> Vec<(Key, Value)> {
+    if lab == "graph" {
+        graph_of(ids)
+    } else {
+        vec![(Key::MatchClips, Value::Text(write_ids(ids)))]
+    }
+}
+
+/// Whether it is a file of the user's that moves: a skeleton or a character alone does not.
+fn is_own_motion(entry: &Entry) -> bool {
+    let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip.frames() > 1);
+    moves && matches!(entry.origin, Origin::File(_))
+}
