@@ -358,10 +358,12 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         "speed" => Words {
             strong: name(Key::A),
             text: format!("~ {}", name(Key::B)),
-            secondary: match pane.outcome.as_ref().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made) {
-                Some(CycleMade::Gait { asked_mps, .. }) => format!("{asked_mps:.2} m/s"),
-                _ => String::new(),
-            },
+            // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as fast as was asked.
+            secondary: pane
+                .outcome
+                .as_ref()
+                .and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == "speed_mps")?.value)
+                .map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
         },
         "loop" => Words {
             strong: name(Key::A),
