@@ -1,5 +1,6 @@
 //! The panels of the Speed and the Loop lab: results that go round.
 
+use super::clip_sets::clip_sets_ui;
 use super::kit::{self, Button, Mark, Part};
 use super::lab_panel::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
 use super::out::Out;
@@ -22,6 +23,7 @@ const POOR_ENDS_CM: f64 = 8.0;
 pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
+    clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);
     let palette = palette_of(ui);
     let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
@@ -83,6 +85,7 @@ pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
 pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
+    clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     ui.add_space(space::S);
     let params = session.params();

@@ -47,10 +47,6 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
     let arrived = newest.clone().filter(|_| seen.is_some_and(|seen| seen != newest));
     ui.data_mut(|data| data.insert_temp(seen_id, newest));
     for entry in ordered {
-        // A take that nobody asked for yet is behind "samples".
-        if matches!(entry.origin, Origin::Sample(_)) && entry.motion.is_none() && part_of(session, entry) == Part::None {
-            continue;
-        }
         let row = ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui)).response;
         if arrived.as_ref() == Some(&entry.id) {
             row.scroll_to_me(None);
@@ -64,6 +60,7 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let rows = (
         state.fetching.len(),
         session.jobs().iter().filter(|job| job.size.is_some()).count(),
+        session.samples_progress().is_some(),
         state.samples_open,
     );
     let rows_id = Id::unique("rows of the drop zone");
@@ -84,6 +81,10 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
             out.commands.push(Command::StopReading(task));
         }
     }
+    if let Some((come, asked)) = session.samples_progress() {
+        let detail = format!("{come} / {asked}");
+        kit::brief_progress_ui(text::LOADING_SAMPLES, come as f32 / asked as f32, &detail, ui);
+    }
     if state.samples_open {
         samples_ui(session, out, ui);
         ui.add_space(space::S);
@@ -98,6 +99,16 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 
 fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
+    for set in Session::sample_sets() {
+        let item = MenuItem {
+            text: set.label,
+            icon: Some(Icon::Download),
+            ..MenuItem::default()
+        };
+        if kit::menu_item_ui(item, ui).clicked() {
+            out.commands.push(Command::LoadSamples(set));
+        }
+    }
     for sample in Session::samples() {
         let item = MenuItem {
             text: sample.label,

@@ -2,6 +2,7 @@
 
 mod break_it;
 mod clip_panel;
+mod clip_sets;
 mod cycle_panels;
 mod drive;
 mod graph;

@@ -1,5 +1,6 @@
 //! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole path.
 
+use super::clip_sets::clip_sets_ui;
 use super::kit::{self, Button, Icon};
 use super::lab_panel::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
 use super::language::tr;
@@ -25,6 +26,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::PATH_ABOUT, palette.muted, ui);
+    clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     let pane = session.panes().first();
     let path = pane.and_then(|pane| path_of(session, pane));

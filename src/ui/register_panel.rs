@@ -1,5 +1,6 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
+use super::clip_sets::clip_sets_ui;
 use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
 use super::lab_panel::{clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
 use super::language::tr;
@@ -20,6 +21,7 @@ const FIRST_SHARE: f64 = 0.25;
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
+    clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);
     map_ui(session, state, out, ui);
     let params = session.params();

@@ -21,6 +21,7 @@ mod graph;
 mod lessons;
 mod path;
 mod register;
+mod samples;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
 const PHONE: Vec2 = vec2(390.0, 844.0);

@@ -4,7 +4,7 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Built, Cast, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition, format_number};
+use segue::session::{Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
@@ -73,6 +73,7 @@ pub(crate) const RECORDING: &str = "Recording";
 pub(crate) const USE_AS_A: &str = "Use as A";
 pub(crate) const USE_AS_B: &str = "Use as B";
 pub(crate) const LOADING: &str = "loading…";
+pub(crate) const LOADING_SAMPLES: &str = "Loading samples";
 pub(crate) const FRAME_ALL: &str = "Frame everything";
 pub(crate) const TOP_VIEW: &str = "From above";
 pub(crate) const FOLLOW: &str = "Camera follows";
@@ -170,6 +171,8 @@ pub(crate) const CLOSE: &str = "Close";
 pub(crate) const MATCHING: &str = "Looking for the best match";
 
 pub(crate) const READING: &str = "being read…";
+/// Of a bundled take that did not come: a notice said why.
+pub(crate) const NOT_LOADED: &str = "not loaded: choose it again";
 /// Likewise, when reading it failed or was stopped: a notice said why.
 pub(crate) const UNREAD: &str = "not read: drop the file again";
 /// Likewise.
@@ -179,6 +182,7 @@ pub(crate) const AWAITS_SKELETON: &str = "waits for its skeleton: drop the .asf 
 pub(crate) fn status(entry: &Entry) -> &'static str {
     match (&entry.motion, &entry.origin) {
         (Some(_), _) | (None, Origin::Preset | Origin::Made) => "",
+        (None, Origin::Sample(_)) if entry.unread.is_some() => NOT_LOADED,
         (None, Origin::Sample(_)) => LOADING,
         (None, Origin::File(_)) if entry.unread.is_some() => UNREAD,
         (None, Origin::File(_)) if entry.awaits_skeleton() => AWAITS_SKELETON,
@@ -644,6 +648,18 @@ pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
 /// The dissolve with as much of A in it.
 pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
 
+/// A set of clips, and what its button does.
+pub(crate) const fn clip_set(set: ClipSet) -> (&'static str, &'static str) {
+    match set {
+        ClipSet::Made => ("Synthesised motion", "The clips that this lab begins with"),
+        ClipSet::Captured => (
+            "Real motion (CMU 16)",
+            "Captured walks and runs of one actor, from the CMU database",
+        ),
+        ClipSet::Own => ("My clips", "All motions of the files that you have dropped or opened"),
+    }
+}
+
 /// What the Graph lab does.
 pub(crate) const GRAPH_ABOUT: &str =
     "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
@@ -892,8 +908,6 @@ pub(crate) const HYSTERESES: &str = "None beside bias and votes";
 pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 /// Of the clips.
 pub(crate) const MADE_SET: &str = "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
-/// A button.
-pub(crate) const USE_MADE_SET: &str = "Use the synthesiser's set";
 /// The strip's name.
 pub(crate) const CLIP_STRIP: &str = "All clips, and the frame that plays";
 /// Of the curves.

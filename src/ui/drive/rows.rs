@@ -2,6 +2,7 @@
 
 use super::tags::tags_ui;
 use super::why::why_ui;
+use crate::ui::clip_sets::clip_sets_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
@@ -19,6 +20,7 @@ pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut 
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
+    clip_sets_ui(session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
         kit::note_ui(problem, palette.warning, ui);
     }
@@ -216,9 +218,6 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let mut more = ids.clone();
         more.push(entry.id.clone());
         set(&more, out);
-    }
-    if !ids.is_empty() && kit::button_ui(Button::new(text::USE_MADE_SET), ui).clicked() {
-        set(&[], out);
     }
     if let Some((driven, _)) = super::shown(session) {
         let skipped = driven.database.skipped();

@@ -1,6 +1,7 @@
 //! What is set of graph and walk.
 
 use super::{close_jump, map, no_way, shows_jump, table};
+use crate::ui::clip_sets::clip_sets_ui;
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::lab_panel::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
@@ -19,6 +20,7 @@ pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut 
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
+    clip_sets_ui(session, out, ui);
     progress_ui(session, out, ui);
     if shows_jump(session) && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked() {
         close_jump(state, out);

@@ -56,7 +56,7 @@ pub(crate) use icon::{Icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};
 pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
 pub(crate) use metrics::{Metric, Rank};
-pub(crate) use notice::{Notice, NoticeEvent, caption_ui, progress_row_ui, toasts_ui};
+pub(crate) use notice::{Notice, NoticeEvent, brief_progress_ui, caption_ui, progress_row_ui, toasts_ui};
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use profile::profile_ui;

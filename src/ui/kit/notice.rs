@@ -141,6 +141,15 @@ pub(crate) fn caption_ui(text: &str, stage: Rect, ui: &mut Ui) -> Rect {
 
 /// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was that pressed?
 pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: &mut Ui) -> bool {
+    progress_ui(label, done, detail, true, ui)
+}
+
+/// A task that is over before anybody wants to stop it.
+pub(crate) fn brief_progress_ui(label: &str, done: f32, detail: &str, ui: &mut Ui) {
+    progress_ui(label, Some(done), detail, false, ui);
+}
+
+fn progress_ui(label: &str, done: Option<f32>, detail: &str, can_be_stopped: bool, ui: &mut Ui) -> bool {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let scale = theme.scale();
     let width = ui.available_width();
@@ -152,8 +161,12 @@ pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: 
         .max_rect(head)
         .layout(Layout::right_to_left(Align::Center));
     let mut inner = ui.new_child(builder);
-    let stopped = icon_button_ui(Icon::Close, words.cancel, &mut inner).clicked();
-    let right = inner.min_rect().left() - space::XS;
+    let stopped = can_be_stopped && icon_button_ui(Icon::Close, words.cancel, &mut inner).clicked();
+    let right = if can_be_stopped {
+        inner.min_rect().left() - space::XS
+    } else {
+        head.right()
+    };
     // What it does comes first; how far it is takes what is left, and the bar says it too.
     let galley = line_of(&[Run::new(label, Type::Label, palette.text)], right - head.left(), ui);
     let said = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);

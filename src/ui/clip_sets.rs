@@ -1,0 +1,24 @@
+//! The row of a lab that says whose motion it works with.
+
+use super::kit::{self, Button};
+use super::out::Out;
+use super::text;
+use super::theme::space;
+use eframe::egui::{Ui, vec2};
+use segue::session::{ClipSet, Command, Session};
+
+/// One button for each set of clips that there is, the one in use marked.
+pub(super) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        for set in [ClipSet::Made, ClipSet::Captured, ClipSet::Own] {
+            let Some(values) = session.clip_set(set) else { continue };
+            let (words, help) = text::clip_set(set);
+            let button = Button::new(words).selected(session.uses_clip_set(set)).hint(help);
+            if kit::button_ui(button, ui).clicked() {
+                out.commands.push(Command::Set(values));
+                out.commands.push(Command::Settle);
+            }
+        }
+    });
+}
