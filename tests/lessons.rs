@@ -1,5 +1,7 @@
 //! The lessons that come with Segue: what they consist of, that their links do what they say, and that their numbers are those of the program.
 
+mod bundled;
+
 use segue::session::lesson::{CONTENTS, LESSONS, MOST_BYTES, Page, file_name, parse};
 use segue::session::{Command, Level, Session, link};
 use std::collections::BTreeSet;
@@ -39,7 +41,7 @@ fn every_lesson_has_its_parts_in_both_languages() {
         for page in &pages {
             assert!(!page.title.is_empty() && page.body.len() >= 3, "{lesson}");
             assert!(page.state.as_ref().is_some_and(|state| !state.label.is_empty()), "{lesson}");
-            assert!((2..=4).contains(&page.tries.len()), "{lesson}: {} tries", page.tries.len());
+            assert!((2..=5).contains(&page.tries.len()), "{lesson}: {} tries", page.tries.len());
             assert!(
                 page.tries.iter().all(|link| !link.label.is_empty() && !link.about.is_empty()),
                 "{lesson}"
@@ -74,7 +76,7 @@ fn the_list_is_that_of_the_files() {
     }
 }
 
-/// A session with a lesson open and one of its links tried, all work done.
+/// A session with a lesson open and one of its links tried, the bundled takes that it names there, all work done.
 fn tried(lesson: &str, query: &str) -> Session {
     let mut session = Session::new();
     session
@@ -84,7 +86,7 @@ fn tried(lesson: &str, query: &str) -> Session {
     session.finish_lesson(&source, Ok(text("en", lesson).as_bytes()));
     session.apply(Command::Try(query.to_owned())).expect("a lesson is open");
     assert!(session.is_tried(query), "{lesson}: {query}");
-    while session.work() {}
+    bundled::settle(&mut session);
     session
 }
 
@@ -122,6 +124,128 @@ fn every_link_is_understood_and_gives_what_it_promises() {
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
     assert_eq!(checked, QUOTED.len(), "numbers of links that no lesson has");
+}
+
+/// The lessons about labs that can work with captured motion, and what some numbers may be there: the pane, the id, the least and the most. The
+/// bounds are those of a result that a person would take for right; what exactly it is changes with the program.
+const REAL: &[(&str, &[(usize, &str, f64, f64)])] = &[
+    (
+        "loops",
+        &[
+            (0, "cycle_s", 0.8, 1.6),
+            (0, "loop_seam_deg", 0.0, 0.5),
+            (0, "loop_before_deg", 0.5, 40.0),
+            (0, "skate_cm", 0.0, 15.0),
+        ],
+    ),
+    ("time_warp", &[(0, "apart_cm", 1.0, 20.0), (0, "skate_mean_cm", 0.0, 20.0)]),
+    (
+        "distance_matrix",
+        &[
+            (0, "spins", 0.0, 0.0),
+            (0, "seams_per_min", 2.0, 120.0),
+            (0, "variety", 20.0, 100.0),
+        ],
+    ),
+    ("segment_size", &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 2.0, 120.0)]),
+    ("edge_weights", &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 10.0, 400.0)]),
+    ("atan", &[(0, "spins", 0.0, 0.0), (1, "spins", 5.0, 100.0)]),
+    ("first_frame", &[(0, "spins", 0.0, 0.0), (1, "spins", 1.0, 100.0)]),
+    ("motion_matching", &[(0, "match_error", 0.0, 30.0), (0, "match_seams", 5.0, 200.0)]),
+];
+
+/// What is wrong with the numbers of captured motion. Every number that there is is a number.
+fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for (index, pane) in session.panes().iter().enumerate() {
+        let Some(outcome) = &pane.outcome else {
+            wrong.push(format!("{what}: pane {index}: {:?}", pane.problem));
+            continue;
+        };
+        let values = outcome.metrics.iter().filter_map(|metric| Some((metric.id, metric.value?)));
+        for (id, value) in values.clone() {
+            println!("{what}: pane {index}: {id} {value:.2}");
+            if !value.is_finite() {
+                wrong.push(format!("{what}: pane {index}: {id} is {value}"));
+            }
+        }
+        for &(_, id, least, most) in bounds.iter().filter(|bound| bound.0 == index) {
+            let value = values.clone().find(|value| value.0 == id).map(|value| value.1);
+            if !value.is_some_and(|value| (least..=most).contains(&value)) {
+                wrong.push(format!("{what}: pane {index}: {id} is {value:?}, expected {least} to {most}"));
+            }
+        }
+        let root = outcome.motion.clip.root_translations();
+        let fps = outcome.motion.clip.fps() as f32;
+        let fastest = root.windows(2).map(|pair| pair[0].distance(pair[1]) * fps).fold(0.0, f32::max);
+        if !(0.2..8.0).contains(&fastest) {
+            wrong.push(format!("{what}: pane {index}: the root moves at {fastest} m/s"));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn links_to_captured_motion_give_results_with_sane_numbers() {
+    let mut wrong = Vec::new();
+    for (lesson, bounds) in REAL {
+        let real = LANGUAGES.map(|language| {
+            let tries = page(language, lesson).tries.into_iter();
+            let real: Vec<_> = tries.filter(|link| link.query.contains("cmu16_")).collect();
+            assert_eq!(real.len(), 1, "{language}, {lesson}");
+            (real[0].label.clone(), real[0].query.clone())
+        });
+        assert_eq!([&real[0].0, &real[1].0], ["With real motion", "換成真實動作"], "{lesson}");
+        wrong.extend(check_bounds(lesson, &tried(lesson, &real[0].1), bounds));
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// The README's links to captured motion, by what they begin with.
+const README_LINKS: &[(&str, &[(usize, &str, f64, f64)])] = &[
+    (
+        "lab=speed",
+        &[
+            (0, "speed_mps", 1.2, 3.0),
+            (0, "cadence_spm", 90.0, 200.0),
+            (0, "skate_cm", 0.0, 20.0),
+        ],
+    ),
+    ("lab=loop", &[(0, "cycle_s", 0.8, 1.6), (0, "loop_seam_deg", 0.0, 0.5)]),
+    ("lab=register", &[(0, "apart_cm", 1.0, 25.0)]),
+    ("lab=graph", &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 2.0, 120.0)]),
+    ("lab=match", &[(0, "match_error", 0.0, 30.0), (0, "match_seams", 5.0, 200.0)]),
+];
+
+#[test]
+fn the_readmes_links_to_captured_motion_give_results_with_sane_numbers() {
+    let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("the README");
+    let links: Vec<&str> = (readme.split("<code>?").skip(1))
+        .filter_map(|rest| rest.split_once("</code>"))
+        .map(|(link, _)| link)
+        .filter(|link| link.contains("cmu16_"))
+        .collect();
+    assert_eq!(links.len(), README_LINKS.len(), "{links:?}");
+    let mut wrong = Vec::new();
+    for (begins, bounds) in README_LINKS {
+        let link = links
+            .iter()
+            .find(|link| link.starts_with(begins))
+            .unwrap_or_else(|| panic!("{begins}"));
+        assert_eq!(link::read(link).problems, Vec::<String>::new(), "{link}");
+        let mut session = Session::new();
+        session
+            .apply(Command::OpenLink((*link).to_owned()))
+            .expect("a link is never refused");
+        let named = link.matches("cmu16_").count();
+        assert_eq!(
+            bundled::settle(&mut session).len(),
+            named,
+            "{link}: what it names is loaded, and nothing else"
+        );
+        wrong.extend(check_bounds(link, &session, bounds));
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
 /// What a lesson says of a number: the lesson, the link, the pane, the number's id, and the words in both languages.
