@@ -212,7 +212,6 @@ fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
     let session = opened("lab=graph&construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20");
     let built = [0, 1].map(|pane| walk(&session, pane).built.clone());
     let jumps = [0, 1].map(|pane| built[pane].whole().jumps().len());
-    let rings = [0, 1].map(|pane| built[pane].rings().to_vec());
     // What there is to compare and to choose from grows.
     assert!(jumps[1] > 2 * jumps[0]);
     assert_eq!(

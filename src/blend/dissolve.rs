@@ -287,17 +287,62 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// How far B is turned from A in every frame of the window, radians: the shorter way in the first, and the same way round from then on. Chosen anew in
-    /// every frame, the side would change whenever the two pass half a turn.
+    /// How far B is turned from A in every frame of the window, radians: the shorter way in the middle of the window, and the same way round in all
+    /// others. Chosen anew in every frame, the side would change whenever the two pass half a turn; taken from the first frame, B would be turned
+    /// the long way round where it weighs most.
     fn turns(&self, world_from_b: &Planar) -> Vec<f64> {
-        let mut turn = 0.0;
-        (0..self.window)
-            .map(|p| {
-                let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw - self.a.frames[self.leave + p].yaw;
-                turn = nearest_turn(yaw, turn);
-                turn
-            })
-            .collect()
+        let turn = |p: usize, near: f64| {
+            let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw - self.a.frames[self.leave + p].yaw;
+            nearest_turn(yaw, near)
+        };
+        let mut turns = vec![0.0; self.window];
+        for (p, before) in from_the_middle(self.window) {
+            turns[p] = turn(p, before.map_or(0.0, |before| turns[before]));
+        }
+        turns
+    }
+
+    /// For every frame of the window and every joint whether A's rotation changes its sign, so that each joint is turned by the shorter way in the middle of
+    /// the window and the same way round in all other frames.
+    fn sides(&self, placing: &Placing<'_>) -> Vec<bool> {
+        let joints = self.a.clip.skeleton().len();
+        let mut flips = vec![false; self.window * joints];
+        let mut known: Vec<Quat> = vec![Quat::IDENTITY; self.window * joints];
+        for (p, before) in from_the_middle(self.window) {
+            for joint in 0..joints {
+                let (b, a) = match joint {
+                    0 => self.root_rotations(p, placing),
+                    _ => (
+                        self.b.clip.rotations(self.enter + p)[joint],
+                        self.a.clip.rotations(self.leave + p)[joint],
+                    ),
+                };
+                let between = b.conjugate() * a;
+                let near = before.map_or(Quat::IDENTITY, |before| known[before * joints + joint]);
+                let flip = between.dot(near) < 0.0;
+                flips[p * joints + joint] = flip;
+                known[p * joints + joint] = if flip { -between } else { between };
+            }
+        }
+        flips
+    }
+
+    /// The roots' rotations in frame `p`, B's and A's, each as seen from where it is put.
+    fn root_rotations(&self, p: usize, placing: &Placing<'_>) -> (Quat, Quat) {
+        let (fa, fb) = (self.leave + p, self.enter + p);
+        let (a_from, b_from) = self.seen_from(p, placing);
+        (
+            b_from.rotation() * self.b.clip.rotations(fb)[0],
+            a_from.rotation() * self.a.clip.rotations(fa)[0],
+        )
+    }
+
+    /// What takes A and B to where they are blended in frame `p`.
+    fn seen_from(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
+        match placing {
+            Placing::Character(_) => (self.a.frames[self.leave + p].inverse(), self.b.frames[self.enter + p].inverse()),
+            Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
+        }
     }
 
     /// The character's frames in the window, interpolated in the world.
@@ -312,21 +357,16 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation.
-    fn root(&self, p: usize, placing: &Placing<'_>, sides: &mut quat::Hemispheres) -> (f32, Vec3, Quat) {
+    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation. `flip` changes the sign of A's rotation ([`Self::sides`]).
+    fn root(&self, p: usize, placing: &Placing<'_>, flip: bool) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
-        let (fa, fb) = (self.leave + p, self.enter + p);
-        let (a_from, b_from) = match placing {
-            Placing::Character(_) => (self.a.frames[fa].inverse(), self.b.frames[fb].inverse()),
-            Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
-        };
-        let a = a_from.apply(self.a.clip.root_translations()[fa]);
-        let b = b_from.apply(self.b.clip.root_translations()[fb]);
+        let (a_from, b_from) = self.seen_from(p, placing);
+        let a = a_from.apply(self.a.clip.root_translations()[self.leave + p]);
+        let b = b_from.apply(self.b.clip.root_translations()[self.enter + p]);
         let translation = b.lerp(a, weight);
-        let a_rotation = a_from.rotation() * self.a.clip.rotations(fa)[0];
-        let b_rotation = b_from.rotation() * self.b.clip.rotations(fb)[0];
+        let (b_rotation, a_rotation) = self.root_rotations(p, placing);
         let a_rotation = match placing {
-            Placing::Character(_) => sides.follow(0, b_rotation, a_rotation),
+            Placing::Character(_) => signed(a_rotation, flip),
             // The body goes the same way round as the character's frames.
             Placing::World(_, turns) => {
                 let turn = Quat::from_rotation_y(-turns[p] as f32);
@@ -351,14 +391,14 @@ impl Blend<'_> {
         made.play(a, 0..self.leave);
         let moving = moving_joints(a, b);
         let (mut rotations, mut translations) = (Vec::new(), Vec::new());
-        let mut sides = quat::Hemispheres::default();
+        let (joints, flips) = (a.skeleton().len(), self.sides(placing));
         for p in 0..self.window {
             let (fa, fb) = (self.leave + p, self.enter + p);
-            let (weight, translation, rotation) = self.root(p, placing, &mut sides);
+            let (weight, translation, rotation) = self.root(p, placing, flips[p * joints]);
             rotations.clear();
             rotations.push(rotation);
             let both = a.rotations(fa).iter().zip(b.rotations(fb)).enumerate().skip(1);
-            rotations.extend(both.map(|(joint, (&a, &b))| quat::slerp_as_given(b, sides.follow(joint, b, a), weight)));
+            rotations.extend(both.map(|(joint, (&a, &b))| quat::slerp_as_given(b, signed(a, flips[p * joints + joint]), weight)));
             translations.clear();
             let between = |&joint: &usize| translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight);
             translations.extend(moving.iter().map(between));
@@ -367,6 +407,17 @@ impl Blend<'_> {
         made.play_moved(b, after..b.frames(), world_from_b);
         Ok(made.finish(format!("{} → {}", a.name(), b.name()))?)
     }
+}
+
+fn signed(q: Quat, flip: bool) -> Quat {
+    if flip { -q } else { q }
+}
+
+/// The frames of a window from its middle to its end, then from there back to its beginning, each with the neighbour that came before it.
+fn from_the_middle(window: usize) -> impl Iterator<Item = (usize, Option<usize>)> {
+    let middle = window / 2;
+    let later = (middle..window).map(move |p| (p, (p > middle).then(|| p - 1)));
+    later.chain((0..middle.min(window)).rev().map(|p| (p, Some(p + 1))))
 }
 
 /// `weight` of `a`, the rest of `b`, which is turned from `a` by `turn`.

@@ -4,7 +4,9 @@ use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
-use segue::session::{Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition};
+use segue::session::{
+    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition, format_number,
+};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";

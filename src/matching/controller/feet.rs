@@ -189,7 +189,7 @@ mod tests {
         let stance = contacts.intervals(Side::Left).into_iter().find(|stance| stance.start > 0).unwrap();
         // The foot is said to stand for longer than it does, as a wrong contact has it: the body walks on, and the leg is stretched.
         let fastest = |usual: &[f32]| {
-            let mut feet = Feet::new(clip.skeleton(), &roles, &examples);
+            let mut feet = Feet::new(clip.skeleton(), &roles, &examples, 0.0);
             let (mut fastest, mut before): (f32, Option<Vec<Quat>>) = (0.0, None);
             for frame in stance.start..clip.frames() {
                 let mut pose = clip.pose(frame);
