@@ -362,17 +362,27 @@ fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
         let transition = made.transition.expect("a transition");
         let from = (transition.start_secs * made.motion.clip.fps()).round() as usize;
         let beats = &made.registered.as_ref().expect("a registration").beats;
+        // Where on A's clock each frame of the transition is, and B's weight there.
         beats[from..from + transition.window_frames]
             .iter()
-            .map(|beat| beat.weights[1])
-            .collect::<Vec<f64>>()
+            .map(|beat| (beat.frames[0], beat.weights[1]))
+            .collect::<Vec<(f64, f64)>>()
     };
     let (linear, smooth) = (of("linear"), of("smooth"));
     assert!(linear.len() > 10 && linear.len() == smooth.len());
-    assert!(is_rising(&linear) && linear[0] < 0.05 && linear[linear.len() - 1] > 0.95);
-    // The same way along the registration, by the other law.
-    for (t, weight) in linear.iter().zip(&smooth) {
-        assert!((weight - (1.0 - WeightLaw::Smooth.alpha(*t))).abs() < 1e-6, "{t}: {weight}");
+    let (first, last) = (linear[0], linear[linear.len() - 1]);
+    assert!(first.1 < 0.05 && last.1 > 0.95);
+    let slope = (last.1 - first.1) / (last.0 - first.0);
+    let share = |frame: f64| first.1 + slope * (frame - first.0);
+    for (frame, weight) in linear {
+        assert!((weight - share(frame)).abs() < 1e-6, "{frame}: {weight}");
+    }
+    // The other law over the same part of the registration.
+    for (frame, weight) in smooth {
+        assert!(
+            (weight - (1.0 - WeightLaw::Smooth.alpha(share(frame)))).abs() < 1e-6,
+            "{frame}: {weight}"
+        );
     }
 }
 

@@ -77,7 +77,9 @@ proptest! {
             prop_assert!((played.root_translations()[b].y - played.root_translations()[0].y).abs() < 1e-4);
             let way = frames[a].inverse().after(&frames[b]);
             let expected = frames[0].inverse().after(&frames[length]);
-            prop_assert!(way.shift.distance(expected.shift) < 1e-4 && (way.yaw - expected.yaw).abs() < 1e-4, "{k} {way:?} {expected:?}");
+            // Positions are single precision: 160 m away neighbouring numbers are 15 µm apart, and the heading is that of points 20 cm apart.
+            let exact = 1e-4 + 2e-6 * frames[b].shift.length();
+            prop_assert!(way.shift.distance(expected.shift) < exact && (way.yaw - expected.yaw).abs() < exact, "{k} {way:?} {expected:?}");
         }
         prop_assert!(first.shift.distance(made.cycle.shift) < 1e-3 && (first.yaw - made.cycle.yaw).abs() < 1e-4);
     }
