@@ -126,9 +126,12 @@ fn every_link_is_understood_and_gives_what_it_promises() {
     assert_eq!(checked, QUOTED.len(), "numbers of links that no lesson has");
 }
 
+/// Where a number of a pane lies: the pane, the number's id, at least, at most.
+type Bounds = (usize, &'static str, f64, f64);
+
 /// The lessons about labs that can work with captured motion, and what some numbers may be there: the pane, the id, the least and the most. The
 /// bounds are those of a result that a person would take for right; what exactly it is changes with the program.
-const REAL: &[(&str, &[(usize, &str, f64, f64)])] = &[
+const REAL: &[(&str, &[Bounds])] = &[
     (
         "loops",
         &[
@@ -164,7 +167,7 @@ fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)
         };
         let values = outcome.metrics.iter().filter_map(|metric| Some((metric.id, metric.value?)));
         for (id, value) in values.clone() {
-            println!("{what}: pane {index}: {id} {value:.2}");
+            eprintln!("{what}: pane {index}: {id} {value:.2}");
             if !value.is_finite() {
                 wrong.push(format!("{what}: pane {index}: {id} is {value}"));
             }
@@ -202,7 +205,7 @@ fn links_to_captured_motion_give_results_with_sane_numbers() {
 }
 
 /// The README's links to captured motion, by what they begin with.
-const README_LINKS: &[(&str, &[(usize, &str, f64, f64)])] = &[
+const README_LINKS: &[(&str, &[Bounds])] = &[
     (
         "lab=speed",
         &[

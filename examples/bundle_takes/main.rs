@@ -17,7 +17,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-/// The takes, each with the frame that it begins with. In the first two frames of 16_15 the left arm was not solved.
+/// The takes, each with the frame that it begins with. In the first two frames of `16_15` the left arm was not solved.
 const TAKES: [(&str, usize); 9] = [
     ("16_15", 2),
     ("16_22", 0),
@@ -101,5 +101,5 @@ fn rounded(text: &str) -> String {
 }
 
 fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    bytes.iter().fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
 }

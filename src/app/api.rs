@@ -185,12 +185,8 @@ impl Segue {
         let key = Key::from_name(name).ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
         let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
         if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
-            let entry = self
-                .session
-                .library()
-                .find(id)
-                .ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?;
-            value = Value::Text(entry.id.clone());
+            let known = self.session.nameable(id);
+            value = Value::Text(known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?);
         }
         Ok((key, value))
     }
@@ -497,6 +493,14 @@ mod tests {
     }
 
     #[test]
+    fn a_bundled_take_can_be_named_before_it_is_in_the_library() {
+        let mut segue = open("lab=view&play=off");
+        segue.set(&object(json!({ "a": "cmu_jump" }))).unwrap();
+        assert_eq!(segue.params()["a"], json!("cmu_jump"));
+        assert!(segue.clips().iter().any(|clip| clip.id == "cmu_jump"));
+    }
+
+    #[test]
     fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
         let mut segue = open("lab=blend");
         segue
@@ -609,7 +613,7 @@ mod tests {
             ];
             let sentence = segue.session.panes()[0].problem.clone().unwrap();
             assert!(sentence.contains(part), "{good}: {sentence}");
-            assert_eq!(refused, [const { () }; 5].map(|()| Err(sentence.clone())), "{good}");
+            assert_eq!(refused, std::array::from_fn(|_| Err(sentence.clone())), "{good}");
             assert_eq!(segue.clips().len(), kept);
             assert!(segue.stage_name() != name || !good.contains("path"), "{name}");
         }

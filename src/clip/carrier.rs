@@ -335,7 +335,7 @@ impl<'a> Unfold<'a> {
         } else {
             Vec::new()
         };
-        let poses = (0..clip.frames()).map(|frame| self.pose(clip.pose(frame), frames.get(frame)));
+        let poses = (0..clip.frames()).map(|frame| self.pose(&clip.pose(frame), frames.get(frame)));
         let poses: Vec<Pose> = without_still_tracks(poses.collect(), &self.skeleton);
         Ok(Clip::from_poses(clip.name(), Arc::clone(&self.skeleton), clip.fps(), poses)?.with_provenance(clip.provenance()))
     }
@@ -379,7 +379,7 @@ impl<'a> Unfold<'a> {
         chain
     }
 
-    fn pose(&self, pose: Pose, here: Option<&Planar>) -> Pose {
+    fn pose(&self, pose: &Pose, here: Option<&Planar>) -> Pose {
         let carrier = (pose.root_translation, pose.rotations[0]);
         let chain = self.chain(carrier, here);
         let locals = |place: usize| local(place.checked_sub(1).map(|above| chain[above]), chain[place]);

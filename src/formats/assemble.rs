@@ -1,7 +1,7 @@
 //! From the motions of a file, in its own units, to clips.
 
 use super::error::Fault;
-use super::measure::measure;
+use super::measure::{UpKnown, measure};
 use super::raw::RawMotion;
 use super::t_pose::first_frame_is_t_pose;
 use super::warning::{Tally, WarningKind};
@@ -42,7 +42,7 @@ pub(super) fn assemble(
         if measure.unit_unknown {
             tally.add(WarningKind::UnknownUnit, None);
         }
-        if measure.up_uncertain {
+        if measure.up_known == UpKnown::Uncertain {
             tally.add(WarningKind::UncertainUp { up: measure.provenance.up }, None);
         }
         let clip_name = match raw.joints.first() {

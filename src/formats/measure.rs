@@ -36,10 +36,19 @@ pub struct Measure {
     pub unit_detected: bool,
     /// Whether the height fits no unit, so that centimetres were taken.
     pub unit_unknown: bool,
-    /// Whether the up axis was found by the stance rather than given.
-    pub up_detected: bool,
-    /// Whether what speaks for the up axis that was found hardly outweighs what speaks against it, as for a body that lies in every frame.
-    pub up_uncertain: bool,
+    /// How the up axis is known.
+    pub up_known: UpKnown,
+}
+
+/// How an up axis is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UpKnown {
+    /// It was given.
+    Given,
+    /// It was found by the stance.
+    Found,
+    /// What speaks for it hardly outweighs what speaks against it, as for a body that lies in every frame.
+    Uncertain,
 }
 
 impl Measure {
@@ -102,11 +111,11 @@ pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<
     let skeleton = Skeleton::new(raw.joints.clone()).ok();
     let frames = skeleton.as_ref().map(|skeleton| sampled_frames(raw, skeleton)).unwrap_or_default();
     let by_shape = || up_axis(&raw.rest_points(), &rest, &frames);
-    let named = skeleton.as_ref().and_then(|skeleton| Named::of(skeleton));
-    let (found_up, up_uncertain) = match (up, &named) {
-        (Some(up), _) => (up, false),
+    let named = skeleton.as_ref().and_then(Named::of);
+    let (found_up, up_known) = match (up, &named) {
+        (Some(up), _) => (up, UpKnown::Given),
         (None, Some(named)) => named.up_axis(raw, by_shape),
-        (None, None) => (by_shape(), false),
+        (None, None) => (by_shape(), UpKnown::Found),
     };
     let height = match &named {
         Some(named) => named.height,
@@ -125,8 +134,7 @@ pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<
         height_units: height,
         unit_detected: given.is_none(),
         unit_unknown: given.is_none() && detected.is_none(),
-        up_detected: up.is_none(),
-        up_uncertain,
+        up_known,
     }
 }
 
@@ -189,13 +197,13 @@ impl<'a> Named<'a> {
         (height.is_finite() && height > 0.0).then_some(Self { skeleton, roles, height })
     }
 
-    /// The up axis, and whether that is uncertain.
-    fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, bool) {
+    /// The up axis, and how certain that is.
+    fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, UpKnown) {
         let [y, z] = self.evidence(raw).map(Evidence::sum);
         if (y - z).abs() < CERTAIN {
-            return (by_shape(), true);
+            return (by_shape(), UpKnown::Uncertain);
         }
-        (if z > y { UpAxis::Z } else { UpAxis::Y }, false)
+        (if z > y { UpAxis::Z } else { UpAxis::Y }, UpKnown::Found)
     }
 
     /// For Y and for Z.
@@ -425,7 +433,7 @@ mod tests {
                 up: UpAxis::Z
             }
         );
-        assert!(!found.unit_detected && !found.up_detected);
+        assert!(!found.unit_detected && found.up_known == UpKnown::Given);
         assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
     }
 
@@ -465,7 +473,7 @@ mod tests {
         // The rest pose stands along Y, and the motion is in a world where Z is up.
         let turned = walks.map(|(at, turn)| (quarter * at, quarter * turn));
         let found = measure(&named(turned), None, None);
-        assert_eq!((found.provenance.up, found.up_uncertain), (UpAxis::Z, false));
+        assert_eq!((found.provenance.up, found.up_known), (UpAxis::Z, UpKnown::Found));
         // A runner whose way goes along both axes of the ground.
         let runs = turned.map(|(at, turn)| (at + Vec3::new(0.0, 9.0 * at.x, 0.0), turn));
         assert_eq!(measure(&named(runs), None, None).provenance.up, UpAxis::Z);
@@ -475,9 +483,9 @@ mod tests {
     fn body_that_lies_leaves_up_to_the_rest_pose_and_says_so() {
         let lies = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
         let found = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, None);
-        assert_eq!((found.provenance.up, found.up_uncertain), (UpAxis::Y, true));
+        assert_eq!((found.provenance.up, found.up_known), (UpAxis::Y, UpKnown::Uncertain));
         let given = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, Some(UpAxis::Z));
-        assert!(!given.up_uncertain && given.provenance.up == UpAxis::Z);
+        assert_eq!((given.provenance.up, given.up_known), (UpAxis::Z, UpKnown::Given));
     }
 
     #[test]

@@ -83,7 +83,7 @@ mod warning;
 
 pub use error::ImportError;
 pub use gzip::unpack_gzip;
-pub use measure::{CMU_METRES_PER_UNIT, Measure};
+pub use measure::{CMU_METRES_PER_UNIT, Measure, UpKnown};
 pub use warning::{ImportWarning, WarningKind};
 
 use crate::clip::{Clip, UpAxis};

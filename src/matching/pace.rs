@@ -7,7 +7,7 @@ const RARE: f32 = 0.999;
 /// Steps that are looked at for that: enough for the percentile, and bounded for long clips.
 const SAMPLES: usize = 4_000;
 /// No joint counts as slower than this, radians per second: 60° per second.
-const LEAST_JOINT_RADPS: f32 = 1.047_197_6;
+const LEAST_JOINT_RADPS: f32 = std::f32::consts::FRAC_PI_3;
 
 /// How fast the motions of a database go: what a transition or a pull towards the wish should not exceed by much, since nothing in the clips does.
 #[derive(Clone, Debug, Default, PartialEq)]

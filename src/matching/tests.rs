@@ -389,8 +389,8 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
 /// One stride of a made gait, without the frame that stands for its first again.
 fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
     let params = Params {
-        fps,
         turn_rate_dps,
+        fps,
         ..Params::new(action)
     };
     let clip = Arc::new(synthesize(&params).unwrap().clip);

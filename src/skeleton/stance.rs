@@ -397,7 +397,7 @@ mod tests {
             for role in [Role::LeftThigh, Role::RightShin, Role::LeftUpperArm, Role::RightForearm] {
                 let joint = roles.get(role).unwrap();
                 let child = skeleton.children(joint).next().unwrap();
-                let bone = |positions: &[Vec3]| (positions[child] - positions[joint]).normalize();
+                let bone = |positions: &[Vec3]| (positions[child] - positions[joint]).normalize_or_zero();
                 // From the stance of the plain skeleton to this one's: a swing of the bone, and no twist about it.
                 let swing = quat::between_directions(bone(&expected.positions), bone(&stance.positions));
                 let plain = stance.rotations[joint] * frames[joint].conjugate() * expected.rotations[joint].conjugate();

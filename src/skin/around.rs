@@ -95,10 +95,10 @@ impl Sculptor {
             shapes.truncate(MOST_SHAPES);
         }
         let shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
-        if !is_blended {
-            (sculptor.done.mesh, sculptor.done.reach) = capsules(&shapes, &sculptor.pose);
-        } else {
+        if is_blended {
             sculptor.begin_shells(standing, roles, &shapes);
+        } else {
+            (sculptor.done.mesh, sculptor.done.reach) = capsules(&shapes, &sculptor.pose);
         }
         sculptor
     }

@@ -99,7 +99,7 @@ onBothBackends("what is exported can be loaded", async ({ open }) => {
 // Fails when an earlier result is handed on under the names of clips that it was not made from.
 onBothBackends("what cannot be made is refused with its sentence, by every call", async ({ open }) => {
   const { segue } = await open("lab=path&a=walk&play=off", SMALL);
-  await until(async () => Object.keys(await segue("metrics")).length > 0);
+  await until("it is measured", async () => Object.keys(await segue("metrics")).length > 0);
   const clips = (await segue("clips")).length;
   await segue("set", { a: "idle" });
   for (const call of [["pose", "result", 0], ["metrics"], ["export", "result", "bvh"], ["report"], ["keep", "result"]]) {

@@ -91,7 +91,7 @@ fn hung(clip: &Clip, above: &Above) -> Clip {
         let own = clip.rotations(frame);
         let back = turned.conjugate();
         rotations.push(*turned);
-        rotations.push((back * own[0]).normalize());
+        rotations.push(back * own[0]);
         rotations.extend_from_slice(&own[1..]);
         carried.push(back * (clip.root_translations()[frame] - *at));
     }
@@ -155,7 +155,7 @@ fn with_turned_frames(clip: &Clip) -> Clip {
     for frame in 0..clip.frames() {
         for (index, (&own, joint)) in clip.rotations(frame).iter().zip(&joints).enumerate() {
             let parent = joint.parent.map_or(Quat::IDENTITY, |parent| turns[parent]);
-            rotations.push((parent.conjugate() * own * turns[index]).normalize());
+            rotations.push(parent.conjugate() * own * turns[index]);
         }
     }
     let tracks = clip.translations().iter().map(|track| {
@@ -185,7 +185,7 @@ fn z_up(clip: &Clip) -> Clip {
     let turn = Quat::from_rotation_x(FRAC_PI_2);
     let mut rotations = all_rotations(clip);
     for root in rotations.iter_mut().step_by(clip.skeleton().len()) {
-        *root = (turn * *root).normalize();
+        *root = turn * *root;
     }
     let roots = clip.root_translations().iter().map(|at| turn * *at).collect();
     rebuilt(clip, bare_joints(clip), rotations, roots, clip.translations().to_vec())

@@ -246,18 +246,18 @@ impl MotionFile {
     /// As if it were dropped on the page; the ids of its clips.
     fn load(&self, session: &mut Session) -> Result<Vec<String>, String> {
         for skeleton in &self.skeletons {
-            loaded(session, &skeleton.name, Arc::clone(&skeleton.bytes))?;
+            loaded(session, &skeleton.name, &skeleton.bytes)?;
         }
-        loaded(session, file_name(&self.path), self.bytes()?)
+        loaded(session, file_name(&self.path), &self.bytes()?)
     }
 }
 
-fn loaded(session: &mut Session, name: &str, bytes: Arc<[u8]>) -> Result<Vec<String>, String> {
-    let mut ids = session.load(name, Arc::clone(&bytes)).map_err(|error| error.to_string())?.ids;
+fn loaded(session: &mut Session, name: &str, bytes: &Arc<[u8]>) -> Result<Vec<String>, String> {
+    let mut ids = session.load(name, Arc::clone(bytes)).map_err(|error| error.to_string())?.ids;
     // A large file is to be read elsewhere, which is here.
     for request in session.take_requests() {
         if let Request::Read(task) = request {
-            let report = read(&task.name, &bytes, &task.setup, &mut |_| true).ok_or("it was not read");
+            let report = read(&task.name, bytes, &task.setup, &mut |_| true).ok_or("it was not read");
             let done = session.finish_reading(task.id, report.map_err(str::to_owned));
             ids.extend(done.transpose()?.map(|loaded| loaded.ids).unwrap_or_default());
         }

@@ -108,7 +108,7 @@ pub struct Trial {
 #[serde(rename_all = "snake_case")]
 pub enum Came {
     /// A motion.
-    Made(Numbers),
+    Made(Box<Numbers>),
     /// No motion, and a sentence that says why.
     Refused(String),
     /// No motion, and no word.
@@ -351,7 +351,7 @@ impl<'a> Bench<'a> {
             bound,
             secs: opened.secs,
             came: match opened.made {
-                Ok(outcome) => guarded(|| numbers(&outcome)).map_or_else(Came::Panicked, Came::Made),
+                Ok(outcome) => guarded(|| numbers(&outcome)).map_or_else(Came::Panicked, |numbers| Came::Made(Box::new(numbers))),
                 Err(came) => came,
             },
         }

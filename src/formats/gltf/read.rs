@@ -202,7 +202,7 @@ impl Context<'_> {
                 mesh.turn(Y_UP_FROM_Z_UP);
             }
         }
-        let skin = skin.map(|mesh| Arc::new(self.folded(mesh, &rest)));
+        let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest)));
         let is_moved = |motion: &&Motion| {
             let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
             character.nodes.iter().any(moves)
@@ -227,7 +227,7 @@ impl Context<'_> {
     }
 
     /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above the carrier follows the carrier.
-    fn folded(&self, mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
+    fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
         if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
             && let Some(above) = clip.skeleton().above()

@@ -201,6 +201,7 @@ impl SegueHandle {
     }
 
     /// A motion as the bytes of a file, a GLB file with the body that `body` names: "character" or "plain".
+    #[expect(clippy::needless_pass_by_value, reason = "wasm-bindgen hands over what it has made")]
     #[wasm_bindgen(js_name = exportClip)]
     pub fn export_clip(&self, which: &str, format: &str, body: Option<String>) -> Result<Vec<u8>, JsValue> {
         Ok(self

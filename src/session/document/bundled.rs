@@ -88,6 +88,17 @@ impl Session {
         true
     }
 
+    /// The id of a clip that a parameter may name: one of the library, or a bundled take, which joins the library when it is named.
+    #[must_use]
+    pub fn nameable(&self, reference: &str) -> Option<String> {
+        let in_library = self.library.find(reference).map(|entry| entry.id.clone());
+        in_library.or_else(|| {
+            samples::all()
+                .find(|sample| sample.id == reference)
+                .map(|sample| sample.id.to_owned())
+        })
+    }
+
     /// Asks for the motions of all takes in the library that have none.
     pub(super) fn ask_for_missing_samples(&mut self) {
         let missing: Vec<_> = (self.library.entries().iter())

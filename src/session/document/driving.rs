@@ -38,6 +38,9 @@ fn is_own(params: &Params) -> bool {
     params.text(Key::Lab) == "match" && matches!(recording_of(params), Ok(None))
 }
 
+/// What a pane is driven by: its parameters, and its database; `None` while that is built.
+type Wanted = (Arc<Params>, Result<Option<Arc<Database>>, String>);
+
 impl Session {
     /// Whether a character is driven now: it goes on with time, and has no end.
     #[must_use]
@@ -187,7 +190,7 @@ impl Session {
             return;
         }
         let wanted: Vec<Params> = self.panes.iter().map(|pane| self.params_of(pane)).collect();
-        let wanted: Vec<(Arc<Params>, Result<Option<Arc<Database>>, String>)> = wanted
+        let wanted: Vec<Wanted> = wanted
             .into_iter()
             .map(|params| {
                 let database = self.match_database(&params);
@@ -196,7 +199,7 @@ impl Session {
             .collect();
         let Driving { lives, recording, .. } = &mut self.driving;
         lives.resize_with(wanted.len(), || None);
-        let is_begun = |(live, (_, database)): (&Option<Live>, &(_, Result<Option<Arc<Database>>, String>))| match database {
+        let is_begun = |(live, (_, database)): (&Option<Live>, &Wanted)| match database {
             Ok(Some(database)) => live.as_ref().is_some_and(|live| live.plays(database)),
             _ => true,
         };

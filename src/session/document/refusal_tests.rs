@@ -100,14 +100,15 @@ enum Change {
     Set(Key, Value),
 }
 
+const GRAPH: &str = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20";
+const MATCH: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
+const REPLAY: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)&scenario=straight";
+
 /// Every lab with what it cannot make, and a part of the sentence that says so.
 fn refusals() -> Vec<(&'static str, Change, &'static str)> {
     use Change::{A, B, Both, Set};
     use Clips::{BuiltIn, Empty, Missing, OneFrame, Short, Snake};
     let text = |text: &str| Value::Text(text.to_owned());
-    const GRAPH: &str = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20";
-    const MATCH: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
-    const REPLAY: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)&scenario=straight";
     vec![
         ("lab=view", A(Missing), "not here"),
         ("lab=view&foot_lock=on", A(Missing), "not here"),

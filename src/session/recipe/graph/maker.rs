@@ -44,7 +44,7 @@ const METERED_FRAMES: usize = 500;
 /// nearly straight.
 #[derive(Debug)]
 enum Publishing {
-    Assembling(Assembling),
+    Assembling(Box<Assembling>),
     Locking(Box<FootLocking>, Box<Motion>),
     Measuring(Box<Measuring>),
 }
@@ -218,7 +218,7 @@ impl Maker {
             publishing
         } else {
             let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
-            Publishing::Assembling(assembling.ok_or(GraphError::NoClips).map_err(told)?)
+            Publishing::Assembling(Box::new(assembling.ok_or(GraphError::NoClips).map_err(told)?))
         };
         match self.published(found)? {
             Ok(motion) => {
@@ -248,7 +248,7 @@ impl Maker {
                 if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
                     return Ok(Err(Publishing::Assembling(assembling)));
                 }
-                let motion = self.motion(assembling).map_err(|error| sentence(&error))?;
+                let motion = self.motion(*assembling).map_err(|error| sentence(&error))?;
                 if !self.wanted.foot_lock {
                     return Ok(Ok(motion));
                 }
@@ -473,7 +473,7 @@ impl Maker {
         }
         while self.meter() {}
         let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NoClips))?;
-        let mut publishing = Publishing::Assembling(assembling);
+        let mut publishing = Publishing::Assembling(Box::new(assembling));
         // A few seconds of motion.
         let motion = loop {
             match self.published(publishing)? {
