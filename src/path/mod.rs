@@ -99,7 +99,7 @@ pub enum PathEditError {
         frames: usize,
     },
     /// The character does not go anywhere.
-    #[error("this motion stays within {:.0} cm, so that there is no path to edit: take one that goes somewhere, or move the whole clip", extent_m * 100.0)]
+    #[error("this motion stays within {:.0} cm, so that there is no path to edit: choose one that travels", extent_m * 100.0)]
     Stands {
         /// The diagonal of the box around the root's way, metres.
         extent_m: f64,

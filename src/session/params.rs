@@ -276,9 +276,9 @@ const KEEPS: &[Choice] = &[
 const SPLINES: &[Choice] = &[choice("clamped", "clamped"), choice("uniform", "uniform")];
 const OFFSETS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it was")];
 const ROOT_MOTIONS: &[Choice] = &[
-    choice("world", "over the ground"),
+    choice("world", "recorded"),
     choice("in_place", "in place"),
-    choice("residual", "beside its path"),
+    choice("residual", "residual"),
 ];
 const FACINGS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it did")];
 const CONSTRUCTIONS: &[Choice] = &[choice("segments", "segments"), choice("minima", "local minima")];
@@ -409,7 +409,7 @@ parameters! {
     KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
-    RootMotion "root_motion" "Way over the ground" View Kind::Choice(ROOT_MOTIONS), Start::Word("world"), "", "Over the ground: as it was recorded. In place: where the body stands and faces is taken out of every frame. Beside its path: a smooth path and its direction are taken out, and the sway about it stays.";
+    RootMotion "root_motion" "Way over the ground" View Kind::Choice(ROOT_MOTIONS), Start::Word("world"), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
     PlaceX "place_x" "Starts at x" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
     PlaceZ "place_z" "Starts at z" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
     PlaceHeading "place_heading" "Starts facing" View auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";

@@ -70,12 +70,14 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     camera_buttons_ui(session, stage, state, out, ui);
     stick_on_stage_ui(session, stage, layout, state, ui);
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
+    // Where there is nothing to do it to, no hint says what to do.
+    let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
     let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
         kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
-    } else if let Some(hint) = hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone) {
+    } else if let Some(hint) = hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused) {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
             free.min.x += kit::stick_size(ui) + space::L;

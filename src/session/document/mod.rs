@@ -464,9 +464,9 @@ impl Session {
             Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
             Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
             Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
-            Key::PlaceX => Some(outcome.motion.standing_at(0.0).shift.x),
-            Key::PlaceZ => Some(outcome.motion.standing_at(0.0).shift.y),
-            Key::PlaceHeading => Some(outcome.motion.standing_at(0.0).yaw.to_degrees()),
+            Key::PlaceX => Some(to_step(outcome.motion.standing_at(0.0).shift.x, 0.01)),
+            Key::PlaceZ => Some(to_step(outcome.motion.standing_at(0.0).shift.y, 0.01)),
+            Key::PlaceHeading => Some(to_step(outcome.motion.standing_at(0.0).yaw.to_degrees(), 0.1)),
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
@@ -761,6 +761,11 @@ impl Session {
     pub fn clip_infos(&self) -> Vec<ClipInfo> {
         self.library.entries().iter().map(|entry| clip_info(entry)).collect()
     }
+}
+
+/// A value in whole steps; never the zero below zero.
+fn to_step(value: f64, step: f64) -> f64 {
+    (value / step).round() * step + 0.0
 }
 
 /// What the library holds at first.
