@@ -50,6 +50,8 @@ onBackend("webgl2", "a take that was loaded once needs no network", async ({ ope
   const { page, ready, segue } = await open("lab=loop&a=cmu16_run&play=off", { ...DESK, keeps: true });
   await until("the page is kept", () => page.evaluate(() => Boolean(navigator.serviceWorker.controller)));
   await segue("set", { a: "cmu16_walk" });
+  // The first take came before the page was kept; it is the second one that is there for the next visit.
+  await until("the address names it", () => page.url().includes("cmu16_walk"));
   await page.evaluate(() => document.dispatchEvent(new Event("visibilitychange")));
   await page.context().setOffline(true);
   await page.reload();
