@@ -56,7 +56,8 @@ pub enum SkeletonError {
 
 /// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's rotation is the identity.
 ///
-/// Two skeletons are equal when their joints are: what a file had above the root ([`Above`]) is not of the body.
+/// Two skeletons are equal when their bodies are: where the root rests is not of the body, for every frame says where it is, and neither is what a
+/// file had above it ([`Above`]). Files of one rig differ in both.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     joints: Vec<Joint>,
@@ -65,7 +66,9 @@ pub struct Skeleton {
 
 impl PartialEq for Skeleton {
     fn eq(&self, other: &Self) -> bool {
-        self.joints == other.joints
+        let [(root, body), (other_root, other_body)] = [self, other].map(|skeleton| (&skeleton.joints[0], &skeleton.joints[1..]));
+        let same_root = root.name == other_root.name && root.end_site == other_root.end_site && root.channels == other_root.channels;
+        same_root && body == other_body
     }
 }
 
@@ -195,6 +198,16 @@ mod tests {
             end_site: None,
             channels: vec![],
         }
+    }
+
+    #[test]
+    fn skeletons_are_equal_wherever_their_roots_rest() {
+        let with = |root: Vec3, child: Vec3| {
+            let joints = [(None, root), (Some(0), child)].map(|(parent, offset)| Joint { offset, ..joint(parent) });
+            Skeleton::new(joints.to_vec()).unwrap()
+        };
+        assert_eq!(with(Vec3::ZERO, Vec3::Y), with(Vec3::new(0.8, 93.9, -452.0), Vec3::Y));
+        assert_ne!(with(Vec3::ZERO, Vec3::Y), with(Vec3::ZERO, Vec3::X));
     }
 
     #[test]
