@@ -30,7 +30,7 @@ enum FileContent {
 /// A clip to be put to the test.
 #[derive(Debug)]
 pub struct Take {
-    /// What it is called in tables.
+    /// Its name in tables.
     pub name: String,
     /// The number of its rig: takes with equal skeletons have the same.
     pub rig: usize,
@@ -144,7 +144,7 @@ impl Motions {
         }
     }
 
-    /// So many synthesised clips on three bodies, the same for the same seed.
+    /// Returns synthesised clips on three bodies, as many as asked for, the same for the same seed.
     #[must_use]
     pub fn synthesised(count: usize, seed: u64) -> Self {
         let mut motions = Self::default();
@@ -284,7 +284,7 @@ fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
     }
 }
 
-/// What a link writes for an id.
+/// An id as a link writes it.
 #[must_use]
 pub fn encoded(id: &str) -> String {
     form_urlencoded::byte_serialize(id.as_bytes()).collect()

@@ -19,9 +19,9 @@ pub fn keep_panics() {
     }));
 }
 
-/// What a closure gives, or the words and the place of its panic.
+/// Runs a closure; returns its value, or the message and place of its panic.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    // Whoever panicked is thrown away.
+    // A session that panicked is not used again.
     catch_unwind(AssertUnwindSafe(work)).map_err(|_| LAST_PANIC.with(|last| last.borrow().clone()))
 }
 

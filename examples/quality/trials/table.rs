@@ -1,4 +1,4 @@
-//! What the trials came to, in Markdown and as JSON.
+//! The outcomes of the trials, in Markdown and as JSON.
 
 use super::folder::Motions;
 use super::trial::{Came, Drawn, Numbers, Trial, median};

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked than what a good transition does.
 const CLOSE_CM: f32 = 12.0;
-/// What takes longer is given up, seconds.
+/// Trials that take longer are given up, seconds.
 const MOST_SECS: f64 = 120.0;
 /// An edited path bulges out by this share of its length, and by no more than so many metres.
 const BULGE: f64 = 0.05;
