@@ -31,7 +31,7 @@ const WALKS: [&str; 2] = ["dissolve", "inertialize"];
 const SCENARIOS: [&str; 7] = ["straight", "left", "right", "spin", "start_stop", "run", "eight"];
 const JUMPS: [&str; 2] = ["inertialize", "dead"];
 
-/// What takes are drawn together for.
+/// Why takes are drawn together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Drawn {
     /// Two takes of one rig.
@@ -59,7 +59,7 @@ impl Drawn {
 struct Way {
     lab: &'static str,
     method: String,
-    /// What the link says besides the takes.
+    /// The link's parameters besides the takes.
     query: String,
     /// The parameter that plants feet.
     lock: &'static str,
@@ -91,7 +91,7 @@ pub struct Trial {
     pub drawn: Drawn,
     /// The takes.
     pub takes: Vec<String>,
-    /// What opens it again where the takes are in the library.
+    /// The link that opens it again where the takes are in the library.
     pub link: String,
     /// Feet are planted.
     pub locked: bool,
@@ -99,11 +99,11 @@ pub struct Trial {
     pub bound: bool,
     /// How long it took, seconds.
     pub secs: f64,
-    /// What came of it.
+    /// Its outcome.
     pub came: Came,
 }
 
-/// What came of a trial.
+/// The outcome of a trial.
 #[derive(Debug, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Came {
@@ -139,7 +139,7 @@ pub struct Numbers {
 }
 
 impl Trial {
-    /// What about it is worse than its sources beyond the bounds; empty where nothing is.
+    /// Returns the names of the numbers that are worse than the sources' beyond the bounds.
     #[must_use]
     pub fn faults(&self) -> Vec<&'static str> {
         let mut faults = Vec::new();
@@ -403,7 +403,7 @@ impl Opened {
     }
 }
 
-/// What a link shows when all work is done.
+/// Opens a link and returns its result when all work is done.
 fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
     let opened = session.apply(Command::OpenLink(link.to_owned()));
     opened.map_err(|error| Came::Refused(error.to_string()))?;
