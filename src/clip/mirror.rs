@@ -1,5 +1,9 @@
 use super::{Clip, ClipError};
-use crate::skeleton::{Mirror, NoSides, Roles};
+use crate::math::quat;
+use crate::skeleton::{Mirror, NoSides, Roles, rest_is_plausible};
+
+/// Frames from which it is taken what a joint usually does, at most.
+const SAMPLES: usize = 240;
 
 /// Why a clip has no mirror image.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,10 +23,24 @@ pub enum MirrorError {
 /// # Errors
 /// [`MirrorError::NoSides`] when neither roles nor names tell left from right.
 pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
-    let mirror = Mirror::of(clip.skeleton(), roles)?;
+    let mirror = mirror_of(clip, roles)?;
     let poses = (0..clip.frames()).map(|frame| mirror.pose(&clip.pose(frame)));
     let mirrored = Clip::from_poses(clip.name(), clip.skeleton().clone(), clip.fps(), poses)?;
     Ok(mirrored.with_provenance(clip.provenance()))
+}
+
+/// How a clip's skeleton looks in a mirror: by its rest pose where that shows a creature, else by the motion.
+fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoSides> {
+    let skeleton = clip.skeleton();
+    if rest_is_plausible(skeleton, roles) != Some(false) {
+        return Mirror::of(skeleton, roles);
+    }
+    let step = clip.frames().div_ceil(SAMPLES).max(1);
+    let usual = (0..skeleton.len()).map(|joint| {
+        let frames = (0..clip.frames()).step_by(step);
+        quat::mean(frames.filter_map(|frame| clip.rotations(frame).get(joint).copied()))
+    });
+    Mirror::of_motion(skeleton, roles, &usual.collect::<Vec<_>>())
 }
 
 #[cfg(test)]
@@ -30,7 +48,8 @@ mod tests {
     use super::*;
     use crate::clip::JointTranslations;
     use crate::clip::fixtures::{largest_distance, wander, wander_by};
-    use crate::skeleton::{Joint, Role, Skeleton, fixtures};
+    use crate::skeleton::{Joint, Pose, Role, Skeleton, fixtures};
+    use crate::synth::{Action, Params, synthesize};
     use glam::{Quat, Vec3};
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -86,6 +105,27 @@ mod tests {
             let (p, q) = (plain.world_positions(0..4), other.world_positions(0..4));
             let far = p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
             assert!(far < 1e-3, "{rig}: {far} m");
+        }
+    }
+
+    /// Rest poses that show no creature tell nothing of turns about bones, and a spine must not come out turned half round.
+    #[test]
+    fn joints_turned_by_constants_do_in_the_mirror_what_they_usually_do() {
+        let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+        let roles = Roles::detect(clip.skeleton());
+        for seed in 0..4 {
+            let (turned, turns) = fixtures::turned(clip.skeleton(), seed);
+            let poses: Vec<Pose> = (0..clip.frames())
+                .map(|frame| fixtures::turned_pose(clip.skeleton(), &turns, &clip.pose(frame)))
+                .collect();
+            let rewritten = Clip::from_poses("turned", turned, clip.fps(), poses).unwrap();
+            let image = mirror(&rewritten, &roles).unwrap();
+            let mean = |clip: &Clip, joint: usize| quat::mean((0..clip.frames()).map(|frame| clip.rotations(frame)[joint]));
+            for joint in 1..clip.skeleton().len() {
+                let apart = quat::angle_between(mean(&rewritten, joint), mean(&image, joint)).to_degrees();
+                assert!(apart < 8.0, "{seed}: {} {apart}°", clip.skeleton().joints()[joint].name);
+            }
+            assert!(largest_distance(&rewritten, &mirror(&image, &roles).unwrap()) < 1e-3);
         }
     }
 

@@ -58,11 +58,7 @@ fn most_upright(poses: &[WorldPose], skeleton: &Skeleton, roles: &Roles) -> Opti
     for (joint, against) in pairs.chain(head) {
         let turn = |pose: &WorldPose| quat::renormalize(pose.rotations[against].conjugate() * pose.rotations[joint]);
         let turns: Vec<Quat> = poses.iter().map(turn).collect();
-        let first = *turns.first()?;
-        let sum = (turns.iter()).fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, turn| {
-            sum + quat::in_hemisphere_of(*turn, first)
-        });
-        let mean = quat::renormalize(sum);
+        let mean = quat::mean(turns.iter().copied());
         for (apart, turn) in apart.iter_mut().zip(turns) {
             *apart += quat::angle_between(turn, mean);
         }

@@ -162,6 +162,14 @@ pub fn renormalize(q: Quat) -> Quat {
     }
 }
 
+/// The mean of rotations that are near each other: the sum of the quaternions in the hemisphere of the first, of unit length. The identity for none.
+#[must_use]
+pub fn mean(rotations: impl IntoIterator<Item = Quat>) -> Quat {
+    let mut rotations = rotations.into_iter();
+    let Some(first) = rotations.next() else { return Quat::IDENTITY };
+    renormalize(rotations.fold(first, |sum, rotation| sum + in_hemisphere_of(rotation, first)))
+}
+
 /// The shortest rotation that takes the direction `from` to the direction `to`; the identity where either is too short to have one.
 #[must_use]
 pub fn between_directions(from: Vec3, to: Vec3) -> Quat {

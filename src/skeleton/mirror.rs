@@ -30,6 +30,9 @@ pub struct NoSides;
 /// symmetric rest pose C is the identity. With any other the bones' directions are those of the mirror image all the same, and only their
 /// lengths are the skeleton's own: nothing depends on how the file lays the joints' axes. Mirroring twice gives the original back, because
 /// `C(p) = M · C(j)⁻¹ · M`.
+///
+/// One bone leaves the turn about itself open. A symmetric rest pose tells it, too; one that shows no creature does not, and a spine could come out
+/// of it turned half round. There the motion tells ([`Mirror::of_motion`]): on the whole the left does what the right does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mirror {
     /// Unit normal of the rest pose's plane of symmetry.
@@ -47,6 +50,19 @@ impl Mirror {
     /// # Errors
     /// [`NoSides`] when roles and names give no pair at all.
     pub fn of(skeleton: &Skeleton, roles: &Roles) -> Result<Self, NoSides> {
+        Self::turned_by(skeleton, roles, None)
+    }
+
+    /// As [`of`](Self::of), for a skeleton whose rest pose shows no creature: `usual` is the mean rotation of each joint against its parent in a motion. What
+    /// the bones leave open is chosen so that the mirror image has these means, too, as nearly as it can.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn of_motion(skeleton: &Skeleton, roles: &Roles, usual: &[Quat]) -> Result<Self, NoSides> {
+        Self::turned_by(skeleton, roles, Some(usual))
+    }
+
+    fn turned_by(skeleton: &Skeleton, roles: &Roles, usual: Option<&[Quat]>) -> Result<Self, NoSides> {
         let rest = skeleton.rest_positions();
         let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoSides)?;
         let pairing = Pairing::new(skeleton, roles, &rest, normal);
@@ -74,11 +90,13 @@ impl Mirror {
                 (Some(bone), Some(others)) => Some((bone, mirror.reflected(others))),
                 _ => longest.filter(|(bone, _)| bone.length() > LEAST_BONE_M),
             };
+            let near = usual.and_then(|usual| mirror.usual_correction(joint, other, usual));
             mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
                 // The second of a pair is made from the first, so that both undo each other to the last bit.
                 _ if other < joint => mirror.reflected_rotation(mirror.corrections[other].conjugate()),
                 (_, Some(turn)) if pairing.bone(joint).is_none() => turn,
-                (Some((bone, others)), _) => turned_about_bone(bone, others, &bones),
+                (Some((bone, others)), _) => turned_about_bone(bone, others, &bones, near.unwrap_or(Quat::IDENTITY)),
+                _ if near.is_some() => near.unwrap_or(Quat::IDENTITY),
                 // What has no bones follows its parent, except in the middle: there it is the mirror image of itself.
                 _ if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
                 _ => Quat::IDENTITY,
@@ -88,6 +106,13 @@ impl Mirror {
             }
         }
         Ok(mirror)
+    }
+
+    /// The correction with which the mirror image of what the counterpart usually does is what the joint itself usually does.
+    fn usual_correction(&self, joint: usize, other: usize, usual: &[Quat]) -> Option<Quat> {
+        let parent = self.parents[joint]?;
+        let image = self.corrections[parent].conjugate() * self.reflected_rotation(*usual.get(other)?);
+        Some(quat::renormalize(image.conjugate() * *usual.get(joint)?))
     }
 
     /// The bones that start at a joint, each with the mirror image of the one that starts at its counterpart and ends at theirs.
@@ -165,9 +190,10 @@ impl Mirror {
     }
 }
 
-/// The rotation that takes a bone to another, turned about that so that what else starts at the joint comes as near as it can to where it belongs.
-fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)]) -> Quat {
-    let turn = quat::between_directions(from, to);
+/// The rotation that takes a bone to another, turned about that so that what else starts at the joint comes as near as it can to where it belongs; where
+/// nothing else does, the one that is nearest to `near`.
+fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -> Quat {
+    let turn = quat::renormalize(quat::between_directions(near * from, to) * near);
     let Some(axis) = to.try_normalize() else { return turn };
     let (mut sin, mut cos, mut size) = (0.0, 0.0, 0.0_f32);
     for &(bone, wanted) in bones {
