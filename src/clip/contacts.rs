@@ -156,11 +156,16 @@ impl Contacts {
 
 /// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
 pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
+    stillest_point(before, after).map(|(_, step)| step)
+}
+
+/// The number of that point, and its step.
+pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, Vec3)> {
     let steps = before
         .iter()
         .zip(after)
         .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
-    steps.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+    steps.enumerate().min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
 }
 
 /// World positions, frame by frame.

@@ -82,7 +82,7 @@ mod sampling;
 mod storage;
 mod velocity;
 
-pub(crate) use contacts::stillest_step;
+pub(crate) use contacts::{stillest_point, stillest_step};
 pub use contacts::{ContactOptions, Contacts};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;

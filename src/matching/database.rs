@@ -5,7 +5,7 @@ use super::search::{BoxIndex, BoxMasks, Candidates, Question};
 use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
 use crate::clip::Clip;
-use crate::math::{Planar, quat};
+use crate::math::{Planar, quat, stats};
 use crate::skeleton::{Pose, Roles, Skeleton};
 use std::sync::Arc;
 
@@ -103,6 +103,12 @@ impl Database {
     pub fn ground_m(&self) -> f32 {
         let heights = self.motions.iter().map(|motion| motion.ground_m());
         heights.min_by(f32::total_cmp).unwrap_or(0.0)
+    }
+
+    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres: the middle one of the motions'.
+    pub(super) fn stand_m(&self) -> f32 {
+        let heights: Vec<f32> = self.motions.iter().map(|motion| motion.stand_m()).collect();
+        stats::percentile(&heights, 0.5).unwrap_or(0.0)
     }
 
     /// The skeleton of all motions: the first clip's.

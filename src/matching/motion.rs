@@ -1,11 +1,12 @@
+use super::controller::OwnFoot;
 use super::features::{BODY, Layout, RATE};
 use super::pace::Pace;
 use super::round::{moved_by, standing};
 use super::simulation::simulation_roots_of_cycle;
 use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
-use crate::clip::{Clip, Contacts, character_frames, estimate_ground};
-use crate::math::{Planar, wrap_angle};
+use crate::clip::{Clip, Contacts, character_frames, estimate_ground, stillest_point};
+use crate::math::{Planar, stats, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
 use std::sync::Arc;
@@ -17,6 +18,9 @@ pub struct Motion {
     roots: Vec<Planar>,
     contacts: Contacts,
     ground_m: f32,
+    stand_m: f32,
+    /// Left and right, frame by frame.
+    feet: [Vec<OwnFoot>; 2],
     body: Vec<[f32; BODY]>,
     pace: Pace,
     source: usize,
@@ -71,9 +75,18 @@ impl Motion {
             let name = clip.name().to_owned();
             return Err(MatchError::NotFinite { name });
         }
+        let ground_m = estimate_ground(&clip, roles, &contacts);
+        let mut feet = Side::BOTH.map(|side| own_foot(&clip, cycle.as_ref(), roles, &contacts, side));
+        let standing: Vec<f32> = (feet.iter().flatten().filter(|foot| foot.planted)).map(|foot| foot.above_m).collect();
+        let stand_m = stats::percentile(&standing, 0.5).unwrap_or(ground_m);
+        for foot in feet.iter_mut().flatten() {
+            foot.above_m -= stand_m;
+        }
         Ok(Self {
             pace: Pace::of(&clip, &roots),
-            ground_m: estimate_ground(&clip, roles, &contacts),
+            ground_m,
+            stand_m,
+            feet,
             clip,
             roots,
             contacts,
@@ -113,6 +126,17 @@ impl Motion {
     #[must_use]
     pub fn ground_m(&self) -> f32 {
         self.ground_m
+    }
+
+    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres. Feet that dip into the floor at push-off set the ground
+    /// lower than this.
+    pub(super) fn stand_m(&self) -> f32 {
+        self.stand_m
+    }
+
+    /// What the feet do in a frame: left, right.
+    pub(super) fn feet(&self, frame: usize) -> [OwnFoot; 2] {
+        [0, 1].map(|side: usize| self.feet[side].get(frame).copied().unwrap_or_default())
     }
 
     /// The number of the clip that it was made from, among those that the database was built from.
@@ -280,6 +304,39 @@ fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roo
                 to.copy_from_slice(&value.to_array());
             }
             row
+        })
+        .collect()
+}
+
+/// What a foot does, frame by frame: its speed is that of the step into the frame, in the first frame of a clip that is no cycle of the step out of it;
+/// its height is that in the world.
+fn own_foot(clip: &Clip, cycle: Option<&Planar>, roles: &Roles, contacts: &Contacts, side: Side) -> Vec<OwnFoot> {
+    let points = roles.foot_points(clip.skeleton(), side);
+    let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
+    let mut world = WorldPose::default();
+    let ways: Vec<Vec<Vec3>> = (0..clip.frames())
+        .map(|frame| {
+            clip.world_pose_of(frame, &needed, &mut world);
+            points.iter().map(|&(joint, point)| world.point(joint, point)).collect()
+        })
+        .collect();
+    let last = ways.len().saturating_sub(1);
+    let step = |frame: usize| match (frame, cycle) {
+        (0, Some(cycle)) => {
+            let back = moved_by(cycle, -1);
+            let before: Vec<Vec3> = ways[last].iter().map(|point| back.apply(*point)).collect();
+            stillest_point(&before, &ways[0])
+        }
+        (0, None) => stillest_point(&ways[0], &ways[last.min(1)]),
+        _ => stillest_point(&ways[frame - 1], &ways[frame]),
+    };
+    (0..ways.len())
+        .map(|frame| (frame, step(frame).unwrap_or_default()))
+        .map(|(frame, (stillest, step))| OwnFoot {
+            planted: contacts.planted(side, frame),
+            stillest,
+            above_m: ways[frame].iter().map(|point| point.y).fold(f32::INFINITY, f32::min),
+            speed_mps: step.length() * RATE as f32,
         })
         .collect()
 }

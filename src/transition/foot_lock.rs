@@ -330,6 +330,11 @@ impl Leg {
         self.write(&posed, upper, lower, local);
     }
 
+    /// By how much the hips are too high for this leg when its ankle is moved by `shift`, metres.
+    pub(crate) fn too_high(&self, world: &WorldPose, shift: Vec3) -> f32 {
+        hips::too_high(std::iter::once((&self.pose(world), shift)), 0.0)
+    }
+
     fn pose(&self, world: &WorldPose) -> Posed {
         let [hip, knee, ankle] = self.joints.map(|joint| world.positions[joint]);
         Posed {

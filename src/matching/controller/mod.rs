@@ -13,12 +13,13 @@ use super::database::{Database, Place};
 use super::desired::Simulation;
 use super::features::RATE;
 use super::search::TreeIndex;
-use super::{MatchError, Motion, TagFilter};
+use super::{MatchError, TagFilter};
 use crate::blend::translation_of;
 use crate::math::{Planar, quat, spring, wrap_angle};
-use crate::skeleton::{Pose, Side};
+use crate::skeleton::Pose;
 use crate::transition::{Inertializer, MovingPose};
 use feet::Feet;
+pub(super) use feet::OwnFoot;
 use glam::{DVec2, Vec3};
 use std::sync::Arc;
 
@@ -79,13 +80,7 @@ impl Controller {
     /// [`MatchError::Setting`] when an option is out of range.
     pub fn new(database: Arc<Database>, options: ControllerOptions, start: &Planar) -> Result<Self, MatchError> {
         options.validate()?;
-        let first = database.motion(0).map(Motion::clip);
-        let step = first.map_or(1, |clip| clip.frames().div_ceil(60).max(1));
-        let examples: Vec<_> = first
-            .into_iter()
-            .flat_map(|clip| (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame)))
-            .collect();
-        let feet = Feet::new(database.skeleton(), database.roles(), &examples, database.ground_m());
+        let feet = Feet::new(&database);
         let mut controller = Self {
             weights: options.weights.spread(database.features().layout()),
             simulation: Simulation::at_rest(start),
@@ -151,7 +146,7 @@ impl Controller {
         self.tree = None;
         self.record = None;
         if !same {
-            self.feet = Feet::new(self.database.skeleton(), self.database.roles(), &[], self.database.ground_m());
+            self.feet = Feet::new(&self.database);
             self.begin();
         }
     }
@@ -340,10 +335,10 @@ impl Controller {
         pose.translations.clear();
         pose.translations
             .extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
-        let planted = Side::BOTH.map(|side| motion.contacts().planted(side, frame));
+        let own = motion.feet(frame);
         let planting = self.options.planting.as_ref();
         let usual = &self.database.pace().joints_radps;
-        self.planted = self.feet.apply(self.database.skeleton(), pose, planted, planting, usual, TICK_SECS);
+        self.planted = self.feet.apply(self.database.skeleton(), pose, own, planting, usual, TICK_SECS);
     }
 
     /// Stands where the simulation object is.

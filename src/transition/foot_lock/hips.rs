@@ -46,7 +46,7 @@ fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
 }
 
 /// By how much the hips would be too high for the legs to reach, metres.
-fn too_high<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>, height: f32) -> f32 {
+pub(super) fn too_high<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>, height: f32) -> f32 {
     let too_high = |(leg, shift): (&Posed, Vec3)| {
         let asked = leg.line() + shift;
         let (reach, aside) = (leg.reach(), Vec3::new(asked.x, 0.0, asked.z).length());
