@@ -21,6 +21,9 @@ pub struct FootLockOptions {
     pub max_shift_m: f32,
     /// The height of the ground, metres: planted feet are lifted out of it. `None` leaves heights as they are.
     pub ground_m: Option<f32>,
+    /// How high above where it stands a foot is that swings, metres: what is lower scrapes over the ground, and is lifted. People clear it by 1 to 2 cm
+    /// with their toes (Winter 1992, "The foot trajectory in human gait"); a little more is not seen as sliding. `None` leaves swings as they are.
+    pub clearance_m: Option<f32>,
 }
 
 impl Default for FootLockOptions {
@@ -29,6 +32,7 @@ impl Default for FootLockOptions {
             blend_secs: 0.2,
             max_shift_m: 0.3,
             ground_m: Some(0.0),
+            clearance_m: Some(0.025),
         }
     }
 }
@@ -75,6 +79,9 @@ const PLANE_SINE: f32 = 0.2;
 /// is chosen so that the correction vanishes where the foot is stillest: a mean over the stance with weights of inverse squared speed.
 /// What is below the ground is lifted out of it. Before and behind a stance the correction dies away with its own velocity
 /// ([`Decay::Cubic`](crate::math::Decay)), so that a foot does not jerk off the ground.
+///
+/// *What is lifted.* Where the foot swings from one stance to the next, each of its points is brought [`FootLockOptions::clearance_m`] above the height that it
+/// has in these, smoothly, while it goes faster than a slow step. Between two motions a foot may pass the ground lower than in either.
 ///
 /// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to its place, then the leg is swung the shortest way
 /// ([`two_bones`]); joints between hip, knee and ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
@@ -178,6 +185,7 @@ impl State {
         };
         check("blend time (s)", options.blend_secs, MOST_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
+        check("clearance (m)", f64::from(options.clearance_m.unwrap_or(0.0)), 1.0)?;
         let sides = Side::BOTH.into_iter();
         let (sides, legs): (Vec<Side>, Vec<Leg>) = sides
             .filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?)))

@@ -318,7 +318,9 @@ impl<'a> Bench<'a> {
                 };
                 // A path that turns faster than the motion can says so, and nothing is asked of the motion on it.
                 let is_hard = |outcome: &Arc<Outcome>| outcome.path.as_ref().is_some_and(|path| !path.hard_turns.is_empty());
-                let asks_much = way.jumps || opened.made.as_ref().is_ok_and(is_hard);
+                // What is laid on top of a motion adds its own speed to it, by design.
+                let adds = way.lab == "layers" && way.method == "additive";
+                let asks_much = way.jumps || adds || opened.made.as_ref().is_ok_and(is_hard);
                 let bound = !asks_much && (is_close || way.lab == "match") && way.lab != "graph";
                 let numbers = |outcome: &Outcome| {
                     let values: Vec<f64> = outcome.metrics.iter().filter_map(|metric| metric.value).collect();

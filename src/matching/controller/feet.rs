@@ -362,11 +362,11 @@ mod tests {
             ..OwnFoot::default()
         };
         let stood = path(stands);
-        assert!(stood[39].distance(stood[1]) < 2e-3, "{} {}", stood[1], stood[39]);
+        assert!(stood[39].distance(stood[1]) < 4e-3, "{} {}", stood[1], stood[39]);
         let moved = path(OwnFoot::default());
         // It goes at 0.3 m/s: not as fast as to be lifted to the full, and not at once.
         assert!((moved[39] - moved[0]).x > 0.14 && moved[39].y - moved[0].y > 0.01, "{} {}", moved[0], moved[39]);
-        assert!(moved.windows(2).all(|pair| pair[1].y - pair[0].y < 4e-3));
+        assert!(moved.windows(2).all(|pair| pair[1].y - pair[0].y < 6e-3));
         // What the clip itself does is left alone.
         let own = path(OwnFoot {
             above_m: database.motion(0).unwrap().feet(0)[0].above_m,
@@ -388,8 +388,8 @@ mod tests {
         let push = |frame: usize, pose: &mut Pose| pose.root_translation += Vec3::X * (0.01 * frame.clamp(10, 60) as f32);
         let poses = played(&database, &[], 0..140, |_| stands, push);
         let feet: Vec<Vec3> = poses.iter().map(|pose| left_foot(&database, pose)).collect();
-        assert!(feet[20].distance(feet[11]) < 2e-3, "{} {}", feet[11], feet[20]);
-        assert!(feet[139].x - feet[11].x > 0.35, "{} {}", feet[11], feet[139]);
+        assert!(feet[20].distance(feet[11]) < 4e-3, "{} {}", feet[11], feet[20]);
+        assert!(feet[139].x - feet[11].x > 0.3, "{} {}", feet[11], feet[139]);
         assert!(feet.windows(2).skip(110).all(|pair| pair[1].distance(pair[0]) < 1e-3));
         let highest = feet.iter().map(|foot| foot.y).fold(0.0, f32::max);
         assert!(highest - feet[0].y > 0.01, "it steps: {highest}");

@@ -3,7 +3,7 @@
 use super::FootLockOptions;
 use super::envelope::{largest_around, smoothed};
 use crate::clip::{Clip, stillest_step};
-use crate::math::{Decay, curve};
+use crate::math::{Decay, curve, stats};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
@@ -15,6 +15,13 @@ const SHORTEST_SWING_M: f32 = 0.05;
 const STILL_MPS: f32 = 0.05;
 /// A foot that is lifted out of the ground is lifted smoothly over this time to either side, seconds.
 const LIFT_SECS: f64 = 0.06;
+
+/// A foot swings at the full above this speed, metres per second, and not at all below [`STEPS_MPS`].
+const SWINGS_MPS: f32 = 1.2;
+const STEPS_MPS: f32 = 0.5;
+
+/// What takes longer is no swing from one stance to the next, seconds.
+const LONGEST_SWING_SECS: f64 = 1.5;
 
 /// The way of one foot through the clip.
 #[derive(Debug)]
@@ -49,20 +56,69 @@ impl Foot {
             self.hold(stance, fps, scale, options, &mut shifts);
         }
         for (index, stance) in stances.iter().enumerate() {
-            let next = stances.get(index + 1).map_or(frames, |next| next.start);
+            let next = stances.get(index + 1).map(|next| next.start);
             let before = index
                 .checked_sub(1)
                 .and_then(|before| stances.get(before))
-                .map_or(0, |before| before.end);
+                .map(|before| before.end);
             let last = stance.end - 1;
             // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
             let inside = |frame: usize| shifts[frame.clamp(stance.start, last)];
             let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
             let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
-            fade(into, options.blend_secs, fps, shifts[before..stance.start].iter_mut().rev());
-            fade(out, options.blend_secs, fps, shifts[stance.end..next].iter_mut());
+            // By the next stance all of it is gone; at an end of the clip it is cut off.
+            let within = |frames: usize| options.blend_secs.min((frames + 1) as f64 / fps);
+            let blend_secs = before.map_or(options.blend_secs, |before| within(stance.start - before));
+            fade(into, blend_secs, fps, shifts[before.unwrap_or(0)..stance.start].iter_mut().rev());
+            let blend_secs = next.map_or(options.blend_secs, |next| within(next - stance.end));
+            fade(out, blend_secs, fps, shifts[stance.end..next.unwrap_or(frames)].iter_mut());
+        }
+        if let Some(clearance_m) = options.clearance_m {
+            self.clear(&stances, fps, scale, clearance_m, &mut shifts);
         }
         shifts
+    }
+
+    /// Lifts the foot, where it swings from one stance to the next, over the height that each of its points has in these.
+    fn clear(&self, stances: &[Range<usize>], fps: f64, scale: f32, clearance_m: f32, shifts: &mut [Vec3]) {
+        let longest = (LONGEST_SWING_SECS * fps) as usize;
+        let reach = ((LIFT_SECS * fps).round() as usize).max(1);
+        for pair in stances.windows(2) {
+            let swing = pair[0].end..pair[1].start;
+            if swing.len() > longest {
+                continue;
+            }
+            let levels = [&pair[0], &pair[1]].map(|stance| self.levels(stance, shifts));
+            let missing = |frame: usize| {
+                let speed = self.step_into(frame).length() * fps as f32 / scale;
+                let swings = curve::smoothstep((speed - STEPS_MPS) / (SWINGS_MPS - STEPS_MPS));
+                let part = (frame + 1 - swing.start) as f32 / (swing.len() + 1) as f32;
+                let missing = self.at(frame).iter().enumerate().map(|(point, place)| {
+                    let [from, to] = [levels[0][point], levels[1][point]];
+                    from + (to - from) * part + clearance_m * scale - place.y - shifts[frame].y
+                });
+                swings * missing.fold(0.0, f32::max)
+            };
+            let lifts: Vec<f32> = swing.clone().map(missing).collect();
+            if lifts.iter().all(|&lift| lift == 0.0) {
+                continue;
+            }
+            let lifts = smoothed(&largest_around(&lifts, reach), reach);
+            for (index, lift) in lifts.into_iter().enumerate() {
+                // It leaves the ground smoothly, and comes down on time.
+                let near = (index + 1).min(swing.len() - index).min(2 * reach) as f32 / (2 * reach) as f32;
+                shifts[swing.start + index].y += lift * curve::smoothstep(near);
+            }
+        }
+    }
+
+    /// The height that each point has as a rule in a stance.
+    fn levels(&self, stance: &Range<usize>, shifts: &[Vec3]) -> Vec<f32> {
+        let level = |point: usize| {
+            let heights: Vec<f32> = stance.clone().map(|frame| self.at(frame)[point].y + shifts[frame].y).collect();
+            stats::percentile(&heights, 0.5).unwrap_or(f32::NEG_INFINITY)
+        };
+        (0..self.points.len()).map(level).collect()
     }
 
     /// Stances with next to nothing between them as one. Where the foot goes far in so short a time it needs longer: both stances give up frames.
@@ -144,9 +200,8 @@ impl Foot {
     }
 }
 
-/// Adds what dies away from a shift and its step into the frames behind it; all of it is gone at their end.
-fn fade<'a>((shift, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl ExactSizeIterator<Item = &'a mut Vec3>) {
-    let blend_secs = blend_secs.min((frames.len() + 1) as f64 / fps);
+/// Adds what dies away from a shift and its step into the frames behind it.
+fn fade<'a>((shift, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl Iterator<Item = &'a mut Vec3>) {
     let decay = Decay::Cubic { blend_secs };
     for (index, frame) in frames.enumerate() {
         let secs = (index + 1) as f64 / fps;

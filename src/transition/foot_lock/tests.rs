@@ -3,6 +3,7 @@ use crate::clip::fixtures::wander_by;
 use crate::clip::{ContactOptions, stillest_step};
 use crate::registration::fixtures::Walk;
 use crate::skeleton::{Joint, Skeleton, fixtures};
+use crate::synth::{Action, Params, synthesize};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -148,6 +149,55 @@ fn frames_far_from_a_correction_stay_as_they_are() {
         assert_eq!(locked.pose(frame), clip.pose(frame), "{frame}");
     }
     assert_ne!(locked.pose(101), clip.pose(101));
+}
+
+#[test]
+fn feet_that_swing_clear_the_ground() {
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let roles = Roles::detect(clip.skeleton());
+    let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
+    let toe = roles.get(Role::LeftToe).unwrap();
+    let path = |clip: &Clip| (0..clip.frames()).map(|frame| clip.world_pose(frame).positions[toe]).collect::<Vec<_>>();
+    let locked = |clearance_m| {
+        let options = FootLockOptions {
+            clearance_m,
+            ..FootLockOptions::default()
+        };
+        path(&foot_lock(&clip, &roles, &contacts, &options).unwrap())
+    };
+    let (as_it_is, high) = (locked(None), locked(Some(0.12)));
+    let stances = contacts.intervals(Side::Left);
+    let standing: Vec<f32> = stances.iter().cloned().flatten().map(|frame| as_it_is[frame].y).collect();
+    let level = crate::math::stats::percentile(&standing, 0.5).unwrap();
+    let mut lowest = [f32::INFINITY; 2];
+    for pair in stances.windows(2) {
+        // Well inside the swing.
+        for frame in pair[0].end + 10..pair[1].start - 10 {
+            for (lowest, path) in lowest.iter_mut().zip([&as_it_is, &high]) {
+                *lowest = lowest.min(path[frame].y - level);
+            }
+        }
+        for frame in pair[0].clone() {
+            assert!(as_it_is[frame].distance(high[frame]) < 1e-4, "{frame}");
+        }
+    }
+    assert!(lowest[0] < 0.09 && lowest[1] > 0.11, "{lowest:?}");
+}
+
+/// What a foot is moved by need not die away before a clip ends: the leg would snap.
+#[test]
+fn a_stance_near_the_end_of_a_clip_ends_as_any_other() {
+    let (clip, roles) = sliding(1.6);
+    let contacts = backwards(&clip, &roles);
+    let stance = contacts.intervals(Side::Left).into_iter().find(|stance| stance.start > 60).unwrap();
+    let end = stance.end + 3;
+    let short = clip.crop(0..end).unwrap();
+    let flags = Side::BOTH.map(|side| (0..end).map(|frame| contacts.planted(side, frame)).collect());
+    let locked = foot_lock(&short, &roles, &Contacts::from_flags(flags), &FootLockOptions::default()).unwrap();
+    let foot = roles.get(Role::LeftFoot).unwrap();
+    let moved = |frame: usize| (locked.world_pose(frame).positions[foot] - short.world_pose(frame).positions[foot]) * Vec3::new(1.0, 0.0, 1.0);
+    let (last, gone) = (moved(stance.end - 1), moved(end - 1));
+    assert!(last.length() > 0.03 && gone.length() > 0.6 * last.length(), "{last} {gone}");
 }
 
 #[test]
