@@ -1,8 +1,11 @@
-use super::{GraphError, MotionGraph};
+use super::{GraphError, Jump, MotionGraph, StitchOptions, Stitcher, Way};
 use crate::math::Planar;
 use glam::DVec2;
 use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// How far a search looks ahead before it commits itself, seconds.
 const HORIZON_SECS: f64 = 4.0;
@@ -98,11 +101,11 @@ pub struct Followed {
 /// *Why a number and not a time.* A number gives the same way on every machine, so that a link that holds a path shows everybody the same walk. Time bounds
 /// the waiting alone: whoever cannot wait for the end shows [`PathSearch::so_far`], and goes on.
 ///
-/// Clips are laid on each other as their transitions' alignments say. What the [`Stitcher`](super::Stitcher) makes of it blends velocities and drifts
-/// off that by centimetres per transition.
+/// Clips are laid on each other as a [`Stitcher`] with these options does, so that what it makes of the way lies where the way was planned. Transitions
+/// that overlap are taken to begin from the clip that is left; there it may be off by centimetres.
 #[must_use]
-pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Followed {
-    let mut search = PathSearch::new(graph, start, path, budget);
+pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize, options: &StitchOptions) -> Followed {
+    let mut search = PathSearch::new(graph, start, path, budget, options);
     while !search.advance(graph, path, usize::MAX) {}
     search.so_far(graph, path)
 }
@@ -110,6 +113,9 @@ pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: 
 /// [`follow`] in slices of a number of nodes. However it is cut, it finds the same.
 #[derive(Clone, Debug)]
 pub struct PathSearch {
+    stitcher: Stitcher,
+    /// Where the transitions that were looked at lay the clip that they enter: by their numbers, `left_from_entered`.
+    placings: RefCell<BTreeMap<usize, Planar>>,
     world_from_first: Planar,
     here: State,
     edges: Vec<EdgeIndex>,
@@ -123,9 +129,16 @@ pub struct PathSearch {
 impl PathSearch {
     /// Stands at the start; the arguments are those of [`follow`].
     #[must_use]
-    pub fn new(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize) -> Self {
+    pub fn new(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize, options: &StitchOptions) -> Self {
         let world_from_first = first_place(graph, start, path);
+        // A mistake is made in the walk, not in the plan.
+        let options = StitchOptions {
+            mistake: None,
+            ..*options
+        };
         Self {
+            stitcher: Stitcher::new(Arc::clone(graph.set()), &options),
+            placings: RefCell::default(),
             world_from_first,
             here: State {
                 node: start,
@@ -146,7 +159,12 @@ impl PathSearch {
 
     /// Looks at about `nodes` more nodes; `true` when the path, the ways or the budget are at an end. Every call is given the same graph and path.
     pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath, nodes: usize) -> bool {
-        let ground = Ground { graph, path };
+        let ground = Ground {
+            graph,
+            path,
+            stitcher: &self.stitcher,
+            placings: &self.placings,
+        };
         let until = self.looked_at.saturating_add(nodes.max(1));
         while !self.is_over && self.looked_at < until {
             let ahead = match &mut self.ahead {
@@ -165,25 +183,21 @@ impl PathSearch {
                 }
             };
             if ahead.advance(&ground, &self.here, &mut self.looked_at, until) {
-                self.go_on(&ground);
+                // The first second of the best way ahead is gone.
+                let best = self.ahead.take().and_then(|ahead| ahead.best);
+                let kept = self.here.frames as f64 + KEPT_SECS * graph.set().fps();
+                let before = self.edges.len();
+                for edge in best.map(|(_, way)| way).unwrap_or_default() {
+                    if self.edges.len() > before && self.here.frames as f64 >= kept {
+                        break;
+                    }
+                    self.here = ground.behind(&self.here, edge);
+                    self.edges.push(edge);
+                }
+                self.is_over = self.edges.len() == before;
             }
         }
         self.is_over
-    }
-
-    /// Goes the first second of the best way ahead.
-    fn go_on(&mut self, ground: &Ground<'_>) {
-        let best = self.ahead.take().and_then(|ahead| ahead.best);
-        let kept = self.here.frames as f64 + KEPT_SECS * ground.graph.set().fps();
-        let before = self.edges.len();
-        for edge in best.map(|(_, way)| way).unwrap_or_default() {
-            if self.edges.len() > before && self.here.frames as f64 >= kept {
-                break;
-            }
-            self.here = ground.behind(&self.here, edge);
-            self.edges.push(edge);
-        }
-        self.is_over = self.edges.len() == before;
     }
 
     /// How much of the path is walked along, 0 to 1.
@@ -195,7 +209,12 @@ impl PathSearch {
     /// The best so far: what is kept, and the best way ahead.
     #[must_use]
     pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> Followed {
-        let ground = Ground { graph, path };
+        let ground = Ground {
+            graph,
+            path,
+            stitcher: &self.stitcher,
+            placings: &self.placings,
+        };
         let (mut here, mut edges) = (self.here, self.edges.clone());
         let best = self.ahead.as_ref().and_then(|ahead| ahead.best.as_ref());
         for &edge in best.map(|(_, way)| way.as_slice()).unwrap_or_default() {
@@ -326,6 +345,8 @@ impl Ahead {
 struct Ground<'a> {
     graph: &'a MotionGraph,
     path: &'a GroundPath,
+    stitcher: &'a Stitcher,
+    placings: &'a RefCell<BTreeMap<usize, Planar>>,
 }
 
 impl Ground<'_> {
@@ -343,16 +364,25 @@ impl Ground<'_> {
         let Some((stretch, (_, to))) = graph.node_weight(here.node).copied().zip(ends) else {
             return next;
         };
-        let jump = self.graph.jump(edge);
-        let end = jump.map_or(stretch.end, |jump| jump.leave.frame);
+        let jump = match graph.edge_weight(edge) {
+            Some(&Way::Jump(index)) => self.graph.jumps().get(index).map(|jump| (index, jump)),
+            _ => None,
+        };
+        let end = jump.map_or(stretch.end, |(_, jump)| jump.leave.frame);
         self.walk(&mut next, stretch.clip, stretch.start..end.max(stretch.start));
         next.node = to;
-        if let Some(jump) = jump {
-            next.world = here.world.after(&jump.alignment);
+        if let Some((index, jump)) = jump {
+            next.world = here.world.after(&self.placing(index, jump));
             let start = graph.node_weight(to).map_or(jump.enter.frame, |to| to.start);
             self.walk(&mut next, jump.enter.clip, jump.enter.frame..start.max(jump.enter.frame));
         }
         next
+    }
+
+    /// Where a transition lays the clip that it enters; where that cannot be made, where it is aligned.
+    fn placing(&self, index: usize, jump: &Jump) -> Planar {
+        let place = || self.stitcher.placing(jump).unwrap_or(jump.alignment);
+        *self.placings.borrow_mut().entry(index).or_insert_with(place)
     }
 
     fn walk(&self, state: &mut State, clip: usize, frames: std::ops::Range<usize>) {

@@ -1,4 +1,4 @@
-use super::{FrameSet, GraphError, MotionGraph, Place, Stay};
+use super::{FrameSet, GraphError, Jump, MotionGraph, Place, Stay};
 use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, laid_on};
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, wrap_angle};
@@ -210,6 +210,31 @@ impl Stitcher {
         });
         self.made += stay.to - stay.from;
         Ok(piece)
+    }
+
+    /// Where the clip that a transition enters comes to lie on the one that it leaves, both as they were recorded: `left_from_entered`. In a walk in which
+    /// the clip that is left has played for a while, that is where [`stitch`](Self::stitch) lays it, too.
+    ///
+    /// # Errors
+    /// As [`stitch`](Self::stitch).
+    pub(super) fn placing(&self, jump: &Jump) -> Result<Planar, GraphError> {
+        let secs = |secs: f64| (secs * self.set.fps()).round() as usize;
+        let source = |place: Place| self.set.clip(place.clip).ok_or(GraphError::NoClips);
+        let around = |place: Place, past: usize| -> Result<(Source, usize), GraphError> {
+            let source = source(place)?;
+            let from = place.frame.saturating_sub(past);
+            let until = (place.frame + secs(AHEAD_SECS)).min(source.clip().frames());
+            Ok((part(source, from..until)?, place.frame - from))
+        };
+        let (outgoing, leave) = around(jump.leave, secs(PAST_SECS).max(1))?;
+        let (incoming, enter) = around(jump.enter, 1)?;
+        let tail = Tail {
+            source: outgoing,
+            leave,
+            world_from_here: Planar::IDENTITY,
+            place: jump.leave,
+        };
+        Ok(self.joined(&tail, &incoming, enter)?.tail_from_piece)
     }
 
     /// Where the walk would go on in its present clip; none before the first piece.

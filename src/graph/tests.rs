@@ -827,7 +827,7 @@ fn mistakes_spin() {
 #[test]
 fn a_path_is_followed() {
     let set = three([300, 260, 240]);
-    let graph = built(&set, &options(Construction::Minima, 12, 12.0)).unwrap().pruned().unwrap();
+    let graph = Arc::new(built(&set, &options(Construction::Minima, 12, 12.0)).unwrap().pruned().unwrap());
     let path = GroundPath::new(&[DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0)]).unwrap();
     assert!((path.length() - 4.0 - 41.0_f64.sqrt()).abs() < 1e-12);
     assert_eq!(
@@ -835,7 +835,8 @@ fn a_path_is_followed() {
         (DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0))
     );
     let start = NodeIndex::new(0);
-    let found = follow(&graph, start, &path, 60_000);
+    let stitched = StitchOptions::dissolve(12);
+    let found = follow(&graph, start, &path, 60_000, &stitched);
     assert!(
         found.arrives && found.rms_m < 1.5,
         "{} {} {} {}",
@@ -844,10 +845,10 @@ fn a_path_is_followed() {
         found.along_m,
         found.looked_at
     );
-    assert_eq!(follow(&graph, start, &path, 60_000), found);
+    assert_eq!(follow(&graph, start, &path, 60_000, &stitched), found);
     // In slices the same, with a best so far that comes ever farther.
     for nodes in [1, 700] {
-        let mut search = PathSearch::new(&graph, start, &path, 60_000);
+        let mut search = PathSearch::new(&graph, start, &path, 60_000, &stitched);
         let (mut before, mut slices) = (0.0, 0);
         while !search.advance(&graph, &path, nodes) {
             slices += 1;
@@ -864,8 +865,29 @@ fn a_path_is_followed() {
         let [before, after] = [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
         assert_eq!(before.1, after.0);
     }
+    // What is made of the way lies where the way was planned.
+    for options in [StitchOptions::dissolve(12), StitchOptions::inertialize(0.1)] {
+        let found = follow(&graph, start, &path, 6_000, &options);
+        let mut stitcher = Stitcher::new(Arc::clone(graph.set()), &options);
+        stitcher.start_at(found.world_from_first);
+        let mut walker = walker(&graph, &WeightOptions::default(), 1);
+        walker.take(found.edges.iter().copied());
+        let (mut along, mut last, mut square, mut frames) = (0.0, None, 0.0, 0.0);
+        while walker.has_way() {
+            let piece = stitcher.stitch(&graph, &walker.next_stay().unwrap()).unwrap();
+            for frame in &piece.frames {
+                let at = piece.world_from_piece.after(frame).shift;
+                along += last.map_or(0.0, |last: DVec2| last.distance(at));
+                last = Some(at);
+                square += at.distance_squared(path.at(along));
+                frames += 1.0;
+            }
+        }
+        let rms_m = f64::sqrt(square / frames);
+        assert!((rms_m - found.rms_m).abs() < 0.05 * found.rms_m, "{rms_m} {}", found.rms_m);
+    }
     // A small budget gives a way, too, and hardly goes beyond.
-    let hasty = follow(&graph, start, &path, 40);
+    let hasty = follow(&graph, start, &path, 40, &stitched);
     assert!(!hasty.edges.is_empty() && hasty.looked_at < 1_000);
     assert!(GroundPath::new(&[DVec2::ZERO]).is_err() && GroundPath::new(&[DVec2::NAN, DVec2::ZERO]).is_err());
 }

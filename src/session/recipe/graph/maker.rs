@@ -113,7 +113,7 @@ impl Maker {
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
-            let search = PathSearch::new(built.graph(), NodeIndex::new(0), &path, PATH_BUDGET);
+            let search = PathSearch::new(built.graph(), NodeIndex::new(0), &path, PATH_BUDGET, &wanted.stitch);
             maker.search = Some((search, path));
         }
         Ok(maker)
