@@ -33,7 +33,9 @@ export function onBackend(backend, name, body) {
     };
     try {
       await body({ backend, open, t });
-      for (const { problems } of opened) {
+      for (const { problems, log, refuses } of opened) {
+        // What the page's own policy forbids it to do is a mistake, but where a test tries to break it (`refuses`).
+        if (!refuses) problems.push(...log.filter((line) => line.includes("Content Security Policy")));
         if (problems.length) throw new Error(`the page reported:\n${problems.join("\n")}`);
       }
     } catch (error) {

@@ -20,12 +20,12 @@ const isKept = (page) => until("the page is kept", () => page.evaluate(() => Boo
 /** A host whose build changes under the page's feet: `html` and `worker` are the names that its two entry files go by. */
 async function host(t) {
   const real = (await readFile(new URL("index.html", DIST), "utf8")).match(/name="build" content="(\w+)"/)[1];
-  const now = { html: real, worker: real, real };
+  const now = { html: real, worker: real, real, beside: {} };
   const server = createServer(async (request, response) => {
     const name = decodeURI(new URL(request.url, "http://host").pathname.slice("/somewhere/".length)) || "index.html";
     let bytes;
     try {
-      bytes = await readFile(fileURLToPath(new URL(name, DIST)));
+      bytes = now.beside[name] ?? await readFile(fileURLToPath(new URL(name, DIST)));
     } catch {
       return response.writeHead(404).end();
     }
@@ -77,4 +77,31 @@ onBackend("webgl2", "a newer build comes whole, with the next reload", async ({ 
   await until("the new build is shown", async () => (await buildOf(page).catch(() => "")) === now.html);
   await ready();
   assert.deepEqual((await keptBuilds(page)).map((name) => name.split(" ").pop()), [now.html]);
+});
+
+// Fails when a host can never correct what lies beside the page, and when files of its other pages are kept.
+onBackend("webgl2", "what lies beside the page comes from the network as long as there is one", async ({ open, t }) => {
+  const { now, base } = await host(t);
+  Object.assign(now.beside, { "mine.md": "one", "other.html": "<!doctype html><title>Other</title>", "other.json": "1" });
+  const { page } = await open("play=off", { ...SMALL, base });
+  await isKept(page);
+  const get = (name) => page.evaluate((name) => fetch(name).then((response) => response.text()), name);
+  assert.equal(await get("mine.md?v=1"), "one");
+  now.beside["mine.md"] = "two";
+  assert.deepEqual([await get("mine.md?v=1"), await get("mine.md?v=2"), await get("mine.md")], ["two", "two", "two"]);
+  now.beside["mine.md"] = "three";
+  assert.equal(await get("mine.md?v=3"), "three");
+
+  const other = await page.context().newPage();
+  await other.goto(`${base}other.html`);
+  assert.equal(await other.evaluate(() => fetch("other.json").then((response) => response.text())), "1");
+  const kept = await page.evaluate(async () => {
+    const caches = await window.caches.keys();
+    const all = await Promise.all(caches.map(async (name) => (await (await window.caches.open(name)).keys()).map(({ url }) => url)));
+    return all.flat().filter((url) => /mine|other/.test(url)).map((url) => url.split("/").pop()).toSorted();
+  });
+  assert.deepEqual(kept, ["mine.md", "mine.md?v=1", "mine.md?v=2", "mine.md?v=3"]);
+
+  await page.context().setOffline(true);
+  assert.deepEqual([await get("mine.md?v=2"), await get("mine.md?v=3")], ["two", "three"]);
 });

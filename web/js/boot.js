@@ -16,15 +16,6 @@ import { showDownloadFailed, showLost, showPanic, showStartFailed, showUnsupport
 
 const PANIC_POLL_MS = 500;
 
-export async function boot(jsUrl, wasmUrl) {
-  try {
-    window.segueSettle.resolve(await start(jsUrl, wasmUrl));
-  } catch (reason) {
-    window.segueSettle.reject(reason);
-    console.error(reason);
-  }
-}
-
 async function start(jsUrl, wasmUrl) {
   // Only what costs nothing is asked before the start; a real look at the graphics waits until the start has failed.
   if (!navigator.gpu && !window.WebGL2RenderingContext) {
@@ -219,3 +210,12 @@ class Life {
     }
   }
 }
+
+if (document.documentElement.lang === "zh-Hant") document.getElementById("loading").setAttribute("aria-label", "Segue 載入中");
+
+// The page names the two files of the app beside this script (Trunk.toml).
+const { js, wasm } = document.querySelector("script[data-wasm]").dataset;
+start(js, wasm).then(window.segueSettle.resolve, (reason) => {
+  window.segueSettle.reject(reason);
+  console.error(reason);
+});

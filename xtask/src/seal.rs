@@ -1,4 +1,5 @@
-//! The last step of a build: what belongs together is named so that it can never be mixed, and the service worker learns what there is.
+//! The last step of a build: what belongs together is named so that it can never be mixed, the page gets its policy, and the service worker learns
+//! what there is.
 //!
 //! Trunk calls it as a hook (Trunk.toml), so that every way to build makes the same folder.
 
@@ -10,6 +11,12 @@ use crate::shell::{Result, fail};
 
 /// What is fetched when somebody asks for it, and kept from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
+/// What the page may do, as a Content-Security-Policy: run the scripts and the WebAssembly that lie beside it and nothing else, and fetch from
+/// anywhere, for `src=` and lessons. Who may frame it only a header of the host can say.
+const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data:; \
+                      manifest-src 'self'; connect-src 'self' https: http:; base-uri 'none'; form-action 'none'";
+/// Where the policy goes: before everything that it is about.
+const POLICY_PLACE: &str = "<meta charset=\"utf-8\">";
 /// The two that everything else is reached from: their names stay.
 const PAGE: &str = "index.html";
 const WORKER: &str = "sw.js";
@@ -19,7 +26,7 @@ pub fn run() -> Result<()> {
     let Some(folder) = std::env::var_os("TRUNK_STAGING_DIR") else {
         return fail("`seal` is called by Trunk, after a build: TRUNK_STAGING_DIR names the folder");
     };
-    // While one works on the page, a worker that keeps old pages is in the way.
+    // While one works on the page, a worker that keeps old pages is in the way, and so is a policy without the script with which Trunk reloads it.
     let is_release = std::env::var("TRUNK_PROFILE").is_ok_and(|profile| profile == "release");
     seal(Path::new(&folder), is_release)
 }
@@ -29,6 +36,7 @@ fn seal(folder: &Path, is_release: bool) -> Result<()> {
     if !is_release {
         return Ok(fs::remove_file(folder.join(WORKER))?);
     }
+    write_policy(folder)?;
     let files = files_of(folder)?;
     let version = hash_of(folder, &files)?;
     let page = folder.join(PAGE);
@@ -37,18 +45,20 @@ fn seal(folder: &Path, is_release: bool) -> Result<()> {
         return fail("index.html has no head to put the build's name into");
     };
     fs::write(&page, format!("{head}<meta name=\"build\" content=\"{version}\">\n</head>{body}"))?;
-    let is_first = |file: &&String| *file != WORKER && !LATER.iter().any(|later| file.starts_with(later));
-    let first: Vec<String> = files.iter().filter(is_first).map(|file| format!("  {file:?},\n")).collect();
+    let is_later = |file: &&String| LATER.iter().any(|later| file.starts_with(later));
+    let (later, first): (Vec<&String>, Vec<&String>) = files.iter().filter(|file| *file != WORKER).partition(is_later);
+    let list = |files: &[&String]| format!("[\n{}]", files.iter().map(|file| format!("  {file:?},\n")).collect::<String>());
     let worker = folder.join(WORKER);
     let script = fs::read_to_string(&worker)?;
-    for mark in ["\"BUILD\"", "[/* FILES */]"] {
+    for mark in ["\"BUILD\"", "[/* FILES */]", "[/* LATER */]"] {
         if !script.contains(mark) {
             return fail(format!("web/{WORKER} has no {mark} to fill in"));
         }
     }
     let script = script
         .replace("\"BUILD\"", &format!("{version:?}"))
-        .replace("[/* FILES */]", &format!("[\n{}]", first.concat()));
+        .replace("[/* FILES */]", &list(&first))
+        .replace("[/* LATER */]", &list(&later));
     Ok(fs::write(worker, script)?)
 }
 
@@ -63,6 +73,16 @@ fn rename_scripts(folder: &Path) -> Result<()> {
     let page = folder.join(PAGE);
     let html = fs::read_to_string(&page)?.replace("/js/", &format!("/{named}/"));
     Ok(fs::write(page, html)?)
+}
+
+fn write_policy(folder: &Path) -> Result<()> {
+    let page = folder.join(PAGE);
+    let html = fs::read_to_string(&page)?;
+    let Some((before, after)) = html.split_once(POLICY_PLACE) else {
+        return fail(format!("web/{PAGE} has no {POLICY_PLACE} to put its policy behind"));
+    };
+    let policy = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">");
+    Ok(fs::write(&page, format!("{before}{POLICY_PLACE}\n  {policy}{after}"))?)
 }
 
 /// All files, by their paths in the folder, in order.
@@ -107,11 +127,17 @@ mod tests {
         fs::create_dir_all(folder.join("js")).unwrap();
         fs::create_dir_all(folder.join("samples")).unwrap();
         for (file, text) in [
-            ("index.html", "<html><head></head><script>import \"./js/boot.js\"</script></html>"),
+            (
+                "index.html",
+                "<html><head><meta charset=\"utf-8\"></head><script src=\"./js/boot.js\"></script></html>",
+            ),
             ("js/boot.js", boot),
             ("segue-1.wasm", "\0asm"),
             ("samples/walk.gz", "packed"),
-            ("sw.js", "const BUILD = \"BUILD\"; const FILES = [/* FILES */];"),
+            (
+                "sw.js",
+                "const BUILD = \"BUILD\"; const FILES = [/* FILES */]; const LATER = [/* LATER */];",
+            ),
         ] {
             fs::write(folder.join(file), text).unwrap();
         }
@@ -135,7 +161,14 @@ mod tests {
             "{page} {worker}"
         );
         assert!(worker.contains("segue-1.wasm") && worker.contains("\"index.html\""), "{worker}");
-        assert!(!worker.contains("samples") && !worker.contains("sw.js"), "{worker}");
+        let (first, later) = worker.split_once("LATER").unwrap();
+        assert!(!first.contains("samples") && later.contains("\"samples/walk.gz\""), "{worker}");
+        assert!(!worker.contains("sw.js"), "{worker}");
+        let policy = page.find("Content-Security-Policy").unwrap();
+        assert!(
+            policy < page.find("<script").unwrap() && page.contains("script-src 'self' 'wasm-unsafe-eval';"),
+            "{page}"
+        );
         assert_eq!(read("b", "1"), ([page.clone(), worker.clone()], files.clone()), "the same again");
         let ([other_page, other_worker], other_files) = read("c", "2");
         assert!(page != other_page && worker != other_worker && files != other_files);
@@ -146,7 +179,11 @@ mod tests {
         let folder = folder("dev", "1");
         seal(&folder, false).unwrap();
         assert!(!folder.join(WORKER).exists());
-        assert!(!fs::read_to_string(folder.join(PAGE)).unwrap().contains("name=\"build\""));
+        let page = fs::read_to_string(folder.join(PAGE)).unwrap();
+        assert!(
+            !page.contains("name=\"build\"") && !page.contains("Content-Security-Policy"),
+            "{page}"
+        );
         fs::remove_dir_all(&folder).unwrap();
     }
 }
