@@ -13,6 +13,9 @@ use rawzip::{CompressionMethod, ErrorKind, ZipArchive, ZipFileHeaderRecord, ZipS
 /// The endings of files that hold motion, or a part of it.
 const MOTION: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
 
+/// See [`ArchiveLimits::default`].
+pub const MOST_FILES: usize = 2000;
+
 /// Archives inside archives are opened to this depth.
 const DEPTH: usize = 1;
 
@@ -21,13 +24,16 @@ const DEPTH: usize = 1;
 pub struct ArchiveLimits {
     /// The most bytes that its motion files have together once they are unpacked. Larger archives are refused.
     pub max_bytes: usize,
+    /// The most motion files that are read. Further ones are left out, and told.
+    pub max_files: usize,
 }
 
 impl Default for ArchiveLimits {
-    /// As much as a single file may have.
+    /// As much as a single file may have, in as many files as a list has that a person looks through.
     fn default() -> Self {
         Self {
             max_bytes: ImportOptions::default().max_bytes,
+            max_files: MOST_FILES,
         }
     }
 }
@@ -68,7 +74,7 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
     let mut unpacking = Unpacking {
         name,
         left: limits.max_bytes,
-        limit: limits.max_bytes,
+        limits: *limits,
         files: Vec::new(),
         tally: Tally::default(),
     };
@@ -108,7 +114,7 @@ struct Unpacking<'a> {
     name: &'a str,
     /// Bytes that may still come out.
     left: usize,
-    limit: usize,
+    limits: ArchiveLimits,
     files: Vec<ArchivedFile>,
     tally: Tally,
 }
@@ -161,6 +167,11 @@ impl Unpacking<'_> {
         let motion = packed_once_more.map(|(inner, _)| inner).filter(|inner| is_motion(inner));
         if !is_zip && motion.is_none() && !is_motion(&path) {
             self.tally.add(WarningKind::OtherFiles, None);
+            return Ok(());
+        }
+        if self.files.len() >= self.limits.max_files {
+            let most = self.limits.max_files;
+            self.tally.add(WarningKind::TooManyFiles { most }, None);
             return Ok(());
         }
         if leads_out {
@@ -225,7 +236,7 @@ impl Unpacking<'_> {
     }
 
     fn too_much(&self) -> ImportError {
-        let most = format!("{} MB", self.limit >> 20);
+        let most = format!("{} MB", self.limits.max_bytes >> 20);
         ImportError::whole_file(self.name, format!("more than {most} after unpacking"), format!("at most {most}"))
             .with_hint("unpack the archive and open a part of its files")
     }

@@ -45,6 +45,7 @@ pub(super) fn assemble(
         if measure.up_known == UpKnown::Uncertain {
             tally.add(WarningKind::UncertainUp { up: measure.provenance.up }, None);
         }
+        let mendable = raw.tell_unlikely(&measure, options, tally);
         let clip_name = match raw.joints.first() {
             Some(root) if several => format!("{} ({})", stem(name), root.name),
             _ => stem(name).to_owned(),
@@ -57,6 +58,7 @@ pub(super) fn assemble(
             t_pose_first_row,
             t_pose_dropped: dropped,
             measure,
+            mendable,
             mesh: None,
         });
     }

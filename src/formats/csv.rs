@@ -102,7 +102,7 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
         };
         for column in ["x_m", "y_m", "z_m"].iter().chain(&rotations) {
             out.push(',');
-            quoted(out, &format!("{name}.{column}"));
+            out.push_str(&cell(&format!("{name}.{column}")));
         }
     }
     if inputs.contacts.is_some() {
@@ -110,19 +110,24 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
     }
     for (name, _) in inputs.columns {
         out.push(',');
-        quoted(out, name);
+        out.push_str(&cell(name));
     }
     out.push_str("\r\n");
 }
 
-/// A name, in quotation marks where it holds what would end it.
-fn quoted(out: &mut String, name: &str) {
-    if name.contains([',', '"', '\n', '\r']) {
-        out.push('"');
-        out.push_str(&name.replace('"', "\"\""));
-        out.push('"');
+/// Returns a name as a cell: in quotation marks where it holds what would end it, and behind an apostrophe where a spreadsheet would take it for a
+/// formula (OWASP, CSV injection).
+#[must_use]
+pub fn cell(name: &str) -> String {
+    let apostrophe = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        "'"
     } else {
-        out.push_str(name);
+        ""
+    };
+    if name.contains([',', '"', '\n', '\r']) {
+        format!("\"{apostrophe}{}\"", name.replace('"', "\"\""))
+    } else {
+        format!("{apostrophe}{name}")
     }
 }
 

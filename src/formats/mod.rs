@@ -79,11 +79,13 @@ mod measure;
 mod raw;
 mod t_pose;
 mod text;
+mod unlikely;
 mod warning;
 
 pub use error::ImportError;
 pub use gzip::unpack_gzip;
 pub use measure::{CMU_METRES_PER_UNIT, Measure, UpKnown};
+pub use unlikely::Mendable;
 pub use warning::{ImportWarning, WarningKind};
 
 use crate::clip::{Clip, UpAxis};
@@ -103,6 +105,9 @@ pub struct ImportOptions {
     pub max_bytes: usize,
     /// Whether a first row that is a T-pose is left out; otherwise it is only marked.
     pub drop_t_pose: bool,
+    /// Whether rows in which the root is metres away, and back in the next, get a place between their neighbours.
+    #[serde(default)]
+    pub even_wild_rows: bool,
 }
 
 impl Default for ImportOptions {
@@ -114,6 +119,7 @@ impl Default for ImportOptions {
             fps: None,
             max_bytes: 512 << 20,
             drop_t_pose: true,
+            even_wild_rows: false,
         }
     }
 }
@@ -130,6 +136,8 @@ pub struct ImportedClip {
     pub t_pose_dropped: bool,
     /// The unit and up axis that were found or given; its text is a note for people.
     pub measure: Measure,
+    /// What could be read better.
+    pub mendable: Mendable,
     /// The character's own mesh, bound to the clip's skeleton; all clips of one character share it.
     pub mesh: Option<Arc<SkinnedMesh>>,
 }

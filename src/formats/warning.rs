@@ -60,6 +60,11 @@ pub enum WarningKind {
     HiddenFiles,
     /// Files of an archive that hold no motion: left out.
     OtherFiles,
+    /// More motion files in an archive than are read: left out.
+    TooManyFiles {
+        /// How many are read.
+        most: usize,
+    },
     /// Files of an archive with a path that leads out of it: the rest of the path counts.
     PathsOutside,
     /// Files of an archive that cannot be read: left out.
@@ -133,6 +138,28 @@ pub enum WarningKind {
         /// Its height over the ground, metres.
         metres: f32,
     },
+    /// A body of no size that people have.
+    UnlikelyHeight {
+        /// Its height, metres.
+        metres: f64,
+    },
+    /// Single rows in which the root is far from where it is before and after.
+    WildRows {
+        /// The farthest jump, metres.
+        metres: f64,
+        /// Whether they got a place between their neighbours.
+        evened: bool,
+    },
+    /// The root jumps from one frame to the next, and stays there.
+    RootJumps {
+        /// The farthest jump, metres.
+        metres: f64,
+    },
+    /// The root goes far from the origin.
+    FarAway {
+        /// How far, metres.
+        metres: f64,
+    },
     /// No unit of length makes this skeleton the size of a person: centimetres are taken.
     UnknownUnit,
     /// Neither the limbs nor the floor tell which axis points up, as for a body that lies: this one is taken.
@@ -168,6 +195,15 @@ fn number_of(count: usize, thing: &str) -> String {
         format!("1 {thing}")
     } else {
         format!("{count} {thing}s")
+    }
+}
+
+/// A length that may be of any size, with its unit.
+fn length(metres: f64) -> String {
+    match metres {
+        0.1..10.0 => format!("{metres:.1} m"),
+        10.0..1e6 => format!("{metres:.0} m"),
+        _ => format!("{metres:.1e} m"),
     }
 }
 
@@ -233,6 +269,9 @@ impl fmt::Display for ImportWarning {
             WarningKind::MissingSpaces => write!(f, "{} between numbers{place}; split before the sign", n("missing space")),
             WarningKind::HiddenFiles => write!(f, "{} of the archive left out", n("hidden file")),
             WarningKind::OtherFiles => write!(f, "{} of the archive without motion left out", n("file")),
+            WarningKind::TooManyFiles { most } => {
+                write!(f, "{} of the archive left out: the first {most} are read", n("motion file"))
+            }
             WarningKind::PathsOutside => write!(
                 f,
                 "{} of the archive with a path out of it; the rest of the path was taken",
@@ -307,6 +346,20 @@ impl fmt::Display for ImportWarning {
                 };
                 write!(f, "the motion does not tell which axis points up; {axis} is taken")
             }
+            WarningKind::UnlikelyHeight { metres } => write!(f, "the body is {} tall: its unit may be another one", length(*metres)),
+            WarningKind::WildRows { metres, evened: false } => {
+                write!(f, "{} with a root that is {} away for that row alone", n("row"), length(*metres))
+            }
+            WarningKind::WildRows { metres, evened: true } => write!(
+                f,
+                "{} with a root that is {} away for that row alone; put between its neighbours",
+                n("row"),
+                length(*metres)
+            ),
+            WarningKind::RootJumps { metres } => {
+                write!(f, "{} of the root from one frame to the next, up to {}", n("jump"), length(*metres))
+            }
+            WarningKind::FarAway { metres } => write!(f, "the root goes {} away from the origin", length(*metres)),
             WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
         }
     }

@@ -107,8 +107,8 @@ fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
 /// How the names of motion files end. A file that is dropped by itself is looked into whatever its name; of a folder these are taken.
 const MOTION_ENDINGS: [&str; 7] = ["bvh", "asf", "amc", "glb", "gltf", "zip", "gz"];
 
-/// More files of one folder are not read: the library is a list that a person looks through.
-const MOST_FILES_OF_FOLDER: usize = 2000;
+/// More files of one folder are not read, as of an archive.
+const MOST_FILES_OF_FOLDER: usize = segue::formats::archive::MOST_FILES;
 
 /// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like the files it adds it for.
 fn is_motion_file(name: &str) -> bool {

@@ -1,5 +1,6 @@
 use super::document::NoResult;
 use super::lesson::Source;
+use super::outside::short;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::recipe::Slot;
@@ -86,7 +87,7 @@ pub enum CommandError {
     #[error(transparent)]
     Import(#[from] ImportError),
     /// A clip that is not there.
-    #[error("there is no clip `{0}` in the library")]
+    #[error("there is no clip `{}` in the library", short(.0))]
     NoClip(String),
     /// A pane without a result to keep.
     #[error(transparent)]

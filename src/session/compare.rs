@@ -1,3 +1,4 @@
+use super::outside::short;
 use super::params::{Choice, Key, Kind, Value, ValueError};
 use super::recipe::{read_ids, write_ids};
 use std::fmt;
@@ -29,7 +30,12 @@ impl Compare {
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
         let key = Key::from_name(name.trim())
             .filter(|key| key.param().is_comparable())
-            .ok_or_else(|| refuse(format!("a number or a choice of a lab, or a clip, before the colon, not `{name}`")))?;
+            .ok_or_else(|| {
+                refuse(format!(
+                    "a number or a choice of a lab, or a clip, before the colon, not `{}`",
+                    short(name)
+                ))
+            })?;
         let is_clip = matches!(key.param().kind, Kind::Clip);
         let words = if is_clip {
             read_ids(list).ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?
@@ -39,7 +45,7 @@ impl Compare {
         let values = words
             .iter()
             .map(|word| match key.param().parse(word)? {
-                Value::Auto => Err(refuse(format!("a value for each pane, not `{word}`"))),
+                Value::Auto => Err(refuse(format!("a value for each pane, not `{}`", short(word)))),
                 value => Ok(value),
             })
             .collect::<Result<Vec<Value>, ValueError>>()?;

@@ -1,6 +1,7 @@
 //! The clips that there are: built in, dropped, or made here.
 
 use super::motion::Motion;
+use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
 use super::samples::Sample;
 use crate::formats::{FileKind, ImportOptions};
@@ -228,12 +229,12 @@ impl Library {
     }
 }
 
-/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second character in it.
+/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second character in it. Of a long name it has the beginning.
 #[must_use]
 pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
     let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
     let suffix = if index == 0 { String::new() } else { format!(".{}", index + 1) };
-    format!("{}~{sha}{suffix}", file_stem(name))
+    format!("{}~{sha}{suffix}", outside::for_id(file_stem(name)))
 }
 
 /// Name, SHA-256 prefix (empty where there is none) and index of a reference.

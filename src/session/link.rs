@@ -1,5 +1,6 @@
 //! The link: what a query string can carry of the state, and back.
 
+use super::outside::short;
 use super::params::{Key, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 
@@ -39,7 +40,7 @@ pub fn read(query: &str) -> Link {
                 Err(error) => link.problems.push(error.to_string()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => link.problems.push(format!("`{name}` is not a parameter of this version")),
+            None => link.problems.push(format!("`{}` is not a parameter of this version", short(&name))),
         }
     }
     link

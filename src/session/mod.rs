@@ -68,6 +68,7 @@ pub mod link;
 mod motion;
 mod notice;
 mod numbers;
+pub mod outside;
 mod params;
 pub mod reading;
 mod recipe;
@@ -83,11 +84,13 @@ pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
-pub use notice::{Level, Notice, Notices, sentence};
+pub use notice::{Level, Mend, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
 pub use recipe::write_ids;
-pub use recipe::{At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, graph_of, write_jump, write_path, write_visits};
+pub use recipe::{
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+};
 pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
 pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use recipe::{HandTag, own_words, write_tags};

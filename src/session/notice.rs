@@ -1,5 +1,8 @@
 //! What Segue has to say, until it is read.
 
+use super::outside::short;
+use crate::formats::ImportOptions;
+
 /// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
 #[must_use]
 pub fn sentence(note: &str) -> String {
@@ -29,9 +32,22 @@ pub struct Notice {
     pub level: Level,
     /// What happened and what to do, in a sentence or two.
     pub text: String,
+    /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands for it.
+    pub about: String,
+    /// How what it tells of can be mended.
+    pub mend: Option<Mend>,
     /// The clip that it asks for.
     awaits: Option<String>,
     age_secs: f64,
+}
+
+/// A clip that can be read better: [`Command::Reimport`](super::Command::Reimport) with these options mends it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mend {
+    /// Its id.
+    pub clip: String,
+    /// How to read it.
+    pub options: ImportOptions,
 }
 
 /// The messages that are on screen, oldest first.
@@ -59,12 +75,27 @@ const MOST_NAMED: usize = 24;
 impl Notices {
     /// Says something. The same text again moves to the end instead of standing there twice.
     pub fn say(&mut self, level: Level, text: impl Into<String>) {
-        self.put(level, text.into(), None);
+        let text = text.into();
+        let about = short(head(&text));
+        self.put(level, text, &about, None);
+    }
+
+    /// Says something of a file or key.
+    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<String>) {
+        self.put(level, text.into(), about, None);
+    }
+
+    /// Says something that can be mended.
+    pub fn offer(&mut self, level: Level, text: impl Into<String>, mend: Mend) {
+        self.put(level, text.into(), &mend.clip, None);
+        if let Some(notice) = self.list.last_mut() {
+            notice.mend = Some(mend);
+        }
     }
 
     /// Says that a clip is missing. It stays until [`Notices::keep_missing`] finds that it is not.
     pub fn miss(&mut self, reference: &str, text: impl Into<String>) {
-        self.put(Level::Warning, text.into(), Some(reference.to_owned()));
+        self.put(Level::Warning, text.into(), reference, Some(reference.to_owned()));
     }
 
     /// The clips that are asked for.
@@ -77,13 +108,15 @@ impl Notices {
         self.list.retain(|notice| notice.awaits.as_deref().is_none_or(&is_missing));
     }
 
-    fn put(&mut self, level: Level, text: String, awaits: Option<String>) {
+    fn put(&mut self, level: Level, text: String, about: &str, awaits: Option<String>) {
         self.list.retain(|notice| notice.text != text);
         self.more.retain(|notice| notice.text != text);
         let notice = Notice {
             id: self.next_id,
             level,
             text,
+            about: short(about),
+            mend: None,
             awaits,
             age_secs: 0.0,
         };
@@ -123,7 +156,7 @@ impl Notices {
         let last = last.map(|at| self.list.remove(at));
         self.more.extend(last.filter(|notice| Some(notice.id) != self.sum));
         self.more.push(error);
-        let mut named: Vec<&str> = self.more.iter().take(MOST_NAMED).map(|notice| head(&notice.text)).collect();
+        let mut named: Vec<&str> = self.more.iter().take(MOST_NAMED).map(|notice| notice.about.as_str()).collect();
         if self.more.len() > MOST_NAMED {
             named.push("…");
         }
@@ -133,6 +166,8 @@ impl Notices {
             id: self.next_id,
             level: Level::Error,
             text,
+            about: String::new(),
+            mend: None,
             awaits: None,
             age_secs: 0.0,
         });
@@ -183,10 +218,20 @@ impl Notices {
     }
 }
 
-/// What an error is about, in most of them a file: what stands before the first colon, and before the words that it does not work.
+/// What an error is about, in most of them a file or a key: what stands before the first colon with a space behind it, without line and column, and
+/// before the words that it does not work. The colon of an address or of a host's port is none.
 fn head(text: &str) -> &str {
-    let end = [":", " could", " cannot"].into_iter().filter_map(|sign| text.find(sign)).min();
-    text.get(..end.unwrap_or(text.len())).unwrap_or(text).trim_end_matches('.')
+    let end = [": ", " could", " cannot"].into_iter().filter_map(|sign| text.find(sign)).min();
+    let mut head = text.get(..end.unwrap_or(text.len())).unwrap_or(text).trim_end_matches('.');
+    if text.get(head.len()..).is_some_and(|rest| rest.starts_with(':')) {
+        while let Some((before, place)) = head.rsplit_once(':')
+            && !place.is_empty()
+            && place.bytes().all(|digit| digit.is_ascii_digit())
+        {
+            head = before;
+        }
+    }
+    head
 }
 
 #[cfg(test)]
@@ -248,6 +293,24 @@ mod tests {
         assert_eq!(notices.errors_since(0).len(), 4);
         notices.say(Level::Error, "y.bvh: gone.");
         assert!(texts(&notices).contains(&"2 more did not work: x.bvh, y.bvh."));
+    }
+
+    #[test]
+    fn what_has_no_room_is_called_by_its_file_or_key() {
+        let mut notices = Notices::default();
+        for text in ["1", "2", "3", "4"] {
+            notices.say(Level::Error, text);
+        }
+        notices.say_of(Level::Error, "walk.bvh", "There is no file at https://a.org/walk.bvh (answer 404).");
+        notices.say(
+            Level::Error,
+            "127.0.0.1:8000 cannot be reached. Check the address: http://127.0.0.1:8000/x",
+        );
+        notices.say(Level::Error, "a/b.bvh:12:3: found `x`, expected a number");
+        notices.say(Level::Error, format!("{}: gone.", "y".repeat(500)));
+        let sum = texts(&notices).pop().unwrap().to_owned();
+        let long = short(&"y".repeat(500));
+        assert_eq!(sum, format!("5 more did not work: 4, walk.bvh, 127.0.0.1:8000, a/b.bvh, {long}."));
     }
 
     #[test]

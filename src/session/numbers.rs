@@ -1,6 +1,8 @@
 //! The numbers of all panes side by side.
 
 use super::document::{Pane, Session};
+use super::outside::markdown;
+use crate::formats::csv;
 use crate::metrics::{Better, Metric};
 use std::fmt::Write as _;
 
@@ -71,7 +73,7 @@ impl NumberTable {
     /// The table in Markdown.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let names: Vec<String> = self.panes.iter().map(|name| cell(name)).collect();
+        let names: Vec<String> = self.panes.iter().map(|name| markdown(name)).collect();
         let mut out = format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(self.panes.len()));
         for row in &self.rows {
             let values: Vec<String> = row.values.iter().map(|value| digits(*value)).collect();
@@ -81,14 +83,13 @@ impl NumberTable {
         out
     }
 
-    /// The table as comma-separated values, in full precision.
+    /// The table as comma-separated values, in full precision. No cell is one that a spreadsheet computes ([`csv::cell`]).
     #[must_use]
     pub fn csv(&self) -> String {
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         let head: Vec<String> = ["", "unit"]
             .into_iter()
             .map(str::to_owned)
-            .chain(self.panes.iter().map(|pane| quoted(pane)))
+            .chain(self.panes.iter().map(|pane| csv::cell(pane)))
             .collect();
         let mut out = head.join(",") + "\n";
         for row in &self.rows {
@@ -97,7 +98,7 @@ impl NumberTable {
                 .iter()
                 .map(|value| value.map_or_else(String::new, |value| value.to_string()))
                 .collect();
-            let written = writeln!(out, "{},{},{}", quoted(row.label), quoted(row.unit), values.join(","));
+            let written = writeln!(out, "{},{},{}", csv::cell(row.label), csv::cell(row.unit), values.join(","));
             debug_assert!(written.is_ok(), "a string takes all");
         }
         out
@@ -146,11 +147,6 @@ pub fn digits(value: Option<f64>) -> String {
     digits.replace('-', "−")
 }
 
-/// A text from outside in a cell of a Markdown table: on one line, and ending no cell.
-pub(super) fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace(['\r', '\n'], " ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,7 +164,7 @@ mod tests {
             }],
         };
         assert_eq!(table.markdown(), "| | 30 frames | a\\|b |\n|---|---|---|\n| Drag, s | 0.42 | – |\n");
-        assert_eq!(table.csv(), ",unit,\"30 frames\",\"a|b\"\n\"Drag\",\"s\",0.416,\n");
+        assert_eq!(table.csv(), ",unit,30 frames,a|b\nDrag,s,0.416,\n");
         assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
     }
 }

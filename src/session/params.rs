@@ -1,6 +1,7 @@
 //! The one table of parameters. Sliders, the link, the page's API, compare, undo and the README table are made from it.
 
 use super::compare::Compare;
+use super::outside::short;
 use serde_json::Value as Json;
 use std::fmt;
 
@@ -573,7 +574,7 @@ impl Key {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
     /// Not a number.
-    #[error("{key}: found `{found}`, expected a number{}{}", of_unit(.unit), if *.auto { " or `auto`" } else { "" })]
+    #[error("{key}: found `{}`, expected a number{}{}", short(.found), of_unit(.unit), if *.auto { " or `auto`" } else { "" })]
     NotANumber {
         /// The parameter.
         key: &'static str,
@@ -599,7 +600,7 @@ pub enum ValueError {
         unit: &'static str,
     },
     /// A word that is none of the choices.
-    #[error("{key}: found `{found}`, expected {expected}")]
+    #[error("{key}: found `{}`, expected {expected}", short(.found))]
     NotAChoice {
         /// The parameter.
         key: &'static str,
@@ -609,7 +610,7 @@ pub enum ValueError {
         expected: String,
     },
     /// Not a comparison.
-    #[error("compare: found `{found}`, expected {expected}")]
+    #[error("compare: found `{}`, expected {expected}", short(.found))]
     NotAComparison {
         /// What was there.
         found: String,

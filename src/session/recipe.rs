@@ -28,7 +28,9 @@ pub(super) use blend::{BlendInputs, Blender};
 pub(super) use driving::options_of;
 pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
 pub use driving::{DriveMoment, Driven, HandTag, own_words, write_tags};
-pub use graph::{At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, graph_of, write_jump, write_path, write_visits};
+pub use graph::{
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+};
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
 pub use kept::write_ids;
 pub(super) use kept::{belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};

@@ -2,7 +2,8 @@
 
 use super::document::{NoResult, Session};
 use super::library::{Entry, Origin};
-use super::numbers::{NumberTable, cell};
+use super::numbers::NumberTable;
+use super::outside::{markdown, markdown_code, markdown_sentence};
 use super::params::{Key, Kind, Value, format_number};
 use super::recipe::{recipe_ingredients, recipe_params};
 use std::fmt::Write as _;
@@ -47,18 +48,18 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
         let value = params.get(key);
         let words = match param.kind {
             Kind::Clip => clip_in_words(session, params.text(key)),
-            _ => match session.automatic_value(key).filter(|_| *value == Value::Auto) {
+            _ => markdown(&match session.automatic_value(key).filter(|_| *value == Value::Auto) {
                 Some(found) => format!("{} {} (found)", format_number(found, 0.01), param.unit),
                 None => format!("{} {}", param.spoken(value), param.unit),
-            },
+            }),
         };
         let note = if *value == param.default_value() { "" } else { " *" };
         if !words.trim().is_empty() {
-            say(format!("| {}{note} | {} |", param.label, cell(words.trim())));
+            say(format!("| {}{note} | {} |", param.label, words.trim()));
         }
     }
     if let Some(compare) = session.compare().filter(|_| session.panes().len() > 1) {
-        say(format!("| Compared | {} |", cell(compare.key.param().label)));
+        say(format!("| Compared | {} |", compare.key.param().label));
     }
     say("\n\\* not the default\n".to_owned());
     let table = NumberTable::of(session);
@@ -75,23 +76,28 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
     for pane in session.panes() {
         if let Err(reason) = pane.result() {
             let name = session.variant_name(pane).unwrap_or_default();
-            say(format!("No result for {}: {}\n", cell(&name), cell(&reason.to_string())));
+            say(format!(
+                "No result for {}: {}\n",
+                markdown(&name),
+                markdown_sentence(&reason.to_string())
+            ));
         }
     }
     say(format!("Segue {}{backend}", env!("CARGO_PKG_VERSION")));
     Ok(out)
 }
 
-/// A clip by its name, and what tells it from another one of that name: the check sum of its file, or the recipe.
+/// A clip by its name, and what tells it from another one of that name: the check sum of its file, or the recipe. As Markdown.
 fn clip_in_words(session: &Session, id: &str) -> String {
     let Some(entry) = session.library().find(id) else {
-        return format!("`{id}`, which is not here");
+        return format!("{}, which is not here", markdown_code(id));
     };
     let Entry { name, origin, .. } = &**entry;
+    let name = markdown(name);
     match origin {
         Origin::File(file) => format!("{name} (SHA-256 {}…)", file.sha256.get(..12).unwrap_or(&file.sha256)),
-        Origin::Made if recipe_params(id).is_some() => format!("{name} (`{id}`)"),
-        _ => name.clone(),
+        Origin::Made if recipe_params(id).is_some() => format!("{name} ({})", markdown_code(id)),
+        _ => name,
     }
 }
 
@@ -134,6 +140,21 @@ mod tests {
         }
         let found = report.lines().find(|line| line.contains("(found)"));
         assert!(found.is_some_and(|line| line.starts_with("| Leave A")), "{report}");
+    }
+
+    #[test]
+    fn names_in_a_report_are_their_letters_and_nothing_else() {
+        let mut session = open("lab=view&a=walk");
+        let name = "<img src=x> [click](javascript:alert(1)) |";
+        session.apply(Command::Rename("walk".into(), name.into())).unwrap();
+        let said = report(&session, &ReportFacts::default()).unwrap();
+        let row = said.lines().find(|line| line.starts_with("| A")).unwrap();
+        assert!(row.contains("\\<img src=x\\> \\[click\\](javascript:alert(1)) \\| |"), "{row}");
+        // A clip that is not here is called as the link calls it.
+        let session = open("lab=view&a=%60%3Cb%3E%7C");
+        let reason = session.panes()[0].problem.clone();
+        assert!(reason.is_some());
+        assert_eq!(clip_in_words(&session, "`<b>|"), "`'<b>\\|`, which is not here");
     }
 
     #[test]

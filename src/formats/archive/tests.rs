@@ -100,7 +100,10 @@ fn what_is_no_archive_of_motion_is_refused() {
 
 #[test]
 fn a_bomb_is_refused_before_it_fills_the_memory() {
-    let limits = ArchiveLimits { max_bytes: 3 << 20 };
+    let limits = ArchiveLimits {
+        max_bytes: 3 << 20,
+        ..ArchiveLimits::default()
+    };
     let megabyte = vec![b' '; 1 << 20];
     let three = zip(&[
         ("1.bvh", &megabyte),
@@ -118,6 +121,16 @@ fn a_bomb_is_refused_before_it_fills_the_memory() {
     );
     let nested = zip(&[("in.zip", &four)]);
     assert!(unpack("a.zip", &nested, &limits).is_err());
+}
+
+#[test]
+fn more_files_than_are_read_are_told_by_one_line() {
+    let files: Vec<(String, &[u8])> = (0..MOST_FILES + 50).map(|n| (format!("{n}.bvh"), &b""[..])).collect();
+    let files: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), *bytes)).collect();
+    let unpacked = unpack("a.zip", &zip(&files), &ArchiveLimits::default()).unwrap();
+    assert_eq!(unpacked.files.len(), MOST_FILES);
+    let said: Vec<String> = unpacked.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(said, ["50 motion files of the archive left out: the first 2000 are read"]);
 }
 
 #[test]
@@ -147,7 +160,7 @@ proptest! {
             bytes[at] = *value;
         }
         bytes.truncate(bytes.len() - cut.index(bytes.len()) / 8 * usize::from(edits.len() % 3 == 0));
-        let limits = ArchiveLimits { max_bytes: 1 << 20 };
+        let limits = ArchiveLimits { max_bytes: 1 << 20, ..ArchiveLimits::default() };
         if let Ok(unpacked) = unpack("spoilt.zip", &bytes, &limits) {
             prop_assert!(!unpacked.files.is_empty());
             prop_assert!(unpacked.files.iter().map(|file| file.bytes.len()).sum::<usize>() <= limits.max_bytes);

@@ -330,6 +330,7 @@ impl Context<'_> {
             raw.drop_first_frame();
         }
         let measure = measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
+        let mendable = raw.tell_unlikely(&measure, self.options, tally);
         let name = match raw.joints.first() {
             Some(root) if self.several => format!("{name} ({})", root.name),
             _ => name.to_owned(),
@@ -342,6 +343,7 @@ impl Context<'_> {
             t_pose_first_row,
             t_pose_dropped,
             measure,
+            mendable,
             mesh: None,
         })
     }

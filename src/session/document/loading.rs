@@ -5,7 +5,8 @@ use super::{Job, Session};
 use crate::formats::{FileKind, ImportError, ImportOptions, acclaim};
 use crate::session::command::{CommandError, Request};
 use crate::session::library::{Entry, Origin, SourceFile, file_id, file_stem};
-use crate::session::notice::{Level, sentence};
+use crate::session::notice::{Level, Mend, sentence};
+use crate::session::outside;
 use crate::session::params::{Key, Value};
 use crate::session::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
 use crate::session::samples::Sample;
@@ -20,6 +21,11 @@ pub struct Loaded {
     /// What was odd in it, one sentence each.
     pub warnings: Vec<String>,
 }
+
+/// Of the files of an archive that are not read, so many are told one by one.
+pub(super) const MOST_FAILURES: usize = 3;
+/// Of what was odd in files, so much is told when they come.
+const MOST_REMARKS: usize = 6;
 
 /// A file that is being read elsewhere.
 #[derive(Debug)]
@@ -67,7 +73,7 @@ impl Session {
     }
 
     fn load_that_came(&mut self, name: &str, bytes: Arc<[u8]>, came: Came) -> Result<Loaded, ImportError> {
-        let (setup, size) = (self.setup_for_new(), bytes.len() as u64);
+        let (name, setup, size) = (&outside::file_name(name), self.setup_for_new(), bytes.len() as u64);
         let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {
             self.begin(name, Content::Here(bytes), size, setup, Purpose::New(came));
             return Ok(Loaded::default());
@@ -86,7 +92,7 @@ impl Session {
         self.tasks += 1;
         let task = ReadTask {
             id: self.tasks,
-            name: name.to_owned(),
+            name: outside::file_name(name),
             content,
             size,
             setup,
@@ -180,7 +186,7 @@ impl Session {
                 let refilled = self.refill(report, &task.setup.options);
                 if let Err(error) = &refilled {
                     self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
-                    self.say(Level::Error, error.to_string());
+                    self.tell_unread(error);
                 }
                 if let Some(came) = came {
                     for id in &waiting {
@@ -213,6 +219,12 @@ impl Session {
     #[must_use]
     pub fn is_reading_small(&self) -> bool {
         self.reading.iter().any(Reading::is_small)
+    }
+
+    /// Whether any file is being read.
+    #[must_use]
+    pub fn is_reading_any(&self) -> bool {
+        !self.reading.is_empty()
     }
 
     /// Gives up a task.
@@ -256,12 +268,12 @@ impl Session {
         // Of several files some may be good; one alone fails as a whole.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
-            self.say(Level::Error, error.to_string());
+            self.tell_unread(&error);
             return Err(error);
         }
         self.remember(None);
         let mut loaded = Loaded::default();
-        let (mut names, mut t_poses) = (Vec::new(), 0);
+        let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton =
             |file: &ReadFile| file.kind == FileKind::Asf || file.result.as_ref().is_ok_and(|read| read.companion.is_some());
         let skeleton_came = report.files.iter().any(brings_skeleton) || self.misses_skeleton(&report, setup);
@@ -287,13 +299,11 @@ impl Session {
                         self.join(entry, came);
                     }
                 }
-                Err(error) => {
-                    self.say(Level::Error, error.to_string());
-                    loaded.warnings.push(error.to_string());
-                }
+                Err(error) => failures.push(error),
             }
         }
         loaded.warnings.extend(report.notes);
+        self.tell_all_unread(&failures);
         if skeleton_came {
             self.read_waiting(came);
             self.drop_used_skeletons();
@@ -302,10 +312,19 @@ impl Session {
         self.library_revision += 1;
         if !names.is_empty() {
             let mut told = vec![in_the_library(&names)];
+            let mut more = 0;
             for warning in loaded.warnings.iter().map(|warning| sentence(warning)) {
-                if !told.contains(&warning) {
+                if told.contains(&warning) {
+                    continue;
+                }
+                if told.len() > MOST_REMARKS {
+                    more += 1;
+                } else {
                     told.push(warning);
                 }
+            }
+            if more > 0 {
+                told.push(format!("{more} more remarks stand with the clips."));
             }
             let text = told.join(" ");
             // A T-pose in front is how the takes of whole databases come: good to know, and nothing to do about it.
@@ -315,11 +334,53 @@ impl Session {
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
                 [id] if self.library.get(id).is_none() => self.say(Level::Info, in_the_library(&names)),
+                [id] if let Some(mend) = self.mend_of(id) => {
+                    self.notices.offer(Level::Warning, text, mend);
+                    self.revision += 1;
+                }
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         }
+        // Listeners are told of each.
+        loaded.warnings.extend(failures.iter().map(ToString::to_string));
         self.refresh();
         Ok(loaded)
+    }
+
+    /// How a clip could be read better, where that is safe.
+    fn mend_of(&self, id: &str) -> Option<Mend> {
+        let entry = self.library.get(id)?;
+        let (Origin::File(file), Some(about)) = (&entry.origin, &entry.about) else {
+            return None;
+        };
+        let options = ImportOptions {
+            metres_per_unit: about.fitting_unit.or(file.options.metres_per_unit),
+            even_wild_rows: about.wild_rows || file.options.even_wild_rows,
+            ..file.options
+        };
+        let clip = id.to_owned();
+        (options != file.options).then_some(Mend { clip, options })
+    }
+
+    /// Says why a file was not read.
+    fn tell_unread(&mut self, error: &ImportError) {
+        self.notices.say_of(Level::Error, &error.file, error.to_string());
+        self.revision += 1;
+    }
+
+    /// Says why the files of an archive were not read: of the first ones each, and how many there are besides.
+    fn tell_all_unread(&mut self, errors: &[ImportError]) {
+        let (first, rest) = errors.split_at_checked(MOST_FAILURES).unwrap_or((errors, &[]));
+        for error in first {
+            self.tell_unread(error);
+        }
+        if !rest.is_empty() {
+            let mut named: Vec<&str> = rest.iter().take(MOST_FAILURES).map(|error| error.file.as_str()).collect();
+            if rest.len() > named.len() {
+                named.push("…");
+            }
+            self.say(Level::Error, format!("{} more did not work: {}.", rest.len(), named.join(", ")));
+        }
     }
 
     /// Adds a clip. What the library has of the same one stays as it was said by hand.
@@ -366,7 +427,7 @@ impl Session {
             return;
         }
         if let Err(error) = self.read_anew(&file, None) {
-            self.say(Level::Error, error.to_string());
+            self.tell_unread(&error);
         }
     }
 
@@ -499,7 +560,7 @@ impl Session {
                     self.tell_misfit(&entry.id);
                 }
                 Ok(_) => {}
-                Err(error) => self.say(Level::Error, error.to_string()),
+                Err(error) => self.tell_unread(&error),
             }
         }
     }
@@ -595,7 +656,7 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
         let id = file_id(&source.name, &source.sha256, 0);
         let entry = Entry {
             warnings: warnings.clone(),
-            ..Entry::new(id, file_stem(&source.name).to_owned(), Origin::File(source))
+            ..Entry::new(id, outside::clip_name(file_stem(&source.name)), Origin::File(source))
         };
         return Ok((vec![entry], warnings));
     }
@@ -613,7 +674,7 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
         entry.name = entry
             .motion
             .as_ref()
-            .map_or_else(String::new, |motion| motion.clip.name().to_owned());
+            .map_or_else(String::new, |motion| outside::clip_name(motion.clip.name()));
         entry
     });
     Ok((named.collect(), warnings))

@@ -1,5 +1,6 @@
 //! Files that lean on others: motions and their skeletons, archives.
 
+use super::loading::MOST_FAILURES;
 use super::tests::settle;
 use super::*;
 use crate::session::reading::Content;
@@ -620,4 +621,110 @@ fn a_character_with_a_motion_brings_both() {
     assert_eq!(session.params().text(Key::A), loaded.ids[0]);
     assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
     assert_eq!(loaded.warnings, [""; 0]);
+}
+
+#[test]
+fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
+    let names: Vec<String> = (0..200).map(|n| format!("{n:03}.bvh")).collect();
+    let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+    let mut session = Session::new();
+    let loaded = session.load("many.zip", Arc::from(zip(&files))).unwrap();
+    let errors: Vec<&str> = session
+        .notices()
+        .errors_since(0)
+        .iter()
+        .map(|notice| notice.text.as_str())
+        .collect();
+    assert_eq!(errors.len(), MOST_FAILURES + 1, "{errors:#?}");
+    assert_eq!(
+        errors[MOST_FAILURES],
+        "197 more did not work: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
+    );
+    assert_eq!(loaded.warnings.len(), 200, "whoever loads it by the API is told of each");
+}
+
+#[test]
+fn name_of_a_file_is_cleaned_and_its_id_is_short() {
+    let name = format!("a\nb\0\u{202e}hvb.{}.amc", "x".repeat(4000));
+    let mut session = Session::new();
+    let loaded = session.load(&name, bytes(AMC)).unwrap();
+    let entry = session.library().find(&loaded.ids[0]).unwrap();
+    assert!(
+        entry.name.starts_with("a bhvb.xxx") && entry.name.chars().count() <= 202,
+        "{}",
+        entry.name
+    );
+    assert!(entry.id.chars().count() < 120, "{}", entry.id);
+    session.load("b.asf", bytes(ASF)).unwrap();
+    assert_eq!(files(&session)[0].2, 2, "it is read by that name");
+    session
+        .apply(Command::Rename(loaded.ids[0].clone(), "x\ny\u{202e}".into()))
+        .unwrap();
+    assert_eq!(files(&session)[0].0, "x y");
+}
+
+#[test]
+fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers() {
+    let walk = crate::synth::synthesize(&crate::synth::Params::new(crate::synth::Action::Walk))
+        .unwrap()
+        .clip;
+    let text = crate::formats::bvh::write(&walk, &crate::formats::bvh::WriteOptions::default());
+    // The 40th row: its root is at 1e18 in the file's centimetres.
+    let rows: Vec<&str> = text.lines().collect();
+    let first = rows.iter().position(|row| row.starts_with("Frame Time")).unwrap() + 1;
+    let (_, rest) = rows[first + 40].split_once(' ').unwrap();
+    let wild = text.replace(rows[first + 40], &format!("1e20 {rest}"));
+    let scaled = |factor: f64| {
+        let offset = |line: &str| {
+            let (head, numbers) = line.split_once("OFFSET ")?;
+            let numbers: Vec<String> = numbers
+                .split_whitespace()
+                .map(|n| (n.parse::<f64>().unwrap() * factor).to_string())
+                .collect();
+            Some(format!("{head}OFFSET {}", numbers.join(" ")))
+        };
+        let lines: Vec<String> = text.lines().map(|line| offset(line).unwrap_or_else(|| line.to_owned())).collect();
+        lines.join("\n")
+    };
+    for (text, part) in [
+        (wild, "1 row with a root that is 1.0e18 m away"),
+        (scaled(1e-12), "m tall: its unit may be another one"),
+        (scaled(1e12), "m tall: its unit may be another one"),
+    ] {
+        let mut session = Session::new();
+        let loaded = session.load("x.bvh", bytes(&text)).unwrap();
+        assert!(
+            loaded.warnings.iter().any(|warning| warning.contains(part)),
+            "{part}: {:?}",
+            loaded.warnings
+        );
+        let notice = session.notices().list().iter().find(|notice| notice.mend.is_some()).unwrap();
+        let mend = notice.mend.clone().unwrap();
+        session.apply(Command::Reimport(mend.clip.clone(), mend.options)).unwrap();
+        let entry = session.library().find(&mend.clip).unwrap();
+        let motion = entry.motion.as_ref().unwrap();
+        let height = motion.roles.body_height(motion.clip.skeleton());
+        assert!((0.9..2.5).contains(&height), "{part}: {height} m");
+        if part.starts_with("1 row") {
+            let roots = motion.clip.root_translations();
+            assert!(roots.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.2), "{part}");
+        }
+        session.apply(Command::Undo).unwrap();
+    }
+    // A person of a usual size who goes a usual way is told nothing of the kind.
+    let loaded = Session::new().load("x.bvh", bytes(&text)).unwrap();
+    assert_eq!(loaded.warnings, [""; 0]);
+}
+
+#[test]
+fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
+    let asf = ASF.replace("root thigh spine", "root thigh spine tail");
+    let mut session = Session::new();
+    session.load("01.asf", bytes(&asf)).unwrap();
+    let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
+    assert!(
+        loaded.warnings.iter().any(|warning| warning.contains("such as `tail`")),
+        "{:?}",
+        loaded.warnings
+    );
 }

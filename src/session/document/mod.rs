@@ -26,6 +26,7 @@ use super::library::{Entry, Library, Origin};
 use super::link;
 use super::motion::{FeetReader, Motion};
 use super::notice::{Level, Notices};
+use super::outside;
 use super::params::{Key, Params, Value};
 use super::reading::{Reads, read};
 use super::recipe::{
@@ -320,6 +321,12 @@ impl Session {
         self.revision += 1;
     }
 
+    /// Tells the user something of a file or key.
+    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<String>) {
+        self.notices.say_of(level, about, text);
+        self.revision += 1;
+    }
+
     /// Lets time pass: moves the playhead while playing. Says whether anything moved.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut changed = self.notices.tick(dt_secs);
@@ -383,10 +390,10 @@ impl Session {
             Command::LoadSamples(set) => self.load_samples(set),
             Command::Remove(id) => self.remove(&id)?,
             Command::Rename(id, name) => {
-                let name = name.trim().to_owned();
-                if name.is_empty() {
+                if name.trim().is_empty() {
                     return Err(CommandError::NotPossible("a clip needs a name"));
                 }
+                let name = outside::clip_name(&name);
                 self.change_entry(&id, |entry| entry.name = name)?;
             }
             Command::CorrectRole(id, role, joint) => self.correct_role(&id, role, joint)?,
@@ -624,7 +631,10 @@ impl Session {
             } else {
                 self.say(
                     Level::Error,
-                    format!("src: found `{address}`, expected an address that starts with https://."),
+                    format!(
+                        "src: found `{}`, expected an address that starts with https://.",
+                        outside::short(&address)
+                    ),
                 );
             }
         }

@@ -6,6 +6,7 @@ use crate::math::Planar;
 use crate::session::compare::{Compare, MAX_PANES};
 use crate::session::library::{Entry, Origin, split_reference};
 use crate::session::motion::{FeetReading, Motion};
+use crate::session::outside;
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{
     BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source, SpeedInputs,
@@ -362,7 +363,7 @@ impl Session {
         let Some(entry) = self.library.find(reference) else {
             return Err(format!(
                 "`{}` is not here: drop its file, or choose another clip.",
-                split_reference(reference).0
+                outside::short(split_reference(reference).0)
             ));
         };
         if let Some(motion) = &entry.motion {
@@ -378,7 +379,7 @@ impl Session {
             }
             Origin::Preset => Arc::new(preset_motion(&id)?),
             Origin::Made => {
-                let params = recipe_params(&id).ok_or_else(|| format!("`{id}` names no motion."))?;
+                let params = recipe_params(&id).ok_or_else(|| format!("`{}` names no motion.", outside::short(&id)))?;
                 self.made_again(&params)?
             }
             Origin::File(file) if entry.awaits_skeleton() => {

@@ -4,6 +4,7 @@
 use super::{Session, built_in_entries};
 use crate::session::command::CommandError;
 use crate::session::library::{Entry, Origin, split_reference};
+use crate::session::outside;
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{Slot, recipe_name, recipe_params};
 
@@ -119,6 +120,7 @@ impl Session {
             return;
         }
         let (name, sha, _) = split_reference(reference);
+        let [name, sha] = [name, sha].map(outside::short);
         let text = if sha.is_empty() {
             format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
         } else {

@@ -8,6 +8,9 @@ use crate::session::notice::Level;
 use crate::session::params::{Group, Key, PARAMS, Param, Params};
 use std::sync::Arc;
 
+/// So many of a link's problems are named, the others are counted.
+const MOST_PROBLEMS: usize = 6;
+
 /// What the panel of lessons shows.
 #[derive(Clone, Debug)]
 pub enum Lesson<'a> {
@@ -227,8 +230,16 @@ impl Session {
         let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
         let new_sources = self.sources_beyond(&had);
         self.note_named(named, !new_sources.is_empty());
-        if !problems.is_empty() {
-            self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; ")));
+        match problems.get(MOST_PROBLEMS..).map_or(0, <[_]>::len) {
+            _ if problems.is_empty() => {}
+            0 => self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; "))),
+            more => {
+                let first = problems.get(..MOST_PROBLEMS).unwrap_or(problems).join("; ");
+                self.say(
+                    Level::Warning,
+                    format!("The link was used, but for this: {first}; and {more} more like these."),
+                );
+            }
         }
         self.fetch(new_sources);
         self.look_for_clips();

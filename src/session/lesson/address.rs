@@ -6,6 +6,16 @@ const MOST_PARENTHESES: usize = 32;
 /// The entities that are known.
 const ENTITIES: [(&str, char); 5] = [("&amp;", '&'), ("&lt;", '<'), ("&gt;", '>'), ("&quot;", '"'), ("&nbsp;", '\u{a0}')];
 
+/// Returns the host that an address with `://` leads to, with its port: as browsers read it, so that nothing before an `@` and nothing behind a
+/// slash of either kind passes for it. The address itself where it has none.
+#[must_use]
+pub fn host_of(address: &str) -> &str {
+    let rest = address.split_once("://").map_or(address, |(_, rest)| rest);
+    let authority = rest.split(['/', '\\', '?', '#']).next().unwrap_or(rest);
+    let host = authority.rsplit('@').next().unwrap_or(authority);
+    if host.is_empty() { address } else { host }
+}
+
 /// The sign that an entity at the beginning of a text stands for, and how many bytes the entity has.
 pub(super) fn entity(text: &str) -> Option<(char, usize)> {
     let (name, letter) = ENTITIES.iter().find(|(name, _)| text.starts_with(name))?;
@@ -108,4 +118,24 @@ fn unescaped(text: &str) -> String {
         }
     }
     read
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn host_of_an_address_is_the_one_that_a_browser_asks() {
+        for (address, host) in [
+            ("https://example.org", "example.org"),
+            ("https://example.org:8080/x?y#z", "example.org:8080"),
+            ("https://good.org@evil.org/good.org", "evil.org"),
+            ("https://evil.org\\@good.org", "evil.org"),
+            ("https://evil.org?@good.org", "evil.org"),
+            ("https://evil.org#@good.org", "evil.org"),
+            ("nothing", "nothing"),
+        ] {
+            assert_eq!(host_of(address), host, "{address}");
+        }
+    }
 }

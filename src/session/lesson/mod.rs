@@ -12,6 +12,7 @@ mod parse;
 mod prose;
 mod shelf;
 
+pub use address::host_of;
 pub use page::{Block, Page, Span, Target, Try};
 pub use parse::{LessonError, MOST_BYTES, parse};
 pub use shelf::{CONTENTS, LESSONS, Source, file_name, source_of};

@@ -1,6 +1,7 @@
 //! Which lessons there are, where their texts are, and which texts are here.
 
 use super::page::Page;
+use crate::session::outside::short;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -64,7 +65,8 @@ pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), String> {
     match file_name(lesson) {
         Some(file) => Ok((Source::BuiltIn(format!("{lang}/{file}")), 0)),
         None => Err(format!(
-            "lesson: found `{lesson}`, expected {CONTENTS}, {}, or an address that starts with https://.",
+            "lesson: found `{}`, expected {CONTENTS}, {}, or an address that starts with https://.",
+            short(lesson),
             LESSONS.join(", ")
         )),
     }

@@ -6,6 +6,7 @@ mod wire;
 pub use wire::{Parcel, Unpacker, WireError};
 
 use super::motion::Motion;
+use super::outside;
 use crate::formats::acclaim::{self, AcclaimSkeleton};
 use crate::formats::archive::{self, ArchiveLimits};
 use crate::formats::{FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress, kind_of, unpack_gzip};
@@ -135,6 +136,12 @@ pub struct About {
     pub t_pose_first_row: bool,
     /// Whether that row was left out.
     pub t_pose_dropped: bool,
+    /// Metres per unit that would make the body as tall as a person, where it is of no size that people have.
+    #[serde(default)]
+    pub fitting_unit: Option<f64>,
+    /// Whether the root is far away in single rows.
+    #[serde(default)]
+    pub wild_rows: bool,
 }
 
 /// [`read`], or none of it.
@@ -145,11 +152,19 @@ pub type Reads = fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> O
 pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMut(usize) -> bool) -> Option<ReadReport> {
     let most = setup.options.max_bytes;
     let unpacked = match kind_of(name, bytes) {
-        FileKind::Zip => archive::unpack(name, bytes, &ArchiveLimits { max_bytes: most }).map(|unpacked| {
+        FileKind::Zip => archive::unpack(
+            name,
+            bytes,
+            &ArchiveLimits {
+                max_bytes: most,
+                ..ArchiveLimits::default()
+            },
+        )
+        .map(|unpacked| {
             let files = unpacked
                 .files
                 .into_iter()
-                .map(|file| (format!("{name}/{}", file.path), file.bytes))
+                .map(|file| (outside::file_name(&format!("{name}/{}", file.path)), file.bytes))
                 .collect();
             (files, unpacked.warnings.iter().map(ToString::to_string).collect())
         }),
@@ -358,6 +373,8 @@ impl From<&ImportedClip> for About {
             measure: imported.measure.to_string(),
             t_pose_first_row: imported.t_pose_first_row,
             t_pose_dropped: imported.t_pose_dropped,
+            fitting_unit: imported.mendable.metres_per_unit,
+            wild_rows: imported.mendable.wild_rows,
         }
     }
 }

@@ -12,8 +12,8 @@ pub use built::{Built, Distances, Field};
 pub use cast::Cast;
 pub(in crate::session) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};
+pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
 pub(in crate::session) use wanted::{clips_of, read_path, read_visits};
-pub use wanted::{graph_of, write_jump, write_path, write_visits};
 
 use super::{Outcome, Slot, Source, Transition};
 use std::sync::Arc;

@@ -3,6 +3,7 @@ use super::feet::{slide, slide_before, with_feet};
 use super::kept::belongs_to;
 use crate::metrics::foot_slide_cm;
 use crate::session::motion::{FeetReading, Motion};
+use crate::session::outside::short;
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::synth::{self, Action};
 use std::sync::Arc;
@@ -90,7 +91,7 @@ pub(in crate::session) fn preset_motion(id: &str) -> Result<Motion, String> {
     let preset = synth::presets()
         .into_iter()
         .find(|preset| preset.id == id)
-        .ok_or_else(|| format!("`{id}` is no built-in motion."))?;
+        .ok_or_else(|| format!("`{}` is no built-in motion.", short(id)))?;
     let made = synth::synthesize(&preset.params).map_err(|error| error.to_string())?;
     Ok(Motion::analyze(made.clip.with_name(preset.title), None))
 }

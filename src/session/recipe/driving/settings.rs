@@ -5,6 +5,7 @@ use crate::matching::{
     ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights,
 };
 use crate::math::Decay;
+use crate::session::outside::short;
 use crate::session::params::{Key, Params};
 use crate::session::recipe::read_ids;
 use crate::transition::Inertialization;
@@ -75,9 +76,12 @@ pub(in crate::session) fn options_in(database: &Database, params: &Params) -> Re
     }
     let ids = read_ids(params.text(Key::MatchClips)).unwrap_or_default();
     let named = database.motions().iter().find(|motion| clip_name(motion, &ids) == name);
-    let source = named
-        .map(|motion| motion.source())
-        .ok_or_else(|| format!("`{name}` is not among the clips to choose frames from: choose another clip to prefer, or none."))?;
+    let source = named.map(|motion| motion.source()).ok_or_else(|| {
+        format!(
+            "`{}` is not among the clips to choose frames from: choose another clip to prefer, or none.",
+            short(name)
+        )
+    })?;
     Ok(ControllerOptions {
         prefer_source: Some(source),
         ..options

@@ -1,6 +1,7 @@
 //! Tags that are set by hand, beside those that speed and turn rate suggest: `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
 use crate::matching::{Database, Motion, RATE, Tag, TagFilter, TagRange, TagSet};
+use crate::session::outside::short;
 use crate::session::params::{Key, Params, format_number};
 use crate::session::recipe::kept::{read_ids, write_ids};
 use std::sync::Arc;
@@ -28,7 +29,12 @@ pub(in crate::session) fn read_tags(text: &str) -> Result<Vec<HandTag>, String> 
     if text.trim().is_empty() {
         return Ok(Vec::new());
     }
-    let refuse = |found: &str| format!("Tags: found `{found}`, expected a clip, its seconds and a word, as in walk:0.2-1.5:exclude.");
+    let refuse = |found: &str| {
+        format!(
+            "Tags: found `{}`, expected a clip, its seconds and a word, as in walk:0.2-1.5:exclude.",
+            short(found)
+        )
+    };
     let parts = read_ids(text).ok_or_else(|| refuse(text))?;
     if parts.len() > MOST_TAGS {
         return Err(format!("Tags: {} are more than can be kept: use at most {MOST_TAGS}.", parts.len()));
@@ -96,8 +102,12 @@ pub(in crate::session) fn filter_of(params: &Params) -> Result<TagFilter, String
         if word.is_empty() || word == key.param().format(&key.param().default_value()) {
             return Ok(TagSet::NONE);
         }
-        let tag = tag_of(word, &own)
-            .ok_or_else(|| format!("No frame has the tag `{word}`: tag a stretch of a clip with it, or choose another tag."))?;
+        let tag = tag_of(word, &own).ok_or_else(|| {
+            format!(
+                "No frame has the tag `{}`: tag a stretch of a clip with it, or choose another tag.",
+                short(word)
+            )
+        })?;
         Ok::<_, String>(TagSet::of(&[tag]))
     };
     Ok(TagFilter {

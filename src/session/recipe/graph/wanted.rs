@@ -1,5 +1,6 @@
 use crate::graph::{Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions};
 use crate::math::Decay;
+use crate::session::outside::short;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::blend::{align_by, root_blend, weight_law};
 use crate::session::recipe::kept::{read_ids, write_ids};
@@ -153,8 +154,12 @@ pub(super) fn sentence(error: &GraphError) -> String {
 
 /// The ids of a list of clips. An id may stand there several times, and counts once.
 pub(in crate::session) fn clips_of(text: &str) -> Result<Vec<String>, String> {
-    let listed =
-        read_ids(text).ok_or_else(|| format!("Clips: found `{text}`, expected clips with commas between them, as in walk,run."))?;
+    let listed = read_ids(text).ok_or_else(|| {
+        format!(
+            "Clips: found `{}`, expected clips with commas between them, as in walk,run.",
+            short(text)
+        )
+    })?;
     let mut ids: Vec<String> = Vec::new();
     for id in listed.iter().map(|id| id.trim()).filter(|id| !id.is_empty()) {
         if !ids.iter().any(|known| known == id) {
@@ -168,6 +173,14 @@ pub(in crate::session) fn clips_of(text: &str) -> Result<Vec<String>, String> {
     }
 }
 
+/// Says what is wrong with a list of clips for a graph, before anything is set.
+///
+/// # Errors
+/// The sentence that would stand in place of the result.
+pub fn check_graph_clips(text: &str) -> Result<(), String> {
+    clips_of(text).map(drop)
+}
+
 /// What is to be set for other clips. What tells clips by their place in the list means nothing any more.
 #[must_use]
 pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
@@ -177,7 +190,7 @@ pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
 
 /// Pairs of two numbers with a colon between them and commas between the pairs.
 fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, String> {
-    let refuse = |part: &str| format!("{what}: found `{part}`, expected pairs as in {like}.");
+    let refuse = |part: &str| format!("{what}: found `{}`, expected pairs as in {like}.", short(part));
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() < 1e5);
     let pairs: Vec<(f64, f64)> = (text.split(','))
         .filter(|part| !part.trim().is_empty())
@@ -238,7 +251,7 @@ fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
     };
     let ends = text.split_once('-').and_then(|(leave, enter)| Some([place(leave)?, place(enter)?]));
     ends.map(Some)
-        .ok_or_else(|| format!("Transition: found `{text}`, expected clips and frames as in 0:52-3:14."))
+        .ok_or_else(|| format!("Transition: found `{}`, expected clips and frames as in 0:52-3:14.", short(text)))
 }
 
 /// A transition as the parameter has it.

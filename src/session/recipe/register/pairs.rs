@@ -1,5 +1,6 @@
 //! Lists of pairs as links carry them: `12-30,50-71`, `0.3:run`.
 
+use crate::session::outside::short;
 use crate::session::params::format_number;
 use crate::session::recipe::kept::{read_ids, write_ids};
 
@@ -21,8 +22,12 @@ pub const MOST_ALSO: usize = 6;
 
 /// Reads clips and their weights: `0.3:run,0.2:fast_walk`.
 pub(in crate::session) fn read_also(text: &str) -> Result<Vec<(String, f64)>, String> {
-    let refuse =
-        |found: &str| format!("More clips: found `{found}`, expected a weight from 0 to 1 and a clip, as in 0.3:run,0.2:fast_walk.");
+    let refuse = |found: &str| {
+        format!(
+            "More clips: found `{}`, expected a weight from 0 to 1 and a clip, as in 0.3:run,0.2:fast_walk.",
+            short(found)
+        )
+    };
     if text.trim().is_empty() {
         return Ok(Vec::new());
     }
@@ -56,7 +61,7 @@ fn read(text: &str, name: &str, expected: &str, most: usize) -> Result<Vec<(usiz
     };
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     let pairs: Vec<(usize, usize)> = words
-        .map(|pair| read(pair).ok_or_else(|| format!("{name}: found `{pair}`, expected {expected}.")))
+        .map(|pair| read(pair).ok_or_else(|| format!("{name}: found `{}`, expected {expected}.", short(pair))))
         .collect::<Result<_, _>>()?;
     if pairs.len() > MOST_PAIRS {
         return Err(format!(
