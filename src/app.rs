@@ -110,6 +110,8 @@ pub(crate) struct Segue {
     speech: Speech,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
+    /// Whether it was told that the page around this one can use it.
+    has_told_of_host: bool,
 }
 
 /// What listeners know already.
@@ -159,7 +161,9 @@ impl Segue {
         let embedded = link::read(&link).values.contains(&(Key::Embed, Value::Switch(true)));
         platform::watch_navigation(&inbox);
         let storage = (!embedded).then(|| Storage::open(&inbox));
-        Rc::new(RefCell::new(Self::new(inbox, storage, link)))
+        let mut segue = Self::new(inbox, storage, link);
+        segue.panels.host_reads = embedded && platform::is_framed();
+        Rc::new(RefCell::new(segue))
     }
 
     fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
@@ -191,6 +195,7 @@ impl Segue {
             curves: CurveCache::default(),
             picture: Picture::default(),
             film: None,
+            has_told_of_host: false,
             copied: ui::LINK_COPIED,
             has_begun: false,
             speech: Speech::new(),
@@ -338,6 +343,9 @@ impl Segue {
     /// One frame of the window.
     fn ui(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame) {
         let dropped = ui.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
+        if !dropped.is_empty() || ui.input(|input| !input.raw.hovered_files.is_empty()) {
+            self.tell_of_host();
+        }
         if !dropped.is_empty() {
             platform::read_dropped(dropped, &self.inbox);
         }
@@ -410,11 +418,23 @@ impl Segue {
         }
     }
 
+    /// Tells once, before the first file is read, that the page around this one can use it: it drives this one by the page's API.
+    fn tell_of_host(&mut self) {
+        if self.panels.host_reads && !std::mem::replace(&mut self.has_told_of_host, true) {
+            self.session.say(Level::Warning, ui::HOST_READS);
+        }
+    }
+
     /// Does what only the platform can do.
     fn act(&mut self, action: &Action, ctx: &egui::Context) {
         match action {
-            Action::OpenFiles => platform::open_files(&self.inbox),
+            Action::OpenFiles => {
+                self.tell_of_host();
+                platform::open_files(&self.inbox);
+            }
+            Action::OpenPage(address) => platform::open_page(address, ctx),
             Action::StopFetching(name) => self.stop_fetching(name),
+            Action::StopLesson => self.stop_lessons(),
             Action::CopyLink => {
                 self.copied = ui::LINK_COPIED;
                 platform::copy_text(self.url(), ctx, &self.inbox);

@@ -10,9 +10,11 @@ use segue::math::Planar;
 use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
 use segue::session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue::session::outside;
 use segue::session::reading::Content;
 use segue::session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, frame_at, report,
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, check_graph_clips,
+    frame_at, report,
 };
 use segue::skeleton::Side;
 use serde::Serialize;
@@ -188,6 +190,9 @@ impl Segue {
             let known = self.session.nameable(id);
             value = Value::Text(known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?);
         }
+        if let (Key::Clips, Value::Text(ids)) = (key, &value) {
+            check_graph_clips(ids).map_err(|reason| format!("{name}: {reason}"))?;
+        }
         Ok((key, value))
     }
 
@@ -213,18 +218,26 @@ impl Segue {
         task
     }
 
+    /// Whether clips are still to come: from storage, over the network, or out of a file that is being read.
+    pub(crate) fn is_loading(&mut self) -> bool {
+        self.awaits_work() || !self.downloads.is_empty() || !self.session.awaited_samples().is_empty() || self.session.is_reading_any()
+    }
+
     /// Whether that file is still being read.
     pub(crate) fn is_reading(&self, task: u64) -> bool {
         self.session.is_reading(task)
     }
 
-    /// Stops what is under way: the file of that name that is read or fetched.
+    /// Stops what is under way: the file of that name that is read or fetched, a lesson's too.
     pub(crate) fn stop(&mut self, name: &str) -> Result<(), String> {
+        let name = outside::file_name(name);
         let reading = self.session.jobs().into_iter().find(|job| job.name == name && job.task.is_some());
         if let Some(task) = reading.and_then(|job| job.task) {
             self.obey(Command::StopReading(task));
-        } else if self.downloads.under_way().any(|(fetched, _)| fetched == name) {
-            self.stop_fetching(name);
+        } else if self.downloads.under_way().any(|(fetched, _)| fetched == name)
+            || self.downloads.lessons_under_way().any(|lesson| lesson == name)
+        {
+            self.stop_fetching(&name);
         } else {
             return Err(format!("stop: found `{name}`, expected the name of a file that is under way"));
         }
@@ -310,6 +323,9 @@ impl Segue {
 
     /// A pose in the world.
     pub(crate) fn pose(&self, which: &str, secs: f64) -> Result<PoseInfo, String> {
+        if !secs.is_finite() {
+            return Err(format!("pose: found {secs}, expected seconds"));
+        }
         let motion = self.motion(which)?;
         let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or("the clip has no frames")?;
         let frame = frame_at(&motion, secs);
@@ -397,8 +413,10 @@ impl Segue {
     fn jobs(&self) -> Vec<JobInfo> {
         let computed = self.session.jobs().into_iter().map(|job| (job.name, Some(job.progress)));
         let samples = self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
+        let lessons = self.downloads.lessons_under_way().map(|name| (name, None));
         computed
             .chain(self.downloads.under_way())
+            .chain(lessons)
             .chain(samples)
             .map(|(name, progress)| JobInfo { name, progress })
             .collect()

@@ -1,5 +1,6 @@
 //! What comes in from outside, and what is asked of it: files, takes, answers.
 
+use super::downloads::lesson_file;
 use super::{Event, Segue};
 use crate::platform::{self, Incoming, LargeFile, ReadNews};
 use crate::ui;
@@ -39,6 +40,7 @@ impl Segue {
                 }
             }
             Incoming::Lesson { source, result } => {
+                self.downloads.end_lesson(&source);
                 let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
                 self.session.finish_lesson(&source, text);
             }
@@ -54,10 +56,10 @@ impl Segue {
             }
             Incoming::Fetched { address, result } => {
                 self.downloads.finished(&address, result);
-                while let Some(fetched) = self.downloads.next_ready() {
+                while let Some((name, fetched)) = self.downloads.next_ready() {
                     match fetched {
-                        Ok((name, bytes)) => self.load(&name, bytes, true),
-                        Err(reason) => self.session.say(Level::Error, reason),
+                        Ok(bytes) => self.load(&name, bytes, true),
+                        Err(reason) => self.session.say_of(Level::Error, &name, reason),
                     }
                 }
             }
@@ -128,7 +130,7 @@ impl Segue {
         for request in self.session.take_requests() {
             match request {
                 Request::Sample(sample) => platform::load_sample(sample, &self.inbox),
-                Request::Lesson(source) => platform::load_lesson(&source, &self.inbox),
+                Request::Lesson(source) => self.downloads.start_lesson(source, &self.inbox),
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {
                     if let Some(bytes) = self.vault.bytes_of(&task.content) {
@@ -151,8 +153,19 @@ impl Segue {
             .keep_only(|address| wanted.split_whitespace().any(|source| source == address));
     }
 
-    /// Takes the addresses of a file out of the link: it is not fetched any longer.
+    /// Stops waiting for lessons: whoever opens one waits for that one alone.
+    pub(super) fn stop_lessons(&mut self) {
+        for source in self.downloads.end_lessons() {
+            let reason = format!("Loading {} was stopped.", lesson_file(&source));
+            self.session.finish_lesson(&source, Err(reason));
+        }
+    }
+
+    /// Stops what comes over the network in a file of that name. The addresses of a motion file go out of the link; a lesson says that it was stopped.
     pub(super) fn stop_fetching(&mut self, name: &str) {
+        if self.downloads.lessons_under_way().any(|lesson| lesson == name) {
+            return self.stop_lessons();
+        }
         let sources = self.session.params().text(Key::Src).split_whitespace();
         let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
         let rest = Value::Text(rest.join(" "));

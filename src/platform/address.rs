@@ -2,6 +2,7 @@
 
 use super::last_part;
 use percent_encoding::percent_decode_str;
+use segue::session::outside;
 
 /// The key with which a page is told which graphics to use. It belongs to the page, not to the state.
 const BACKEND: &str = "backend";
@@ -51,7 +52,7 @@ pub(crate) fn file_name_of(address: &str) -> String {
     if name.is_empty() {
         "download".to_owned()
     } else {
-        name.into_owned()
+        outside::file_name(&name)
     }
 }
 
@@ -71,6 +72,7 @@ mod tests {
         for (address, name) in [
             ("https://a.org/x/01%20walk.bvh?raw=1#top", "01 walk.bvh"),
             ("https://a.org/x/", "x"),
+            ("https://a.org/walk%E2%80%AEhvb%00.exe%0A", "walkhvb.exe"),
             ("https://a.org", "download"),
             ("https://a.org/?file=x.bvh", "download"),
         ] {

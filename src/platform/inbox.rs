@@ -68,8 +68,8 @@ pub(crate) enum Incoming {
     Fetched {
         /// The file's address.
         address: String,
-        /// Its name and bytes, or why they did not come.
-        result: Result<(String, Arc<[u8]>), String>,
+        /// Its bytes, or why they did not come.
+        result: Result<Arc<[u8]>, String>,
     },
     /// Storage was read; `None` where there was nothing in it, or no storage.
     Stored(Option<Box<Stored>>),

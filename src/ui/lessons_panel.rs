@@ -4,7 +4,7 @@ mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::tr;
-use super::out::Out;
+use super::out::{Action, Out};
 use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
@@ -65,7 +65,11 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
         clear_of_bar_ui(ui, |ui| match &lesson {
             Lesson::Contents(page) => contents_ui(page, out, ui),
             Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
-            Lesson::Waiting => note_ui(text::LESSON_WAITING, false, ui),
+            Lesson::Waiting => {
+                if kit::progress_row_ui(text::LESSON_WAITING, None, "", ui) {
+                    out.actions.push(Action::StopLesson);
+                }
+            }
             Lesson::Failed(problem) => {
                 note_ui(problem, true, ui);
                 if kit::button_ui(Button::new(text::TRY_AGAIN).icon(Icon::Loop), ui).clicked() {

@@ -37,7 +37,7 @@ pub(crate) use language::{Language, Tongue, speak_english};
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};
-pub(crate) use text::{LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
+pub(crate) use text::{HOST_READS, LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};

@@ -8,10 +8,14 @@ use segue::session::{Command, Key, Value};
 pub(crate) enum Action {
     /// Let the user choose files.
     OpenFiles,
+    /// Open a page of the web beside this one.
+    OpenPage(String),
     /// Put the address of this state into the clipboard.
     CopyLink,
     /// Stop fetching a file, by its name.
     StopFetching(String),
+    /// Stop waiting for the open lesson.
+    StopLesson,
     /// Save a motion as a file.
     Save {
         /// A clip's id, `result`, or `result:1` for the second pane.

@@ -15,7 +15,7 @@ pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out,
     if state.help_open {
         help_ui(state, ui);
     }
-    drop_ui(ui);
+    drop_ui(state, ui);
 }
 
 fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
@@ -30,14 +30,17 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         .map(|notice| Notice {
             text: &notice.text,
             mood: mood(notice.level),
-            action: "",
+            action: notice.mend.as_ref().map_or("", |_| text::MEND),
         })
         .collect();
     // Above the numbers: they are what one looks at.
     let free = state.stage.with_max_y(state.numbers_top.max(state.stage.center().y));
-    if let Some((index, NoticeEvent::Dismissed)) = kit::toasts_ui(&notices, free, ui)
+    if let Some((index, event)) = kit::toasts_ui(&notices, free, ui)
         && let Some(notice) = list.get(index)
     {
+        if let (NoticeEvent::Acted, Some(mend)) = (event, &notice.mend) {
+            out.commands.push(Command::Reimport(mend.clip.clone(), mend.options));
+        }
         out.commands.push(Command::Dismiss(notice.id));
     }
 }
@@ -63,7 +66,7 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
 }
 
 /// While files hang over the window, the whole page says that they may be dropped.
-fn drop_ui(ui: &Ui) {
+fn drop_ui(state: &UiState, ui: &Ui) {
     if ui.input(|input| input.raw.hovered_files.is_empty()) {
         return;
     }
@@ -79,11 +82,16 @@ fn drop_ui(ui: &Ui) {
         Stroke::new(2.0, palette.accent),
         StrokeKind::Inside,
     );
-    painter.text(
+    let words = painter.text(
         screen.center(),
         Align2::CENTER_CENTER,
         tr(text::DROP_NOW, ui),
         theme.font(Type::Title),
         palette.text,
     );
+    if state.host_reads {
+        let warning = kit::paint::paragraph(text::HOST_READS, Type::Body, palette.warning, screen.width() - 4.0 * space::L, ui);
+        let place = Align2::CENTER_TOP.anchor_size(words.center_bottom() + egui::vec2(0.0, space::M), warning.size());
+        painter.galley(place.min, warning, palette.warning);
+    }
 }

@@ -115,6 +115,8 @@ pub(crate) struct UiState {
     pub(crate) numbers_top: f32,
     /// Files on their way, with how much of each is there, 0 to 1, where that is known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
+    /// Whether a page around this one can use what is opened here.
+    pub(crate) host_reads: bool,
 }
 
 impl Default for UiState {
@@ -148,6 +150,7 @@ impl Default for UiState {
             stage: Rect::NOTHING,
             numbers_top: 0.0,
             fetching: Vec::new(),
+            host_reads: false,
         }
     }
 }

@@ -14,6 +14,10 @@ pub(crate) const SAMPLES: &str = "samples";
 pub(crate) const DROP_HERE: &str = "Drop BVH, ASF + AMC, GLB, a zip or a folder";
 pub(crate) const OPEN_FILES: &str = "open…";
 pub(crate) const DROP_NOW: &str = "Drop to open";
+/// Of a clip that was read in the wrong unit, or with a root that is elsewhere in a row.
+pub(crate) const MEND: &str = "Correct it";
+/// In a frame of another page.
+pub(crate) const HOST_READS: &str = "The page around this frame can read and save what you open here.";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const COMPARE_OFF: &str = "One pane";
 /// Of what several values stand side by side, and nothing of the kind.

@@ -36,23 +36,31 @@ export function makeApi(handle, { stopped, onLost }) {
     }
   };
 
+  const WHICH = "the id of a clip, \"result\", or \"result:1\" for the second pane";
+  const PANE = "\"result\", or \"result:1\" for the second pane";
+  const FILE = "the name of a file, such as \"walk.bvh\"";
+  const FORMAT = "\"bvh\", \"csv\" or \"glb\"";
+  const BODY = "\"character\", \"plain\", or nothing";
+
   return Object.freeze({
     version: handle.version(),
-    load: (name, bytes) => callAsync("load", String(name), asBytes(bytes)),
-    stop: (name) => call("stop", String(name)),
+    load: async (name, bytes) => callAsync("load", text("load: name", name, FILE), asBytes(bytes)),
+    stop: (name) => call("stop", text("stop: name", name, FILE)),
     clips: () => call("clips"),
+    loaded: () => callAsync("loaded"),
     params: () => call("params"),
-    set: (values) => callAsync("set", values),
+    set: async (values) => callAsync("set", asValues(values)),
     keys: () => call("keys"),
     url: () => call("url"),
     play: () => call("play"),
     pause: () => call("pause"),
-    seek: (seconds) => call("seek", seconds),
+    seek: (seconds) => call("seek", number("seek: seconds", seconds)),
     time: () => call("time"),
-    pose: (which, seconds) => call("pose", which, seconds),
+    pose: (which, seconds) => call("pose", text("pose: which", which, WHICH), number("pose: seconds", seconds)),
     metrics: () => call("metrics"),
-    export: (which, format, body) => call("exportClip", which, format, body),
-    keep: (which) => call("keep", which),
+    export: (which, format, body) =>
+      call("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), body == null ? undefined : text("export: body", body, BODY)),
+    keep: (which) => call("keep", text("keep: which", which, PANE)),
     report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),
     record: () => call("record"),
@@ -60,13 +68,48 @@ export function makeApi(handle, { stopped, onLost }) {
     stats: () => call("stats"),
     on(event, listener) {
       const set = listeners.get(event);
-      if (!set) throw new Error(`There is no event "${event}", only ${EVENTS.join(", ")}`);
+      if (!set) throw new TypeError(`on: event: found ${named(event)}, expected one of ${EVENTS.join(", ")}`);
+      if (typeof listener !== "function") throw new TypeError(`on: listener: found ${named(listener)}, expected a function`);
       // Wrapped, so that the same function subscribed twice is two subscriptions.
       const subscription = (detail) => listener(detail);
       set.add(subscription);
       return () => void set.delete(subscription);
     },
   });
+}
+
+// What a call is given is checked here: the app's own bindings would take the memory of anything that is no string for one.
+
+/** What was found, in a few words. */
+function named(value) {
+  if (typeof value === "string") return `\`${value.length > 60 ? `${value.slice(0, 60)}…` : value}\``;
+  if (value === undefined) return "nothing";
+  if (value === null || typeof value === "number" || typeof value === "boolean") return String(value);
+  if (Array.isArray(value)) return "a list";
+  return typeof value === "object" ? "an object" : `a ${typeof value}`;
+}
+
+function text(key, value, expected) {
+  if (typeof value !== "string") throw new TypeError(`${key}: found ${named(value)}, expected ${expected}`);
+  return value;
+}
+
+function number(key, value) {
+  if (typeof value !== "number" || !Number.isFinite(value)) throw new TypeError(`${key}: found ${named(value)}, expected seconds`);
+  return value;
+}
+
+/** A flat copy of keys and values; which of them fit the app itself says. */
+function asValues(values) {
+  if (typeof values !== "object" || values === null || Array.isArray(values)) {
+    throw new TypeError(`set: found ${named(values)}, expected an object of keys and values, as in { blend_window: 24 }`);
+  }
+  for (const [key, value] of Object.entries(values)) {
+    if (!["number", "string", "boolean"].includes(typeof value)) {
+      throw new TypeError(`set: ${key}: found ${named(value)}, expected a number, a text, true or false`);
+    }
+  }
+  return { ...values };
 }
 
 function asError(reason) {
@@ -77,5 +120,5 @@ function asBytes(bytes) {
   if (bytes instanceof Uint8Array) return bytes;
   if (bytes instanceof ArrayBuffer) return new Uint8Array(bytes);
   if (ArrayBuffer.isView(bytes)) return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  throw new TypeError("The bytes of a file are a Uint8Array or an ArrayBuffer");
+  throw new TypeError(`load: bytes: found ${named(bytes)}, expected a Uint8Array or an ArrayBuffer`);
 }

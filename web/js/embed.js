@@ -5,22 +5,26 @@
 //   from the frame    { segue: 1, event: "ready", detail: { version } }              once; calls made before it wait for it
 //                     { segue: 1, event, detail }                                    "change", "error", "progress"
 //
-// Only the framing window is listened to. Whoever may frame the page is for its host to say (frame-ancestors).
+// Only the framing window is listened to. Who may frame the page its host says with the header `frame-ancestors`; who may
+// drive it, and be told of it, stands in the page (<meta name="embedders">) for hosts that can set no header.
 
 const EVENTS = ["change", "error", "progress"];
 
 // The words that the app reads as "on".
 const ON = ["on", "1", "true", "yes"];
 const embedded = window.parent !== window && ON.includes(new URLSearchParams(window.location.search).get("embed"));
+const embedders = (document.querySelector('meta[name="embedders"]')?.content ?? "*").split(/\s+/).filter(Boolean);
+const mayDrive = (origin) => embedders.includes("*") || embedders.includes(origin);
 if (embedded) window.addEventListener("message", receive);
 
 function receive({ source, origin, data }) {
-  if (source !== window.parent || data?.segue !== 1 || typeof data.call !== "string") return;
+  if (source !== window.parent || !mayDrive(origin) || data?.segue !== 1 || typeof data.call !== "string") return;
   const { id, call, args = [] } = data;
   const answer = (message) => source.postMessage({ segue: 1, id, ...message }, origin === "null" ? "*" : origin);
   window.segueReady
     .then(async (api) => {
       if (call === "on" || !Object.hasOwn(api, call)) throw new Error(`There is no call "${call}"`);
+      if (!Array.isArray(args)) throw new TypeError(`${call}: args: expected a list`);
       const member = api[call];
       return typeof member === "function" ? await member(...args) : member;
     })
@@ -31,7 +35,8 @@ function receive({ source, origin, data }) {
 /** Starts to tell the framing window of events. */
 export function answerParent(api) {
   if (!embedded) return;
-  const tell = (event, detail) => window.parent.postMessage({ segue: 1, event, detail }, "*");
+  // A message with the wrong origin does not arrive.
+  const tell = (event, detail) => embedders.forEach((origin) => window.parent.postMessage({ segue: 1, event, detail }, origin));
   for (const event of EVENTS) api.on(event, (detail) => tell(event, detail));
   tell("ready", { version: api.version });
 }

@@ -68,6 +68,17 @@ pub(crate) fn copy_text(text: String, ctx: &egui::Context, inbox: &Inbox) {
     inbox.push(Incoming::Copied);
 }
 
+/// Opens a page of the web in the user's browser.
+#[expect(clippy::disallowed_methods, reason = "a browser of its own knows nothing of this window")]
+pub(crate) fn open_page(address: &str, ctx: &egui::Context) {
+    ctx.open_url(egui::OpenUrl::new_tab(address));
+}
+
+/// A window stands in no page.
+pub(crate) fn is_framed() -> bool {
+    false
+}
+
 /// A window has no address.
 pub(crate) fn replace_query(_query: &str) {}
 
@@ -79,7 +90,7 @@ pub(crate) fn full_link(query: &str) -> String {
 /// Nobody goes back or forward in a window.
 pub(crate) fn watch_navigation(_inbox: &Inbox) {}
 
-/// A file that is under way.
+/// Something that is under way.
 #[derive(Debug)]
 pub(crate) struct Fetch;
 
@@ -110,7 +121,7 @@ pub(crate) fn load_language(tag: &str, inbox: &Inbox) {
 pub(crate) fn tell_language(_tag: &str) {}
 
 /// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
-pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let result = match source {
         Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| format!("{file} could not be loaded: {reason}.")),
         Source::Web(address) => Err(format!(
@@ -119,6 +130,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
     };
     let source = source.clone();
     inbox.push(Incoming::Lesson { source, result });
+    Fetch
 }
 
 /// What lies in a folder beside the program, or in the project's own.

@@ -5,83 +5,185 @@ use super::words_of;
 use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, file_name_of, too_large};
 use js_sys::{Reflect, Uint8Array};
 use segue::session::Sample;
-use segue::session::lesson::{MOST_BYTES, Source};
+use segue::session::lesson::{MOST_BYTES, Source, host_of};
+use segue::session::outside::short;
+use std::cell::{Cell, OnceCell};
+use std::rc::Rc;
 use std::sync::Arc;
+use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{AbortController, AbortSignal, ReadableStreamDefaultReader, RequestCredentials, RequestInit, RequestMode, Response};
 
-/// A file that is under way. Dropping it stops it.
+/// A server that sends nothing for so long has been waited for long enough, milliseconds.
+const PATIENCE_MS: i32 = 20_000;
+
+/// Something that is under way. Dropping it stops it.
 #[derive(Debug)]
-pub(crate) struct Fetch(Option<AbortController>);
+pub(crate) struct Fetch(Call);
 
 impl Drop for Fetch {
     fn drop(&mut self) {
-        if let Some(controller) = &self.0 {
+        self.0.stop();
+    }
+}
+
+/// What several hold on to who wait for one answer: it can be ended, and is ended when nothing comes for [`PATIENCE_MS`].
+#[derive(Clone, Debug)]
+struct Call(Rc<CallInner>);
+
+#[derive(Debug)]
+struct CallInner {
+    controller: Option<AbortController>,
+    is_late: Cell<bool>,
+    timer: Cell<Option<i32>>,
+    ring: OnceCell<Closure<dyn FnMut()>>,
+}
+
+impl Call {
+    fn new() -> Self {
+        let call = Self(Rc::new(CallInner {
+            controller: AbortController::new().ok(),
+            is_late: Cell::new(false),
+            timer: Cell::new(None),
+            ring: OnceCell::new(),
+        }));
+        let weak = Rc::downgrade(&call.0);
+        let ring = Closure::new(move || {
+            if let Some(inner) = weak.upgrade() {
+                inner.is_late.set(true);
+                inner.abort();
+            }
+        });
+        let is_first = call.0.ring.set(ring);
+        debug_assert!(is_first.is_ok(), "it is set once");
+        call.goes_on();
+        call
+    }
+
+    fn signal(&self) -> Option<AbortSignal> {
+        self.0.controller.as_ref().map(AbortController::signal)
+    }
+
+    fn stop(&self) {
+        self.0.abort();
+    }
+
+    fn is_over(&self) -> bool {
+        self.signal().is_some_and(|signal| signal.aborted())
+    }
+
+    /// Something has come: the patience begins anew.
+    fn goes_on(&self) {
+        self.0.clear();
+        let (Some(window), Some(ring)) = (window(), self.0.ring.get()) else {
+            return;
+        };
+        let set = window.set_timeout_with_callback_and_timeout_and_arguments_0(ring.as_ref().unchecked_ref(), PATIENCE_MS);
+        self.0.timer.set(set.ok());
+    }
+
+    /// What is said where the patience has ended: of the file `name` at an address.
+    fn lateness(&self, address: &str, name: &str) -> Option<String> {
+        let said = || {
+            format!(
+                "{} has sent nothing for {} s: {name} is not waited for any longer. Try again later.",
+                host_of(address),
+                PATIENCE_MS / 1000
+            )
+        };
+        self.0.is_late.get().then(said)
+    }
+}
+
+impl CallInner {
+    fn abort(&self) {
+        if let Some(controller) = &self.controller {
             controller.abort();
         }
+    }
+
+    fn clear(&self) {
+        if let (Some(window), Some(timer)) = (window(), self.timer.take()) {
+            window.clear_timeout_with_handle(timer);
+        }
+    }
+}
+
+impl Drop for CallInner {
+    fn drop(&mut self) {
+        self.clear();
     }
 }
 
 /// Asks for the file at an address. [`Incoming::Progress`] tells how it goes on, [`Incoming::Fetched`] how it ended; nothing comes
 /// any more once the result of this function is dropped.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
-    let controller = AbortController::new().ok();
-    let signal = controller.as_ref().map(AbortController::signal);
+    let call = Call::new();
+    let fetch = Fetch(call.clone());
     let (address, inbox) = (address.to_owned(), inbox.clone());
     spawn_local(async move {
-        let result = get(&address, &MOTION, signal.as_ref(), &inbox).await;
-        if signal.is_some_and(|signal| signal.aborted()) {
+        let result = get(&address, &MOTION, &call, &inbox).await;
+        if call.is_over() && !call.0.is_late.get() {
             return;
         }
-        let result = result.map(|bytes| (file_name_of(&address), Arc::from(bytes)));
+        let result = result.map(Arc::from);
         inbox.push(Incoming::Fetched { address, result });
     });
-    Fetch(controller)
+    fetch
 }
 
 /// Asks for a bundled take; [`Incoming::Sample`] brings it.
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
-        let result = bundled(&format!("samples/{}", sample.file)).await;
+        let result = bundled(&format!("samples/{}", sample.file), &Call::new(), &inbox).await;
         inbox.push(Incoming::Sample { sample, result });
     });
 }
 
-/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it.
-pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) {
+/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it, unless the result of this function is dropped before.
+pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
+    let call = Call::new();
+    let fetch = Fetch(call.clone());
     let (source, inbox) = (source.clone(), inbox.clone());
     spawn_local(async move {
         let result = match &source {
-            Source::BuiltIn(file) => bundled(&format!("lessons/{file}"))
+            Source::BuiltIn(file) => bundled(&format!("lessons/{file}"), &call, &inbox)
                 .await
                 .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
-            Source::Web(address) => get(address, &LESSON, None, &inbox).await.map(Arc::from),
+            Source::Web(address) => get(address, &LESSON, &call, &inbox).await.map(Arc::from),
         };
+        if call.is_over() && !call.0.is_late.get() {
+            return;
+        }
         inbox.push(Incoming::Lesson { source, result });
     });
+    fetch
 }
 
 /// Asks for what it takes to speak a language; [`Incoming::Language`] brings it.
 pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
-        let files = async {
-            let catalogue = bundled(&format!("lang/{tag}.json")).await?;
-            Ok([catalogue, bundled(&format!("lang/{tag}.otf")).await?])
-        };
+        let part = async |ending| bundled(&format!("lang/{tag}.{ending}"), &Call::new(), &inbox).await;
+        let files = async { Ok([part("json").await?, part("otf").await?]) };
         inbox.push(Incoming::Language(files.await));
     });
 }
 
 /// A file that lies beside the page.
-async fn bundled(address: &str) -> Result<Arc<[u8]>, String> {
-    match request(address, RequestMode::SameOrigin, None).await {
-        Err(_) => Err("the connection may have been interrupted".to_owned()),
-        Ok(response) if !response.ok() => Err(format!("its server answered {}", response.status())),
-        Ok(response) => whole(&response).await.map(Arc::from).map_err(|error| words_of(&error)),
+async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>, String> {
+    let refused = || {
+        let late = call.0.is_late.get().then_some("its server does not answer");
+        late.unwrap_or("the connection may have been interrupted").to_owned()
+    };
+    let response = request(address, RequestMode::SameOrigin, call).await.map_err(|_| refused())?;
+    if !response.ok() {
+        return Err(format!("its server answered {}", response.status()));
     }
+    let bytes = read(&response, address, None, MAX_FILE_BYTES, call, inbox).await;
+    bytes.map(Arc::from).map_err(|_| refused())
 }
 
 /// What is asked for at an address.
@@ -106,28 +208,27 @@ const LESSON: Wanted = Wanted {
     otherwise: "Put the lesson on a server that does, such as GitHub.",
 };
 
-async fn whole(response: &Response) -> Result<Vec<u8>, JsValue> {
-    let buffer = JsFuture::from(response.array_buffer()?).await?;
-    Ok(Uint8Array::new(&buffer).to_vec())
-}
-
-async fn request(address: &str, mode: RequestMode, signal: Option<&AbortSignal>) -> Result<Response, JsValue> {
+async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Response, JsValue> {
     let window = window().ok_or("no window")?;
     let init = RequestInit::new();
     init.set_mode(mode);
     init.set_credentials(RequestCredentials::Omit);
-    init.set_signal(signal);
+    init.set_signal(call.signal().as_ref());
     JsFuture::from(window.fetch_with_str_and_init(address, &init)).await?.dyn_into()
 }
 
-async fn get(address: &str, wanted: &Wanted, signal: Option<&AbortSignal>, inbox: &Inbox) -> Result<Vec<u8>, String> {
+async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Result<Vec<u8>, String> {
     let name = file_name_of(address);
-    let Ok(response) = request(address, RequestMode::Cors, signal).await else {
-        return Err(why_refused(address, wanted).await);
+    let Ok(response) = request(address, RequestMode::Cors, call).await else {
+        return Err(match call.lateness(address, &name) {
+            Some(late) => late,
+            None => why_refused(address, wanted).await,
+        });
     };
+    call.goes_on();
     match response.status() {
         200..=299 => {}
-        404 | 410 => return Err(format!("There is no file at {address} (answer {}).", response.status())),
+        404 | 410 => return Err(format!("There is no file at {} (answer {}).", short(address), response.status())),
         401 | 403 => {
             return Err(format!(
                 "{} does not give {name} to everybody (answer {}).",
@@ -145,7 +246,8 @@ async fn get(address: &str, wanted: &Wanted, signal: Option<&AbortSignal>, inbox
     let header = |key| response.headers().get(key).ok().flatten();
     if header("content-type").is_some_and(|kind| kind.starts_with("text/html")) {
         return Err(format!(
-            "{address} is a web page, not {}. Use the address of the file itself (on GitHub: Raw).",
+            "{} is a web page, not {}. Use the address of the file itself (on GitHub: Raw).",
+            short(address),
             wanted.what
         ));
     }
@@ -153,11 +255,13 @@ async fn get(address: &str, wanted: &Wanted, signal: Option<&AbortSignal>, inbox
     if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, wanted.most_bytes)) {
         return Err(reason);
     }
-    read(&response, address, total, wanted.most_bytes, inbox)
+    read(&response, address, total, wanted.most_bytes, call, inbox)
         .await
         .map_err(|error| match error {
             Unread::TooLarge(reason) => reason,
-            Unread::Broken(error) => format!("The connection broke while {name} was loading: {}.", words_of(&error)),
+            Unread::Broken(error) => call
+                .lateness(address, &name)
+                .unwrap_or_else(|| format!("The connection broke while {name} was loading: {}.", words_of(&error))),
         })
 }
 
@@ -173,7 +277,14 @@ impl From<JsValue> for Unread {
 }
 
 /// Reads an answer piece by piece. An answer without a length may be endless, so it is counted, not trusted.
-async fn read(response: &Response, address: &str, total: Option<u64>, most_bytes: u64, inbox: &Inbox) -> Result<Vec<u8>, Unread> {
+async fn read(
+    response: &Response,
+    address: &str,
+    total: Option<u64>,
+    most_bytes: u64,
+    call: &Call,
+    inbox: &Inbox,
+) -> Result<Vec<u8>, Unread> {
     let Some(stream) = response.body() else {
         return Ok(Vec::new());
     };
@@ -181,6 +292,7 @@ async fn read(response: &Response, address: &str, total: Option<u64>, most_bytes
     let mut bytes = Vec::new();
     loop {
         let chunk = JsFuture::from(reader.read()).await?;
+        call.goes_on();
         if Reflect::get(&chunk, &"done".into())?.is_truthy() {
             return Ok(bytes);
         }
@@ -215,22 +327,17 @@ async fn why_refused(address: &str, wanted: &Wanted) -> String {
         );
     }
     if address.starts_with("http://") && window.is_secure_context() && window.location().protocol().is_ok_and(|p| p == "https:") {
-        return format!("Browsers do not let a secure page load from {address}. Use an address that starts with https://.");
+        return format!(
+            "Browsers do not let a secure page load from {}. Use an address that starts with https://.",
+            short(address)
+        );
     }
-    let controller = AbortController::new().ok();
-    let signal = controller.as_ref().map(AbortController::signal);
-    let there = request(address, RequestMode::NoCors, signal.as_ref()).await.is_ok();
-    if let Some(controller) = controller {
-        controller.abort();
-    }
+    let call = Call::new();
+    let there = request(address, RequestMode::NoCors, &call).await.is_ok();
+    call.stop();
     if there {
         format!("{host} does not allow other pages to read its files (CORS). {}", wanted.otherwise)
     } else {
-        format!("{host} cannot be reached. Check the address: {address}")
+        format!("{host} cannot be reached. Check the address: {}", short(address))
     }
-}
-
-fn host_of(address: &str) -> String {
-    let host = web_sys::Url::new(address).map(|url| url.host()).unwrap_or_default();
-    if host.is_empty() { address.to_owned() } else { host }
 }

@@ -138,6 +138,20 @@ impl SegueHandle {
         to_js(&self.borrow_mut()?.clips())
     }
 
+    /// Waits until no more clips are to come: what was stored is back, and what is fetched or read is there. Every clip of the library then.
+    pub async fn loaded(&self) -> Result<JsValue, JsValue> {
+        self.opened().await?;
+        // While the page is hidden no frame comes to do it.
+        while {
+            let mut segue = self.borrow_mut()?;
+            segue.pump();
+            segue.is_loading()
+        } {
+            sleep(10).await;
+        }
+        self.clips()
+    }
+
     /// Every parameter's value by its key.
     pub fn params(&self) -> Result<JsValue, JsValue> {
         to_js(&self.borrow()?.params())

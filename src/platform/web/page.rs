@@ -2,6 +2,7 @@
 
 use crate::platform::address::{backend_of, state_of, with_backend_of};
 use crate::platform::{Inbox, Incoming};
+use eframe::egui;
 use js_sys::{Function, Promise};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -87,6 +88,22 @@ pub(crate) fn full_link(query: &str) -> String {
         Some(format!("{}{}", location.origin().ok()?, location.pathname().ok()?))
     });
     format!("{}?{query}", base.unwrap_or_default())
+}
+
+/// Opens a page of the web in a new tab. That page gets neither a handle to this one, which it could put a forgery in the place of, nor its address.
+pub(crate) fn open_page(address: &str, _ctx: &egui::Context) {
+    let opened = window().map(|window| window.open_with_url_and_target_and_features(address, "_blank", "noopener,noreferrer"));
+    if let Some(Err(error)) = opened {
+        log::warn!("{address} was not opened: {}", super::words_of(&error));
+    }
+}
+
+/// Whether this page stands in a frame of another one.
+pub(crate) fn is_framed() -> bool {
+    let window = window();
+    let parent = window.as_ref().and_then(|window| window.parent().ok().flatten());
+    // A page that stands alone is its own parent.
+    parent.is_some() && parent != window
 }
 
 /// Tells the app when the user goes back or forward, or changes the address.

@@ -7,8 +7,8 @@ use super::paint::{Run, full_width, line_of, paragraph, put};
 use super::words::Words;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, Sense, Shadow, Stroke, Ui, UiBuilder, WidgetInfo, pos2,
-    vec2,
+    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, ScrollArea, Sense, Shadow, Stroke, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 
 /// Something to be told once.
@@ -102,15 +102,22 @@ pub(crate) fn toasts_ui(notices: &[Notice<'_>], stage: Rect, ui: &mut Ui) -> Opt
         .default_width(width);
     let shown = area.show(ui.ctx(), |ui| {
         ui.set_width(width);
-        let mut touched = None;
-        for (index, notice) in notices.iter().enumerate() {
-            let inner = Frame::new()
-                .shadow(shadow)
-                .corner_radius(radius::L)
-                .show(ui, |ui| ui.push_id(index, |ui| notice_ui(notice, ui)).inner);
-            touched = inner.inner.map(|event| (index, event)).or(touched);
-        }
-        touched
+        // More than there is room for is scrolled, from its end: the cross of every notice can be reached.
+        let scrolled = ScrollArea::vertical()
+            .max_height(stage.height() - 2.0 * space::L)
+            .stick_to_bottom(true);
+        let shown = scrolled.show(ui, |ui| {
+            let mut touched = None;
+            for (index, notice) in notices.iter().enumerate() {
+                let inner = Frame::new()
+                    .shadow(shadow)
+                    .corner_radius(radius::L)
+                    .show(ui, |ui| ui.push_id(index, |ui| notice_ui(notice, ui)).inner);
+                touched = inner.inner.map(|event| (index, event)).or(touched);
+            }
+            touched
+        });
+        shown.inner
     });
     shown.inner
 }

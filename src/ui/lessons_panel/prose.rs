@@ -1,11 +1,11 @@
 //! Text with bold and slanted words, formulas and links.
 
-use crate::ui::out::Out;
+use crate::ui::out::{Action, Out};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{Align, CursorIcon, Frame, Label, Margin, OpenUrl, Sense, Stroke, Ui};
+use eframe::egui::{Align, CursorIcon, Frame, Label, Margin, Sense, Stroke, Ui};
 use segue::session::Command;
-use segue::session::lesson::{Block, Span, Target};
+use segue::session::lesson::{Block, Span, Target, host_of};
 
 /// Blocks of a text, one below the other.
 pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui) {
@@ -46,7 +46,7 @@ fn formula_ui(lines: &str, step: Type, ui: &mut Ui) {
     });
 }
 
-/// One paragraph. A link to a state sets it, one to the web opens another window.
+/// One paragraph. A link to a state sets it, one to the web opens another window, and its host stands beside it.
 pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, ui: &mut Ui) {
     let job_of = |spans: &[Span], ui: &Ui| {
         let mut job = LayoutJob::default();
@@ -78,7 +78,12 @@ pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, u
                 Target::Web(address) => {
                     response.on_hover_text(address);
                     if clicked {
-                        ui.ctx().open_url(OpenUrl::new_tab(address));
+                        out.actions.push(Action::OpenPage(address.clone()));
+                    }
+                    // Words may say anything, also another address.
+                    if run.iter().map(|span| span.text.as_str()).collect::<String>() != *address {
+                        let host = Span::plain(format!(" ({})", host_of(address)));
+                        ui.label(LayoutJob::single_section(host.text.clone(), format(&host, step, true, ui)));
                     }
                 }
             }
