@@ -686,4 +686,45 @@ mod tests {
         assert_eq!(file_name("01_01~3fa9 to ../run", "bvh"), "01_01~3fa9 to .._run.bvh");
         assert_eq!(file_name("  ", "bvh"), "motion.bvh");
     }
+
+    #[test]
+    fn more_clips_than_a_graph_takes_are_refused_with_the_sentence() {
+        let mut segue = open("lab=graph&play=off");
+        let before = segue.params();
+        let many: Vec<String> = (0..65).map(|n| format!("clip{n}")).collect();
+        let refused = segue.set(&object(json!({ "clips": many.join(",") }))).unwrap_err();
+        assert_eq!(refused, "clips: These are 65 clips: take 64 at most.");
+        assert_eq!(segue.params(), before);
+    }
+
+    #[test]
+    fn time_of_a_pose_is_a_number() {
+        let segue = open("lab=view&play=off");
+        for secs in [f64::NAN, f64::INFINITY] {
+            assert!(segue.pose("walk", secs).unwrap_err().contains("expected seconds"));
+        }
+    }
+
+    #[test]
+    fn page_around_the_frame_is_told_of_once() {
+        let mut segue = open("lab=view&play=off");
+        let said = |segue: &Segue| {
+            segue
+                .session
+                .notices()
+                .list()
+                .iter()
+                .filter(|notice| notice.text == crate::ui::HOST_READS)
+                .count()
+        };
+        segue.tell_of_host();
+        assert_eq!(said(&segue), 0, "there is none");
+        segue.panels.host_reads = true;
+        segue.tell_of_host();
+        assert_eq!(said(&segue), 1);
+        let id = segue.session.notices().list().last().unwrap().id;
+        segue.apply(Command::Dismiss(id)).unwrap();
+        segue.tell_of_host();
+        assert_eq!(said(&segue), 0, "it is told once");
+    }
 }

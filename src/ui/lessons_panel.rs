@@ -66,7 +66,8 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
             Lesson::Contents(page) => contents_ui(page, out, ui),
             Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
             Lesson::Waiting => {
-                if kit::progress_row_ui(text::LESSON_WAITING, None, "", ui) {
+                note_ui(text::LESSON_WAITING, false, ui);
+                if kit::button_ui(Button::new(text::STOP_LOADING).icon(Icon::Close), ui).clicked() {
                     out.actions.push(Action::StopLesson);
                 }
             }

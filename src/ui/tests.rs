@@ -11,7 +11,7 @@ use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
-use segue::session::{Command, Entry, Kind, Origin, Outcome, Slot, SourceFile, Value};
+use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, Slot, SourceFile, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -712,4 +712,66 @@ fn every_lab_has_a_key() {
         harness.step();
         assert_eq!(harness.state().session.params().text(Key::Lab), lab.key);
     }
+}
+
+#[test]
+fn notices_of_any_length_can_be_closed_one_after_the_other() {
+    for size in [DESK, PHONE] {
+        let mut page = page("lab=view&play=off");
+        for n in 0..6 {
+            page.session.say(Level::Error, format!("{n}: {}", "word ".repeat(400)));
+        }
+        let mut harness = harness(size, DARK, page);
+        for left in (0..harness.state().session.notices().list().len()).rev() {
+            let cross = |harness: &Harness<'_, Page>| {
+                harness
+                    .get_all_by_label(kit::ENGLISH.dismiss)
+                    .last()
+                    .map(|cross| cross.rect().center())
+            };
+            harness
+                .get_all_by_label(kit::ENGLISH.dismiss)
+                .last()
+                .expect("a cross")
+                .scroll_to_me();
+            harness.run();
+            let at = cross(&harness).expect("a cross");
+            assert!(
+                Rect::from_min_size(egui::Pos2::ZERO, size).contains(at),
+                "{left} left, and the cross is at {at}"
+            );
+            step(vec![egui::Event::PointerMoved(at)], &mut harness);
+            step(vec![button(at, true)], &mut harness);
+            step(vec![button(at, false)], &mut harness);
+            harness.run();
+            assert_eq!(harness.state().session.notices().list().len(), left);
+        }
+    }
+}
+
+#[test]
+fn notice_offers_to_mend_a_clip() {
+    let mut page = page("lab=view&play=off");
+    page.obeys = false;
+    let walk = page
+        .session
+        .library()
+        .get("walk")
+        .expect("a built-in clip")
+        .motion
+        .clone()
+        .expect("it is looked at");
+    let text = segue::formats::bvh::write(&walk.clip, &segue::formats::bvh::WriteOptions::default());
+    let rows: Vec<&str> = text.lines().collect();
+    let row = rows.len() - 20;
+    let (_, rest) = rows[row].split_once(' ').expect("a row of numbers");
+    let wild = text.replace(rows[row], &format!("1e9 {rest}"));
+    page.session.load("x.bvh", Arc::from(wild.as_bytes())).expect("a file that is read");
+    let mut harness = harness(DESK, DARK, page);
+    press(text::MEND, &mut harness);
+    let commands = &harness.state().out.commands;
+    assert!(
+        matches!(commands.as_slice(), [.., Command::Reimport(id, options), Command::Dismiss(_)] if id.starts_with("x~") && options.even_wild_rows),
+        "{commands:?}"
+    );
 }

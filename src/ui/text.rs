@@ -1056,6 +1056,8 @@ pub(crate) const QUESTION: &str = "Question";
 pub(crate) const SHOW_ANSWER: &str = "Show answer";
 /// And hides it.
 pub(crate) const HIDE_ANSWER: &str = "Hide answer";
+/// Ends the wait for a text.
+pub(crate) const STOP_LOADING: &str = "Stop loading";
 /// While a text is under way.
 pub(crate) const LESSON_WAITING: &str = "The lesson is loading…";
 /// After it did not come.

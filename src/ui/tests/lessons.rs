@@ -193,3 +193,30 @@ fn every_letter_of_the_lessons_is_in_the_font() {
         assert_eq!(missing, "", "{file}");
     }
 }
+
+#[test]
+fn link_to_the_web_has_its_host_beside_it_and_opens_by_the_platform() {
+    let mut page = page("lesson=https://school.example/mine.md");
+    let text = "# Mine\n\nSee [https://good.example](https://good.example@evil.example/x).\n\nAnd <https://plain.example/y>.\n";
+    let source = Source::Web("https://school.example/mine.md".to_owned());
+    page.session.finish_lesson(&source, Ok(text.as_bytes()));
+    let mut harness = harness(DESK, DARK, page);
+    harness.get_by_label_contains("(evil.example)");
+    assert!(
+        harness.query_by_label_contains("(plain.example)").is_none(),
+        "an address tells its host itself"
+    );
+    press("https://good.example", &mut harness);
+    let asked = &harness.state().out.actions;
+    assert_eq!(
+        asked.as_slice(),
+        [Action::OpenPage("https://good.example@evil.example/x".to_owned())]
+    );
+}
+
+#[test]
+fn lesson_that_is_waited_for_can_be_stopped() {
+    let mut harness = harness(DESK, DARK, page("lesson=https://school.example/mine.md"));
+    press(text::STOP_LOADING, &mut harness);
+    assert_eq!(harness.state().out.actions.as_slice(), [Action::StopLesson]);
+}
