@@ -269,6 +269,21 @@ mod tests {
     }
 
     #[test]
+    fn no_name_is_a_formula() {
+        for (name, written) in [
+            ("=HYPERLINK(\"x\",\"y\")", "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""),
+            ("+1", "'+1"),
+            ("-10 frames", "'-10 frames"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("\t=1", "'\t=1"),
+            ("a=b", "a=b"),
+            ("a,b", "\"a,b\""),
+        ] {
+            assert_eq!(cell(name), written);
+        }
+    }
+
+    #[test]
     fn names_are_told_apart() {
         let joint = |name: &str, parent| Joint {
             name: name.into(),

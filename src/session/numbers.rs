@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn a_table_is_written_twice() {
         let table = NumberTable {
-            panes: vec!["30 frames".into(), "a|b".into()],
+            panes: vec!["=1+1".into(), "a|b".into()],
             rows: vec![NumberRow {
                 label: "Drag",
                 unit: "s",
@@ -163,8 +163,8 @@ mod tests {
                 values: vec![Some(0.416), None],
             }],
         };
-        assert_eq!(table.markdown(), "| | 30 frames | a\\|b |\n|---|---|---|\n| Drag, s | 0.42 | – |\n");
-        assert_eq!(table.csv(), ",unit,30 frames,a|b\nDrag,s,0.416,\n");
+        assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Drag, s | 0.42 | – |\n");
+        assert_eq!(table.csv(), ",unit,'=1+1,a|b\nDrag,s,0.416,\n");
         assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
     }
 }

@@ -47,7 +47,7 @@ onBothBackends("a link brings Chinese, the switch brings English back, and only 
 });
 
 onBackend("webgl2", "a reader of Chinese is spoken to in Chinese, and the link says nothing of it", async ({ open }) => {
-  const { page, segue } = await open("lab=make&play=off", { prepare: readerOf("zh-TW", "en") });
+  const { page, segue, ready } = await open("lab=make&play=off", { prepare: readerOf("zh-TW", "en") });
   await spoken(page, "zh-Hant");
   assert.equal((await segue("params")).lang, "auto");
   assert.doesNotMatch(await segue("url"), /lang=/);
@@ -57,7 +57,7 @@ onBackend("webgl2", "a reader of Chinese is spoken to in Chinese, and the link s
   await spoken(page, "en");
   await page.waitForTimeout(1500); // the work is stored once it has been quiet
   await page.goto(page.url().replace(/\?.*/, "?lab=blend"), { waitUntil: "commit" });
-  await page.evaluate(() => window.segueReady.then(() => true));
+  await ready();
   assert.equal((await segue("params")).lang, "en");
   await spoken(page, "en");
 });

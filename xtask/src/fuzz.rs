@@ -1,22 +1,31 @@
-//! `cargo xtask fuzz`: feeds readers with bytes until one of them breaks, or time is up.
+//! `cargo xtask fuzz`: feeds readers with bytes, and the page with all that it takes, until one of them breaks, or time is up.
 
 use std::fs;
 
+use crate::server::Server;
 use crate::shell::{Result, command, fail, on_path, output, root, run, step};
+use crate::{dist, tools};
 
+/// The target that is no reader of bytes: the whole page, in a browser (tests/browser/fuzz.mjs).
+const PAGE: &str = "page";
 /// How long each target runs unless told.
 const MINUTES: u32 = 20;
 
 pub fn run_targets(args: &[&str]) -> Result<()> {
-    let known = targets()?;
+    let mut known = targets()?;
+    known.push(PAGE.to_owned());
     let mut chosen = Vec::new();
-    let mut minutes = MINUTES;
+    let (mut minutes, mut seed) = (MINUTES, 1_u32);
     let mut args = args.iter();
     while let Some(&arg) = args.next() {
         match arg {
             "--minutes" => match args.next().map(|number| number.parse()) {
                 Some(Ok(number)) => minutes = number,
                 _ => return fail("--minutes is followed by a whole number"),
+            },
+            "--seed" => match args.next().map(|number| number.parse()) {
+                Some(Ok(number)) => seed = number,
+                _ => return fail("--seed is followed by a whole number"),
             },
             name if known.iter().any(|target| target == name) => chosen.push(name.to_owned()),
             other => return fail(format!("there is no target `{other}`, only {}", known.join(", "))),
@@ -25,11 +34,27 @@ pub fn run_targets(args: &[&str]) -> Result<()> {
     if chosen.is_empty() {
         chosen = known;
     }
-    tools()?;
+    if chosen.iter().any(|target| target != PAGE) {
+        nightly()?;
+    }
     for target in chosen {
-        step(format!("{target}, {minutes} minutes"), || fuzz(&target, minutes))?;
+        step(format!("{target}, {minutes} minutes"), || match target.as_str() {
+            PAGE => fuzz_page(minutes, seed),
+            reader => fuzz(reader, minutes),
+        })?;
     }
     Ok(())
+}
+
+fn fuzz_page(minutes: u32, seed: u32) -> Result<()> {
+    let chromium = tools::chromium()?;
+    tools::browser_packages()?;
+    let server = Server::bind(0, dist::folder())?;
+    let address = server.address();
+    std::thread::spawn(move || server.run());
+    let (minutes, seed) = (minutes.to_string(), seed.to_string());
+    let mut fuzz = command("node", &["tests/browser/fuzz.mjs", "--minutes", &minutes, "--seed", &seed]);
+    run(fuzz.env("SEGUE_URL", address).env("CHROMIUM", chromium))
 }
 
 fn fuzz(target: &str, minutes: u32) -> Result<()> {
@@ -61,7 +86,7 @@ fn targets() -> Result<Vec<String>> {
 }
 
 /// Finds or installs what is needed: sanitizers are a matter of the nightly compiler.
-fn tools() -> Result<()> {
+fn nightly() -> Result<()> {
     if output("rustup", &["run", "nightly", "rustc", "--version"]).is_none() {
         step("installing a nightly compiler (about a minute)", || {
             run(&mut command("rustup", &["toolchain", "install", "nightly", "--profile", "minimal"]))

@@ -31,9 +31,10 @@ cargo xtask test [PART …]
     web         the release build that `serve` makes
     browser     that build in Chromium, on WebGL2 and on WebGPU
 
-cargo xtask fuzz [TARGET …] [--minutes N]
+cargo xtask fuzz [TARGET …] [--minutes N] [--seed S]
     Feeds the readers of outside bytes with random ones (20 minutes each unless told), with a nightly compiler and cargo-fuzz.
-    Targets are the files of fuzz/fuzz_targets; all of them unless some are named. What breaks one is left in fuzz/artifacts.
+    Targets are the files of fuzz/fuzz_targets and `page`; all of them unless some are named. What breaks one is left in fuzz/artifacts.
+    page        feeds the built page in Chromium with links, calls, messages, lessons and parameters; the same seed makes the same input
 
 cargo xtask quality [--data FOLDER | --synth N] [--pairs N] [--seed S] [--json FILE]
     Reads every motion file below a folder (BVH, AMC beside their ASF, GLB, zip), or synthesises N clips, and draws N pairs of the same rig, N of

@@ -12,9 +12,9 @@ use crate::shell::{Result, fail};
 /// What is fetched when somebody asks for it, and kept from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
 /// What the page may do, as a Content-Security-Policy: run the scripts and the WebAssembly that lie beside it and nothing else, and fetch from
-/// anywhere, for `src=` and lessons. Who may frame it only a header of the host can say.
-const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data:; \
-                      manifest-src 'self'; connect-src 'self' https: http:; base-uri 'none'; form-action 'none'";
+/// anywhere, for `src=` and lessons. Pictures and films that it has made itself (`blob:`) may be shown in it. Who may frame it only a header of the host can say.
+const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
+                      media-src blob:; manifest-src 'self'; connect-src 'self' https: http:; base-uri 'none'; form-action 'none'";
 /// Where the policy goes: before everything that it is about.
 const POLICY_PLACE: &str = "<meta charset=\"utf-8\">";
 /// The two that everything else is reached from: their names stay.
