@@ -144,7 +144,15 @@ onBackend("webgl2", "a lost graphics context moves the app to a fresh canvas", a
 });
 
 onBackend("webgl2", "a framed page answers its parent", async ({ open }) => {
-  const { page } = await open("", { prepare: standIn });
+  // The page around it is another one: this one's policy lets it frame nothing.
+  const course = (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>A course</title>" });
+  const { page } = await open("", {
+    wait: false,
+    prepare: async (page) => {
+      await standIn(page);
+      await page.route(({ pathname, search }) => pathname === "/" && search === "", course);
+    },
+  });
   const heard = await page.evaluate(async () => {
     const heard = [];
     const waiting = new Map();
