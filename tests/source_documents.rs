@@ -202,7 +202,7 @@ fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways
 #[test]
 fn a_long_window_drags_and_a_short_one_bursts() {
     let session = opened("lab=graph&construction=segments&segment_size=60&compare=blend_window:30,15,10");
-    let (lag, burst) = (numbers(&session, "walk_lag_s"), numbers(&session, "walk_seam_dps"));
+    let (lag, burst) = (numbers(&session, "lag_s"), numbers(&session, "velocity_jump_dps"));
     assert!(lag[0] > lag[1] && lag[1] > lag[2], "{lag:?}");
     assert!(is_rising(&burst), "{burst:?}");
 }
@@ -238,7 +238,7 @@ fn a_wrong_angle_spins() {
 #[test]
 fn a_transform_of_the_first_frame_alone_flashes() {
     let session = opened("lab=graph&compare=transform:whole,first,teleport");
-    let [flashes, spins, slides] = ["flashes", "spins", "walk_skate_cm"].map(|id| numbers(&session, id));
+    let [flashes, spins, slides] = ["flashes", "spins", "foot_slide_cm"].map(|id| numbers(&session, id));
     assert_eq!((flashes[0], spins[0]), (0.0, 0.0));
     assert!(flashes[1] > 0.0 && flashes[2] > 0.0);
     assert!(slides[2] > slides[0] && slides[1] > slides[0]);
@@ -504,7 +504,7 @@ fn a_frame_by_hand_slides_and_a_foot_lock_mends_it() {
     let [free, held] = ["", "&foot_lock=on"].map(|more| opened(&format!("{link}{more}")));
     let entered = outcome(&free, 0).transition.expect("a transition").enter_b_secs;
     assert!((entered * 60.0 - 20.0).abs() < 1e-6);
-    let slides = [&free, &held].map(|session| number(session, 0, "skate_cm"));
+    let slides = [&free, &held].map(|session| number(session, 0, "foot_slide_cm"));
     assert!(slides[1] < 0.5 * slides[0], "{slides:?}");
     // The homework weighs positions by 0.6 and rotations by 0.4.
     let params = free.params();
@@ -514,7 +514,7 @@ fn a_frame_by_hand_slides_and_a_foot_lock_mends_it() {
 #[test]
 fn velocities_divided_by_the_rate_stop_what_moves() {
     let session = opened("lab=transition&a=walk&b=run&half_life=0.27&compare=mistake:none,velocity");
-    let seams = numbers(&session, "seam_dps");
+    let seams = numbers(&session, "velocity_jump_dps");
     assert!(seams[1] > 2.0 * seams[0], "{seams:?}");
 }
 

@@ -169,13 +169,12 @@ impl WalkMetrics {
         self.seams.iter().filter(|seam| seam.flash > FLASH).count()
     }
 
-    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    /// What there is to say of a walk beyond what is measured of every result ([`ResultMetrics`](crate::metrics::ResultMetrics)), in the order in which
+    /// it is shown.
     #[must_use]
-    pub fn list(&self) -> [Metric; 8] {
-        let worst = |value: fn(&Seam) -> f64| self.seams.iter().map(value).max_by(f64::total_cmp);
+    pub fn list(&self) -> [Metric; 5] {
         let median = |values: Vec<f32>| stats::percentile(&values, 0.5).map(f64::from);
         let per_minute = (self.secs > 0.0).then(|| self.seams.len() as f64 * 60.0 / self.secs);
-        let skates = self.seams.iter().filter_map(|seam| seam.skate_cm).collect();
         let lags = self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
         [
             Metric::fact(
@@ -184,20 +183,6 @@ impl WalkMetrics {
                 per_minute,
                 "/min",
                 "How many transitions a minute of the walk has.",
-            ),
-            Metric::lower(
-                "walk_seam_deg",
-                "Seam angle",
-                worst(|seam| f64::from(seam.turn_deg)),
-                "°",
-                "How far a joint turns in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
-            ),
-            Metric::lower(
-                "walk_seam_dps",
-                "Seam angular velocity",
-                worst(|seam| f64::from(seam.change_dps)),
-                "°/s",
-                "How much a joint's angular velocity changes in one frame of a transition, beyond all but one in a hundred frames of the clips: the worst.",
             ),
             Metric::lower(
                 "spins",
@@ -214,18 +199,11 @@ impl WalkMetrics {
                 "Transitions in which the root or a joint jumps more than twice as far as in all but one in a thousand frames of the clips.",
             ),
             Metric::lower(
-                "walk_skate_cm",
-                "Foot slide",
-                median(skates),
-                "cm",
-                "How far a planted foot slides in the worst stance of a transition: the median.",
-            ),
-            Metric::lower(
-                "walk_lag_s",
-                "Drag",
+                "lag_s",
+                "Lag",
                 median(lags),
                 "s",
-                "How long a transition takes to come 90 % of the way to the entered clip's velocity: the median.",
+                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's; of several transitions the median.",
             ),
             Metric {
                 better: Better::Higher,

@@ -188,15 +188,8 @@ impl DriveMetrics {
                 "The longest time from asking for a turn until the body faces within 20° of it and stays there.",
             ),
             metric(
-                "match_skate",
-                "foot skate",
-                self.skate_cm,
-                "cm",
-                "How far a planted foot slides in a stance, on average: the farthest that its stillest point gets.",
-            ),
-            metric(
-                "match_worst_skate",
-                "worst foot skate",
+                "foot_slide_cm",
+                "Foot slide",
                 self.worst_skate_cm,
                 "cm",
                 "How far a planted foot slides in the worst stance.",

@@ -1,8 +1,14 @@
 use crate::clip::Clip;
-use crate::math::{quat, stats, wrap_angle};
+use crate::math::{stats, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
+
+mod joints;
+mod meter;
+
+pub(super) use joints::{JointTrace, Sizes};
+pub use meter::TraceMeter;
 
 /// The height that lengths are brought to, metres: the median, over the frames, of the height of all joints and end sites.
 const BODY_M: f32 = 1.7;
@@ -29,16 +35,12 @@ const SKATING_M: f32 = 0.025;
 /// A speed counts as higher than another one where it is by more than this share: less is rounding.
 const SAME_SPEED: f32 = 1.01;
 
-/// What the definitions of [`Artefacts`] need of a motion, taken once: how fast its joints turn, its root moves and its heading changes, and what its
-/// feet do. Lengths are those of a body of 1.7 m.
+/// What the definitions of [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics) need of a motion, taken once: how fast its joints turn, its root
+/// moves and its heading changes, and what its feet do. Lengths are those of a body of 1.7 m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrace {
-    fps: f64,
-    /// Per joint and step: the angle between its local rotations, degrees.
-    turns_deg: Vec<Vec<f32>>,
-    /// Per joint: the 99.9th percentile of its angular speed, and the largest, degrees per second.
-    rare_dps: Vec<f32>,
-    most_dps: Vec<f32>,
+    pub(super) fps: f64,
+    pub(super) joints: Vec<JointTrace>,
     /// Per step: the root's speed, metres per second; its 99.9th percentile, and the largest.
     root_mps: Vec<f32>,
     rare_mps: f32,
@@ -54,37 +56,9 @@ impl MotionTrace {
     /// Measures a clip. O(frames × joints).
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles) -> Self {
-        let (fps, joints) = (clip.fps(), clip.skeleton().len());
-        let steps = clip.frames().saturating_sub(1);
-        let dps = fps as f32;
-        let turn_deg = |joint: usize, frame: usize| {
-            let [from, to] = [frame, frame + 1].map(|frame| clip.rotations(frame)[joint]);
-            quat::angle_between(from, to).to_degrees()
-        };
-        let turns_deg: Vec<Vec<f32>> = (0..joints)
-            .map(|joint| (0..steps).map(|frame| turn_deg(joint, frame)).collect())
-            .collect();
-        let places = Places::of(clip, roles);
-        let root_mps: Vec<f32> = (clip.root_translations().windows(2))
-            .map(|pair| pair[0].distance(pair[1]) * places.scale * dps)
-            .collect();
-        let turned_deg = turned_deg(&places.headings, fps);
-        let rare = |values: &[f32]| stats::percentile(values, RARE).unwrap_or(0.0);
-        let feet: Vec<Foot> = places.toes.iter().map(|path| Foot::new(path, fps)).collect();
-        let skating = feet.iter().map(Foot::skating_cm_per_sec);
-        Self {
-            fps,
-            rare_dps: turns_deg.iter().map(|turns| rare(turns) * dps).collect(),
-            most_dps: turns_deg.iter().map(|turns| largest(turns) * dps).collect(),
-            turns_deg,
-            rare_mps: rare(&root_mps),
-            most_mps: largest(&root_mps),
-            root_mps,
-            most_turned_deg: largest(&turned_deg),
-            turned_deg,
-            stances_cm: feet.iter().flat_map(Foot::stances_cm).collect(),
-            skating_cm_per_sec: (!feet.is_empty()).then(|| skating.sum::<f64>() / feet.len() as f64),
-        }
+        let mut meter = TraceMeter::new(clip, roles);
+        while meter.advance(clip, usize::MAX) {}
+        meter.finish(clip)
     }
 
     /// For every stance how far the foot moves over the ground, centimetres: the diagonal of the box about the toe joint (the ankle without one) in the
@@ -115,11 +89,7 @@ impl MotionTrace {
     pub fn beside(&self, sources: &[&Self]) -> Artefacts {
         let own = [self];
         let sources = if sources.is_empty() { &own } else { sources };
-        let like: Vec<&Self> = sources
-            .iter()
-            .copied()
-            .filter(|source| source.turns_deg.len() == self.turns_deg.len())
-            .collect();
+        let like = self.alike(sources);
         let like = if like.is_empty() { &own[..] } else { &like };
         let most = |of: fn(&Self) -> f32| sources.iter().map(|source| of(source)).fold(0.0, f32::max);
         let (flashes, new_flashes) = self.flashes(like);
@@ -136,15 +106,29 @@ impl MotionTrace {
         }
     }
 
+    /// Those of some motions that have as many joints as this one.
+    pub(super) fn alike<'a>(&self, others: &[&'a Self]) -> Vec<&'a Self> {
+        let is_alike = |other: &&Self| other.joints.len() == self.joints.len();
+        others.iter().copied().filter(is_alike).collect()
+    }
+
+    /// How far the hips turn within 0.2 s from every frame on, degrees; empty for hips that nothing is known of.
+    pub(super) fn turned_deg(&self) -> &[f32] {
+        &self.turned_deg
+    }
+
     /// The frames where flashes begin, and those that turn a joint faster than any source ever does.
     fn flashes(&self, sources: &[&Self]) -> (Vec<usize>, Vec<Flash>) {
         let dps = self.fps as f32;
-        let of = |values: fn(&Self) -> &[f32], joint: usize| sources.iter().map(|source| values(source)[joint]).fold(0.0, f32::max);
+        let of = |value: fn(&JointTrace) -> f32, joint: usize| {
+            let values = sources.iter().filter_map(|source| source.joints.get(joint).map(value));
+            values.fold(0.0, f32::max)
+        };
         let (mut frames, mut new) = (Vec::new(), Vec::new());
-        for (joint, turns) in self.turns_deg.iter().enumerate() {
-            let limit = BEYOND * of(|source| &source.rare_dps, joint);
-            let most = SAME_SPEED * of(|source| &source.most_dps, joint);
-            for (frame, &turn) in turns.iter().enumerate() {
+        for (joint, trace) in self.joints.iter().enumerate() {
+            let limit = BEYOND * of(|joint| joint.rare_dps, joint);
+            let most = SAME_SPEED * of(|joint| joint.speed.most, joint);
+            for (frame, &turn) in trace.turns_deg.iter().enumerate() {
                 let speed = turn * dps;
                 if speed > limit + 1e-6 && turn > LEAST_FLASH_DEG {
                     frames.push(frame);
@@ -216,55 +200,73 @@ fn runs(flags: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
     runs
 }
 
-/// World positions on a body of 1.7 m.
+/// World positions of a motion.
+#[derive(Debug)]
 struct Places {
-    /// To that body.
-    scale: f32,
-    /// Per foot that the skeleton has: the toe joint, frame by frame; the ankle without one.
+    /// The feet that the skeleton has: their toe joints; the ankles without.
+    feet: Vec<usize>,
+    /// The hip joints, left and right.
+    hips: Option<(usize, usize)>,
+    /// Joints with an end behind them, and where that is.
+    ends: Vec<(usize, Vec3)>,
+    /// Per frame: from the lowest to the highest joint or end, metres.
+    heights: Vec<f32>,
+    /// Per foot, frame by frame.
     toes: Vec<Vec<Vec3>>,
     /// Where the line from the right hip joint to the left one points to, radians; empty without these.
     headings: Vec<f64>,
 }
 
 impl Places {
-    fn of(clip: &Clip, roles: &Roles) -> Self {
+    /// No frame was looked at yet.
+    fn begun(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
         let feet: Vec<usize> = (Side::BOTH.into_iter())
             .filter_map(|side| joint(Role::toe(side)).or(joint(Role::foot(side))))
             .collect();
-        let hips = joint(Role::thigh(Side::Left)).zip(joint(Role::thigh(Side::Right)));
-        let ends: Vec<(usize, Vec3)> = (skeleton.joints().iter().enumerate())
-            .filter_map(|(index, joint)| Some((index, joint.end_site?)))
-            .collect();
-        let mut places = Self {
-            scale: 1.0,
+        Self {
             toes: vec![Vec::with_capacity(clip.frames()); feet.len()],
+            feet,
+            hips: joint(Role::thigh(Side::Left)).zip(joint(Role::thigh(Side::Right))),
+            ends: (skeleton.joints().iter().enumerate())
+                .filter_map(|(index, joint)| Some((index, joint.end_site?)))
+                .collect(),
+            heights: Vec::with_capacity(clip.frames()),
             headings: Vec::new(),
-        };
-        let (mut heights, mut world) = (Vec::with_capacity(clip.frames()), WorldPose::default());
-        for frame in 0..clip.frames() {
+        }
+    }
+
+    /// Takes further frames.
+    fn take(&mut self, clip: &Clip, frames: Range<usize>) {
+        let mut world = WorldPose::default();
+        for frame in frames {
             clip.world_pose_into(frame, &mut world);
-            let tips = ends.iter().map(|&(joint, end)| world.point(joint, end).y);
+            let tips = self.ends.iter().map(|&(joint, end)| world.point(joint, end).y);
             let (low, high) = (world.positions.iter().map(|p| p.y).chain(tips))
                 .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
-            heights.push(high - low);
-            for (path, &foot) in places.toes.iter_mut().zip(&feet) {
+            self.heights.push(high - low);
+            for (path, &foot) in self.toes.iter_mut().zip(&self.feet) {
                 path.push(world.positions[foot]);
             }
-            if let Some((left, right)) = hips {
+            if let Some((left, right)) = self.hips {
                 let across = world.positions[left] - world.positions[right];
-                places.headings.push(f64::from(across.x).atan2(f64::from(across.z)));
+                self.headings.push(f64::from(across.x).atan2(f64::from(across.z)));
             }
         }
-        let height = stats::percentile(&heights, 0.5).unwrap_or(0.0);
-        if height > 0.0 {
-            places.scale = BODY_M / height;
-        }
-        for point in places.toes.iter_mut().flatten() {
-            *point *= places.scale;
-        }
-        places
+    }
+
+    /// What brings its lengths to a body of 1.7 m.
+    fn scale(&self) -> f32 {
+        let height = stats::percentile(&self.heights, 0.5).unwrap_or(0.0);
+        if height > 0.0 { BODY_M / height } else { 1.0 }
+    }
+
+    /// The toes on a body of 1.7 m.
+    fn scaled_toes(&self) -> Vec<Vec<Vec3>> {
+        let scale = self.scale();
+        let scaled = |path: &Vec<Vec3>| path.iter().map(|&point| point * scale).collect();
+        self.toes.iter().map(scaled).collect()
     }
 }
 

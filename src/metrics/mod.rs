@@ -3,24 +3,41 @@
 //! # The idea
 //!
 //! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much for a spine and little for a runner's
-//! knee, so everything is measured *beyond what is usual*: the 99th percentile of that joint in its own clip, or what the clip does in that
-//! very frame. What a [`Profile`] knows of a clip is measured once.
+//! knee, so a joint is measured *beyond* the most that it does in the clips that the motion was made of.
+//!
+//! Some numbers are told of every motion, whatever made it: [`ResultMetrics`], beside what a [`MotionTrace`] knows of the clips.
 //!
 //! | | unit | what is told |
 //! |---|---|---|
-//! | pose jump | ° | the largest turn of a joint in one step, beyond the usual |
-//! | velocity jump | °/s | likewise the change of its angular velocity |
-//! | place jump | cm | likewise the character's step over the ground |
-//! | spin | ° | yaw that neither source turns |
-//! | foot slide | cm | how far a planted foot gets from where it stood |
+//! | pose jump | ° | the largest turn of a joint in one step, beyond the clips' |
+//! | velocity jump | °/s | likewise the largest change of its angular velocity in 1/30 s |
+//! | spin | ° | the most yaw of the hips in 0.2 s, beyond the clips' |
+//! | skating | cm/s | how fast low feet move, in the mean |
+//!
+//! ```text
+//! pose jump     = max over joints of  max over steps |ω| / fps - max over the clips' steps |ω| / fps
+//! velocity jump = max over joints of  max over frames |ω(t, t + T) - ω(t - T, t)| - the same of the clips,  T = 1/30 s
+//! spin          = max over frames |yaw(t + 0.2 s) - yaw(t)| - the same of the clips
+//! ```
+//!
+//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not hang on the frame rate: where a blend has an acceleration it is that
+//! times T, where the velocity jumps it is the jump.
+//!
+//! Others belong to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`], [`TransitionMetrics`].
+//!
+//! | | unit | what is told |
+//! |---|---|---|
+//! | foot slide | cm | how far a planted foot gets from where it stood in the worst stance |
+//! | place jump | cm | the character's step over the ground, beyond the usual |
 //! | penetration | cm | how deep the deepest point is below the ground |
 //! | lag | s | until the velocity is the new clip's, to 10 % |
 //!
 //! ```text
-//! pose jump = max over joints and steps of  angle(q[f], q[f + 1]) - usual(joint)
-//! spin      = max over runs of steps of  Σ r - max(0, a, b),  or  Σ min(0, a, b) - r
-//! slide     = max over a stance of  |Σ step of the foot's stillest point|
+//! slide = max over a stance of  |Σ step of the foot's stillest point|
 //! ```
+//!
+//! Around one transition more is known, the frames of both clips that play: what its fields measure is beyond what the clips do in these very frames.
+//! A [`Profile`] is what is measured of a clip for that.
 //!
 //! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed. [`foot_slide_cm`] does so for a whole
 //! clip.
@@ -87,13 +104,15 @@ mod artefacts;
 mod deviation;
 mod lowest;
 mod profile;
+mod result;
 mod slide;
 mod transition;
 mod whole;
 
-pub use artefacts::{Artefacts, Flash, MotionTrace};
+pub use artefacts::{Artefacts, Flash, MotionTrace, TraceMeter};
 pub use deviation::deviations;
 pub use profile::Profile;
+pub use result::{JointFrame, ResultMetrics};
 pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
 pub use transition::{Subject, TransitionMetrics};
 pub use whole::{ClipMeter, ClipMetrics};

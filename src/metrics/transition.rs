@@ -97,44 +97,17 @@ impl TransitionMetrics {
         }
     }
 
-    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    /// What there is to say of a transition beyond what is measured of every result ([`ResultMetrics`](super::ResultMetrics)), in the order in which it
+    /// is shown.
     #[must_use]
-    pub fn list(&self) -> [Metric; 7] {
+    pub fn list(&self) -> [Metric; 3] {
         [
-            Metric::lower(
-                "seam_deg",
-                "Pose jump",
-                self.seam_deg,
-                "°",
-                "How far a joint turns in one frame at the transition, beyond what it does in its own clips.",
-            ),
-            Metric::lower(
-                "seam_dps",
-                "Velocity jump",
-                self.seam_dps,
-                "°/s",
-                "How much a joint's angular velocity changes in one frame at the transition, beyond what it does in its own clips.",
-            ),
             Metric::lower(
                 "jump_cm",
                 "Place jump",
                 self.jump_cm,
                 "cm",
                 "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
-            ),
-            Metric::lower(
-                "spin_deg",
-                "Spin",
-                self.spin_deg,
-                "°",
-                "How far the character turns inside the blend beyond what either clip turns meanwhile.",
-            ),
-            Metric::lower(
-                "skate_cm",
-                "Foot slide",
-                self.skate_cm,
-                "cm",
-                "How far a planted foot slides in the worst stance at the transition, beyond what it slides in its own clip.",
             ),
             Metric::lower(
                 "penetration_cm",
@@ -148,7 +121,7 @@ impl TransitionMetrics {
                 "Lag",
                 self.lag_s,
                 "s",
-                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's.",
+                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's; of several transitions the median.",
             ),
         ]
     }

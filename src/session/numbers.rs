@@ -156,15 +156,15 @@ mod tests {
         let table = NumberTable {
             panes: vec!["=1+1".into(), "a|b".into()],
             rows: vec![NumberRow {
-                label: "Drag",
+                label: "Lag",
                 unit: "s",
                 help: "",
                 better: Better::Lower,
                 values: vec![Some(0.416), None],
             }],
         };
-        assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Drag, s | 0.42 | – |\n");
-        assert_eq!(table.csv(), ",unit,'=1+1,a|b\nDrag,s,0.416,\n");
+        assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Lag, s | 0.42 | – |\n");
+        assert_eq!(table.csv(), ",unit,'=1+1,a|b\nLag,s,0.416,\n");
         assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
     }
 }

@@ -2,14 +2,16 @@
 
 use super::motion::Motion;
 use super::params::Key;
+use crate::clip::Clip;
 use crate::gait::GaitFacts;
 use crate::math::Planar;
-use crate::metrics::Metric;
+use crate::metrics::{Metric, MotionTrace, ResultMetrics};
 use std::sync::Arc;
 
 mod blend;
 mod driving;
 mod feet;
+mod gauge;
 mod graph;
 mod kept;
 mod layers;
@@ -28,6 +30,7 @@ pub(super) use blend::{BlendInputs, Blender};
 pub(super) use driving::options_of;
 pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
 pub use driving::{DriveMoment, Driven, HandTag, own_words, write_tags};
+pub(super) use gauge::Gauge;
 pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
 };
@@ -198,8 +201,26 @@ pub struct Outcome {
     pub walk: Option<Arc<Walk>>,
     /// How it was driven; `None` where it was not.
     pub driven: Option<Arc<Driven>>,
-    /// The artefacts, as numbers.
+    /// The artefacts, as numbers: those that every lab has, and its own behind them.
     pub metrics: Vec<Metric>,
+    /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None for a clip as it is.
+    pub(super) beside: Vec<Arc<Clip>>,
+    /// What is measured for the numbers that every lab has.
+    pub(super) measured: Measured,
+    /// Those numbers are known.
+    pub(super) is_measured: bool,
+}
+
+/// What the artefact numbers of a result are measured of.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Measured {
+    /// Its motion.
+    #[default]
+    Motion,
+    /// A clip that is shown elsewhere, or without its way over the ground.
+    Clip(Arc<Clip>),
+    /// What was taken of it while it was made.
+    Trace(Arc<MotionTrace>),
 }
 
 impl Outcome {
@@ -217,7 +238,24 @@ impl Outcome {
             walk: None,
             driven: None,
             metrics: Vec::new(),
+            beside: Vec::new(),
+            measured: Measured::Motion,
+            is_measured: false,
         }
+    }
+
+    /// Whether there is a place for the numbers that every lab has, and not yet their values.
+    pub(super) fn awaits_numbers(&self) -> bool {
+        let common = ResultMetrics::default().list();
+        !self.is_measured && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count() == common.len()
+    }
+
+    /// Puts the numbers that every lab has before its own; without a value where they are not known yet.
+    pub(super) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
+        let common = found.unwrap_or_default().list();
+        self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
+        self.metrics.splice(..0, common);
+        self.is_measured = found.is_some();
     }
 
     /// Its feet are to be planted, and are not yet.

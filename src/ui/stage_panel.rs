@@ -119,7 +119,8 @@ fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
     })
 }
 
-/// The best and the worst pane, by the jump of angular velocity at the seam: what an eye calls smooth and rough. Of registered clips by how far feet slide.
+/// The best and the worst pane, by the velocity jump: what an eye calls smooth and rough. Of registered clips by how the feet skate. Where that is alike,
+/// by the next of these numbers.
 #[derive(Clone, Copy, Debug, Default)]
 struct Verdicts {
     best: Option<usize>,
@@ -133,14 +134,17 @@ fn metric_of<'a>(pane: &'a Pane, id: &str) -> Option<&'a segue::metrics::Metric>
 }
 
 fn verdicts(panes: &[Pane]) -> Verdicts {
-    let of = |id| ranking(panes, id);
-    let walk = of("walk_seam_dps");
-    if walk.best.is_some() {
-        return walk;
-    }
-    let looked_at = ["skate_mean_cm", "seam_dps", "loop_seam_dps", "clip_seam_dps"];
+    let is_registered = panes
+        .iter()
+        .filter_map(|pane| pane.outcome.as_ref())
+        .any(|outcome| outcome.registered.is_some());
+    let looked_at = if is_registered {
+        ["skating_cmps", "velocity_jump_dps", "pose_jump_deg"]
+    } else {
+        ["velocity_jump_dps", "pose_jump_deg", "skating_cmps"]
+    };
     looked_at
-        .map(of)
+        .map(|id| ranking(panes, id))
         .into_iter()
         .find(|verdicts| verdicts.best.is_some())
         .unwrap_or_default()
@@ -222,7 +226,7 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     };
     let panes = session.panes();
     let room = if rect.width() < 280.0 * theme.scale() {
-        4
+        6
     } else {
         text::METRICS.len()
     };

@@ -56,8 +56,14 @@ fn altered(clip: &Clip, change: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip 
     Clip::new("changed", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap()
 }
 
+fn scale(clip: &Clip, roles: &Roles) -> f32 {
+    let mut places = Places::begun(clip, roles);
+    places.take(clip, 0..clip.frames());
+    places.scale()
+}
+
 fn changed(clip: &Clip, roles: &Roles, how: &Change) -> Clip {
-    let (height, fps) = (BODY_M / Places::of(clip, roles).scale, clip.fps() as f32);
+    let (height, fps) = (BODY_M / scale(clip, roles), clip.fps() as f32);
     let joint = clip.skeleton().find(&how.joint).unwrap_or(0);
     let behind = |frame: usize| frame >= how.frame;
     altered(clip, |frame, pose, root| match how.kind.as_str() {

@@ -6,7 +6,7 @@ use crate::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use crate::metrics::Metric;
 use crate::session::command::CommandError;
 use crate::session::params::{Key, Params, Value};
-use crate::session::recipe::{Crowd, HandTag, Live, MatchSource, filter_of, options_in, read_ids, read_tags, recording_of};
+use crate::session::recipe::{Crowd, Gauge, HandTag, Live, MatchSource, filter_of, options_in, read_ids, read_tags, recording_of};
 use crate::skeleton::Pose;
 use std::sync::Arc;
 
@@ -175,7 +175,7 @@ impl Session {
                     "How long a sixtieth of a second of all characters takes to compute, searches included.",
                 );
                 // One that cannot be told of stays as it was: its next moment can.
-                if let Ok(mut outcome) = live.outcome() {
+                if let Ok(mut outcome) = live.outcome(&mut self.gauge) {
                     outcome.metrics.push(timed);
                     pane.go_on(outcome);
                 }
@@ -219,7 +219,7 @@ impl Session {
                 Ok(Some(database)) => options_in(&database, &params)
                     .and_then(|options| {
                         main = main.take().or(Some((Arc::clone(&database), options)));
-                        driven(live, pane, &database, options)
+                        driven(live, pane, &database, options, &mut self.gauge)
                     })
                     .unwrap_or_else(Answer::Refused),
                 Err(problem) => Answer::Refused(problem),
@@ -290,7 +290,13 @@ fn is_shown(pane: &Pane, database: &Arc<Database>) -> bool {
 }
 
 /// What a pane shows of its character, which is told what has changed, and begins where there is none.
-fn driven(live: &mut Option<Live>, pane: &Pane, database: &Arc<Database>, options: ControllerOptions) -> Result<Answer, String> {
+fn driven(
+    live: &mut Option<Live>,
+    pane: &Pane,
+    database: &Arc<Database>,
+    options: ControllerOptions,
+    gauge: &mut Gauge,
+) -> Result<Answer, String> {
     let (changed, live) = match live {
         Some(live) => (live.change(database, options)?, live),
         None => (true, live.insert(Live::new(database, options)?)),
@@ -299,7 +305,7 @@ fn driven(live: &mut Option<Live>, pane: &Pane, database: &Arc<Database>, option
         return Ok(Answer::Same { is_draft: false });
     }
     Ok(Answer::Made {
-        outcome: Arc::new(live.outcome()?),
+        outcome: Arc::new(live.outcome(gauge)?),
         is_draft: false,
         inputs: None,
     })

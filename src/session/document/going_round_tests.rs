@@ -73,7 +73,7 @@ fn the_speed_asked_for_is_measured_over_the_whole_range() {
             assert!(!facts.limited && !facts.extrapolated, "{speed} {facts:?}");
         }
     }
-    let (before, after) = (metric(&session, 0, "skate_before_cm"), metric(&session, 0, "skate_cm"));
+    let (before, after) = (metric(&session, 0, "foot_slide_before_cm"), metric(&session, 0, "foot_slide_cm"));
     assert!(after < 0.5 * before && after < 1.0, "{before} {after}");
     set(&mut session, Key::Speed, 3.9);
     assert!(matches!(cycle(&session).made, CycleMade::Gait { facts, .. } if facts.extrapolated && !facts.limited));

@@ -30,8 +30,8 @@ use super::outside;
 use super::params::{Key, Params, Value};
 use super::reading::{Reads, read};
 use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot, Viewer,
-    read_also, read_pins, read_weights,
+    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Gauge, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot,
+    Viewer, read_also, read_pins, read_weights,
 };
 use super::recipe::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::samples;
@@ -90,6 +90,7 @@ pub struct Session {
     company: Vec<Companion>,
     grapher: Grapher,
     viewer: Viewer,
+    gauge: Gauge,
     driver: Driver,
     driving: driving::Driving,
     shelf: Shelf,
@@ -146,6 +147,7 @@ impl Session {
             company: Vec::new(),
             grapher: Grapher::default(),
             viewer: Viewer::default(),
+            gauge: Gauge::default(),
             driver: Driver::default(),
             driving: driving::Driving::default(),
             shelf: Shelf::default(),
@@ -818,6 +820,8 @@ mod graphing_tests;
 mod keeping_tests;
 #[cfg(test)]
 mod loading_tests;
+#[cfg(test)]
+mod measuring_tests;
 #[cfg(test)]
 mod path_tests;
 #[cfg(test)]

@@ -9,8 +9,8 @@ use crate::session::motion::{FeetReading, Motion};
 use crate::session::outside;
 use crate::session::params::{Key, Kind, Params, Value};
 use crate::session::recipe::{
-    BlendInputs, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source, SpeedInputs,
-    ViewInputs,
+    BlendInputs, Gauge, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source,
+    SpeedInputs, ViewInputs,
 };
 use crate::session::recipe::{
     belongs_to, clips_of, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params,
@@ -181,6 +181,23 @@ impl Pane {
         }
     }
 
+    /// Puts the numbers that every lab has first in the list of a new result. Until they are measured it is a draft.
+    pub(super) fn measure(&mut self, gauge: &mut Gauge) {
+        let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier) else {
+            return;
+        };
+        if outcome.is_measured {
+            return;
+        }
+        let found = gauge.numbers(outcome);
+        if found.is_none() {
+            self.standing = Standing::Draft;
+        }
+        if found.is_some() || !outcome.awaits_numbers() {
+            Arc::make_mut(outcome).take_numbers(found);
+        }
+    }
+
     /// What is driven goes on: the same character, a moment later.
     pub(super) fn go_on(&mut self, outcome: Outcome) {
         self.outcome = Some(Arc::new(outcome));
@@ -266,7 +283,7 @@ impl Session {
             }
             return true;
         }
-        if self.registrars.work() || self.viewer.work() || self.paths.work() || self.driver.work() {
+        if self.registrars.work() || self.viewer.work() || self.paths.work() || self.driver.work() || self.gauge.work() {
             return true;
         }
         let now_secs = self.params.number(Key::Time);
@@ -278,6 +295,7 @@ impl Session {
             || self.paths.is_ready()
             || self.grapher.is_ready()
             || self.driver.is_ready()
+            || self.gauge.is_ready()
         {
             let held = self.held();
             self.refresh();
@@ -498,6 +516,7 @@ impl Session {
         self.grapher.ask_anew();
         self.driver.ask_anew();
         self.viewer.ask_anew();
+        self.gauge.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
         self.grapher.guide_by(None);
         for variant in variants {
@@ -506,6 +525,7 @@ impl Session {
             let params = Arc::new(self.params_of(&pane));
             if !self.is_own_drive() {
                 self.refresh_pane(&mut pane, &params, match_window);
+                pane.measure(&mut self.gauge);
             }
             if self.panes.is_empty() {
                 self.grapher.guide_by(Some(&params));

@@ -44,7 +44,7 @@ fn a_path_that_nobody_edited_gives_the_clip_back() {
             let stands = made.ground_frames[frame].shift.distance(original.ground_frames[frame].shift);
             assert!(stands < 1e-4, "{keep}, frame {frame}: {stands} m");
         }
-        assert!((metric(&session, "skate_cm") - metric(&session, "skate_original_cm")).abs() < 0.05);
+        assert!((metric(&session, "foot_slide_cm") - metric(&session, "foot_slide_original_cm")).abs() < 0.05);
     }
 }
 
@@ -237,14 +237,14 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let value = moved(&session, 3, DVec2::new(0.8, 0.0));
     set(&mut session, Key::Path, value);
     assert!(path(&session).awaits_feet, "at once, without");
-    let free = metric(&session, "skate_cm");
+    let free = metric(&session, "foot_slide_cm");
     while session.work() {}
     assert!(!path(&session).awaits_feet);
-    assert!((metric(&session, "skate_before_cm") - free).abs() < 1e-9);
+    assert!((metric(&session, "foot_slide_before_cm") - free).abs() < 1e-9);
     assert!(
-        metric(&session, "skate_cm") < 0.5 * free,
+        metric(&session, "foot_slide_cm") < 0.5 * free,
         "{} of {free}",
-        metric(&session, "skate_cm")
+        metric(&session, "foot_slide_cm")
     );
     assert!(session.jobs().is_empty());
     // The same as done at once.

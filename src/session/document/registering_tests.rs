@@ -39,7 +39,7 @@ fn a_walk_is_registered_to_a_run_at_once() {
     let session = opened("lab=register");
     assert_eq!(session.panes()[0].problem, None);
     let plain = opened("lab=register&warp_with=plain");
-    let skate = |session: &Session| number_of(session.main_outcome().unwrap(), "skate_mean_cm");
+    let skate = |session: &Session| number_of(session.main_outcome().unwrap(), "foot_slide_cm");
     assert!(skate(&session) < 0.5 * skate(&plain), "{} {}", skate(&session), skate(&plain));
     let cm = |session: &Session| number_of(session.main_outcome().unwrap(), "apart_cm");
     assert!(cm(&session) < 0.7 * cm(&plain), "{} {}", cm(&session), cm(&plain));
@@ -99,7 +99,7 @@ fn no_weight_is_a_and_all_weight_is_b() {
 fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     let session = opened("lab=register&warp_mode=join&compare=warp_with:registered,plain");
     let outcomes: Vec<_> = session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
-    let skate = |pane: usize| number_of(&outcomes[pane], "skate_mean_cm");
+    let skate = |pane: usize| number_of(&outcomes[pane], "foot_slide_cm");
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
         let (registered, transition) = (outcome.registered.as_ref().unwrap(), outcome.transition.unwrap());

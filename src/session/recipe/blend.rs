@@ -1,10 +1,10 @@
-use super::feet::{slide_before, with_feet};
+use super::feet::{slide, slide_before, with_feet};
 use super::pair::Pair;
-use super::{MatchSearch, Outcome, Slot, Source, Transition};
+use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
 use crate::blend::{AlignBy, RootBlend, WeightLaw};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Decay, Planar};
-use crate::metrics::{Subject, TransitionMetrics};
+use crate::metrics::{Subject, TransitionMetrics, foot_slide_cm};
 use crate::registration::{PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
@@ -403,23 +403,23 @@ impl BlendInputs {
             ground_m: pair.ground_m(),
             feet: pair.a.feet,
         };
-        let measured = |result: &Clip| {
-            TransitionMetrics::measure(&Subject {
-                result,
-                start: window.start,
-                end: window.end,
-                handover: made.handover,
-                enter: place.enter,
-                a,
-                b,
-                roles: &motion.roles,
-                ground_m: pair.ground_m(),
-            })
-        };
-        let mut metrics = measured(&motion.clip).list().to_vec();
+        let slid = |clip: &Clip| foot_slide_cm(clip, &motion.roles, &motion.contacts);
+        let mut metrics = vec![slide(slid(&motion.clip))];
         if *is_locked {
-            metrics.push(slide_before(measured(&free).skate_cm));
+            metrics.push(slide_before(slid(&free)));
         }
+        let at_seam = TransitionMetrics::measure(&Subject {
+            result: &motion.clip,
+            start: window.start,
+            end: window.end,
+            handover: made.handover,
+            enter: place.enter,
+            a,
+            b,
+            roles: &motion.roles,
+            ground_m: pair.ground_m(),
+        });
+        metrics.extend(at_seam.list());
         let sources = vec![
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             Source::new(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
@@ -436,6 +436,9 @@ impl BlendInputs {
             walk: None,
             driven: None,
             metrics,
+            beside: pair.clips(),
+            measured: Measured::Motion,
+            is_measured: false,
         })
     }
 }

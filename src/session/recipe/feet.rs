@@ -31,10 +31,10 @@ pub(super) fn with_feet(free: &Arc<Clip>, roles: &Roles, contacts: &Contacts, gr
     }
 }
 
-/// How far the feet of a whole result slide.
+/// How far the feet of a whole result slide: in all labs as [`foot_slide_cm`](crate::metrics::foot_slide_cm) has it.
 pub(super) fn slide(cm: Option<f64>) -> Metric {
     Metric::lower(
-        "skate_cm",
+        "foot_slide_cm",
         "Foot slide",
         cm,
         "cm",
@@ -42,14 +42,14 @@ pub(super) fn slide(cm: Option<f64>) -> Metric {
     )
 }
 
-/// How far the feet of a result would slide if they were not held, by the measure that stands beside it.
+/// How far the feet of a result would slide if they were not held.
 pub(super) fn slide_before(cm: Option<f64>) -> Metric {
     Metric::fact(
-        "skate_before_cm",
+        "foot_slide_before_cm",
         "Foot slide before the lock",
         cm,
         "cm",
-        "How far planted feet slide without the foot lock, measured in the same way.",
+        "How far a planted foot slides in the worst stance without the foot lock.",
     )
 }
 

@@ -15,7 +15,7 @@ pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
 pub(in crate::session) use wanted::{clips_of, read_path, read_visits};
 
-use super::{Outcome, Slot, Source, Transition};
+use super::{Measured, Outcome, Slot, Source, Transition};
 use std::sync::Arc;
 
 /// What a walk's result depends on. Equal inputs, equal result.
@@ -64,6 +64,8 @@ impl GraphInputs {
             transition,
             walk: Some(Arc::clone(walk)),
             metrics: walk.metrics.clone(),
+            beside: walk.built.cast.motions().iter().map(|motion| Arc::clone(&motion.clip)).collect(),
+            measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
             ..Outcome::plain(Arc::clone(&walk.motion))
         }
     }

@@ -1,11 +1,11 @@
-use super::feet::{slide_before, with_feet};
+use super::feet::{slide, slide_before, with_feet};
 use super::pair::{Pair, source_of};
-use super::{Outcome, Slot, Source};
+use super::{Measured, Outcome, Slot, Source};
 use crate::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::gait::{GaitCycle, strike_phases};
 use crate::math::Planar;
-use crate::metrics::{Metric, Profile, Subject, TransitionMetrics, deviations};
+use crate::metrics::{Profile, Subject, TransitionMetrics, deviations, foot_slide_cm};
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -257,25 +257,23 @@ impl LayerInputs {
             Contacts::detect(&free, &roles, &a.feet.contacts)
         };
         let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
-        let measured = |result: &Clip| {
-            TransitionMetrics::measure(&Subject {
-                result,
-                start: 0,
-                end: result.frames(),
-                handover: if walks_as_b { 0 } else { usize::MAX },
-                enter: 0,
-                a: &pair.profiles[0],
-                b: &timed.profile,
-                roles: &roles,
-                ground_m,
-            })
-        };
-        let of_layers = ["seam_deg", "seam_dps", "skate_cm", "penetration_cm"];
-        let found = measured(&clip).list().into_iter();
-        let mut metrics: Vec<Metric> = found.filter(|metric| of_layers.contains(&metric.id)).collect();
+        let slid = |clip: &Clip| foot_slide_cm(clip, &roles, &contacts);
+        let mut metrics = vec![slide(slid(&clip))];
         if self.foot_lock {
-            metrics.push(slide_before(measured(&free).skate_cm));
+            metrics.push(slide_before(slid(&free)));
         }
+        let everywhere = TransitionMetrics::measure(&Subject {
+            result: &clip,
+            start: 0,
+            end: clip.frames(),
+            handover: if walks_as_b { 0 } else { usize::MAX },
+            enter: 0,
+            a: &pair.profiles[0],
+            b: &timed.profile,
+            roles: &roles,
+            ground_m,
+        });
+        metrics.extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
         metrics.extend(deviations(&clip, &a.clip, &roles));
         let motion = Motion {
             ground_frames: character_frames(&clip, &roles),
@@ -303,6 +301,9 @@ impl LayerInputs {
             walk: None,
             driven: None,
             metrics,
+            beside: vec![Arc::clone(&a.clip), Arc::clone(&timed.shown.clip)],
+            measured: Measured::Motion,
+            is_measured: false,
         })
     }
 }

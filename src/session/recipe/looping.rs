@@ -2,7 +2,7 @@
 
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
-use super::{Cycle, CycleMade, Outcome, Slot, Source};
+use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
 use crate::blend;
 use crate::math::Planar;
 use crate::metrics::Metric;
@@ -175,6 +175,9 @@ impl LoopInputs {
             walk: None,
             driven: None,
             metrics,
+            beside: vec![Arc::clone(&motion.clip)],
+            measured: Measured::Motion,
+            is_measured: false,
         })
     }
 }

@@ -1,6 +1,6 @@
 use super::Retargeted;
 use crate::blend;
-use crate::clip::{Interpolation, resample, retarget};
+use crate::clip::{Clip, Interpolation, resample, retarget};
 use crate::metrics::Profile;
 use crate::session::motion::Motion;
 use crate::skeleton::Retargeting;
@@ -23,6 +23,11 @@ impl Pair {
     /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted off the ground that its own clip has.
     pub(super) fn ground_m(&self) -> f32 {
         self.a.ground_m.min(self.incoming.ground_m)
+    }
+
+    /// Both clips on the skeleton of A.
+    pub(super) fn clips(&self) -> Vec<Arc<Clip>> {
+        [&self.a, &self.incoming].map(|motion| Arc::clone(&motion.clip)).into()
     }
 
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {

@@ -1,6 +1,6 @@
 //! The Path lab: a motion on another path.
 
-use super::feet::slide_before;
+use super::feet::{slide, slide_before};
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
 use crate::math::Planar;
@@ -262,15 +262,9 @@ impl PathInputs {
         }
         let fitted = &self.fitted;
         let mut metrics = vec![
-            Metric::lower(
-                "skate_cm",
-                "Foot slide",
-                made.slide_cm.locked,
-                "cm",
-                "How far a planted foot slides in the worst stance.",
-            ),
+            slide(made.slide_cm.locked),
             Metric::fact(
-                "skate_original_cm",
+                "foot_slide_original_cm",
                 "Foot slide of the original",
                 made.slide_cm.original,
                 "cm",
@@ -339,6 +333,7 @@ impl PathInputs {
                 awaits_feet: matches!(self.feet, Feet::Awaited),
             })),
             metrics,
+            beside: vec![Arc::clone(&fitted.motion.clip)],
             ..Outcome::plain(Arc::new(motion))
         })
     }

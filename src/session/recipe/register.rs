@@ -10,15 +10,15 @@ pub(in crate::session) use pairs::{read_also, read_pins, read_weights};
 pub(in crate::session) use registrar::Registrars;
 
 use super::blend::weight_law;
-use super::feet::{slide_before, with_feet};
+use super::feet::{slide, slide_before, with_feet};
 use super::pair::Pair;
-use super::{Outcome, Slot, Source, Transition};
+use super::{Measured, Outcome, Slot, Source, Transition};
 use crate::blend::{
     self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
 };
 use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
-use crate::metrics::{Metric, Subject, TransitionMetrics, foot_slides_cm};
+use crate::metrics::{Metric, Subject, TransitionMetrics, foot_slide_cm};
 use crate::registration::Registration;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
@@ -397,7 +397,7 @@ impl RegisterInputs {
             distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
             search: None,
         });
-        let metrics = self.measured(&clip, &free, &beats, &mixed, distance_cm);
+        let metrics = self.measured([&clip, &free], &contacts, &beats, &mixed, distance_cm);
         let seams = self.seams(&beats, is_join.then_some(&mixed));
         let sources = vec![
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
@@ -430,26 +430,16 @@ impl RegisterInputs {
             path: None,
             driven: None,
             metrics,
+            beside: self.beside(),
+            measured: Measured::Motion,
+            is_measured: false,
         })
     }
 
-    /// How far feet slide in the frames that are mixed while they stand in A or in B. A stance counts as much as its clip is in the result.
-    fn slide_cm(&self, clip: &Clip, beats: &[Beat], mixed: &Range<usize>) -> Option<f64> {
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for (of, contacts) in self.contacts().into_iter().enumerate() {
-            let flags = Side::BOTH.map(|side| {
-                let frames = beats.iter().enumerate();
-                frames
-                    .map(|(frame, beat)| mixed.contains(&frame) && stands(contacts, side, beat.frames[of]))
-                    .collect()
-            });
-            for (stance, slide) in foot_slides_cm(clip, &self.pair.a.roles, &Contacts::from_flags(flags)) {
-                let share = mean_weight(beats.get(stance).unwrap_or_default(), of);
-                sum += share * slide;
-                weight += share;
-            }
-        }
-        (weight > 0.0).then(|| sum / weight)
+    /// All clips on the skeleton of A.
+    fn beside(&self) -> Vec<Arc<Clip>> {
+        let also = self.also.iter().map(|also| Arc::clone(&also.pair.incoming.clip));
+        self.pair.clips().into_iter().chain(also).collect()
     }
 
     /// The height of the ground under all clips, metres: the lowest.
@@ -458,30 +448,29 @@ impl RegisterInputs {
         also.fold(self.pair.ground_m(), f32::min)
     }
 
-    /// How far apart the mixed frames are, what feet do where the heavier clip stands, and the seams.
-    fn measured(&self, clip: &Clip, free: &Clip, beats: &[Beat], mixed: &Range<usize>, distance_cm: Option<f64>) -> Vec<Metric> {
+    /// How far feet slide, how far apart the mixed frames are, and how deep the body sinks.
+    fn measured(
+        &self,
+        [clip, free]: [&Clip; 2],
+        contacts: &Contacts,
+        beats: &[Beat],
+        mixed: &Range<usize>,
+        distance_cm: Option<f64>,
+    ) -> Vec<Metric> {
         let [a, b] = &self.pair.profiles;
         let roles = &self.pair.a.roles;
-        let slide = |clip: &Clip| self.slide_cm(clip, beats, mixed);
-        let mut metrics = vec![
-            Metric::lower(
-                "apart_cm",
-                "Distance",
-                distance_cm,
-                "cm",
-                "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
-            ),
-            Metric::lower(
-                "skate_mean_cm",
-                "Foot slide",
-                slide(clip),
-                "cm",
-                "How far a foot slides in the result while it stands in A or in B: the mean of all stances, each with its clip's weight.",
-            ),
-        ];
+        let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
+        let mut metrics = vec![slide(slid(clip))];
         if self.foot_lock {
-            metrics.push(slide_before(slide(free)));
+            metrics.push(slide_before(slid(free)));
         }
+        metrics.push(Metric::lower(
+            "apart_cm",
+            "Distance",
+            distance_cm,
+            "cm",
+            "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
+        ));
         let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
         let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
         let found = TransitionMetrics::measure(&Subject {
@@ -495,10 +484,8 @@ impl RegisterInputs {
             roles,
             ground_m: self.ground_m(),
         });
-        // The other numbers ask what a source does in the same frame, which a bent clock does not have. A weight that stays has no seam.
-        let is_join = matches!(self.made, Made::Join { .. });
-        let of_these = |id| id == "penetration_cm" || (is_join && id == "seam_dps");
-        metrics.extend(found.list().into_iter().filter(|metric| of_these(metric.id)));
+        // The others ask what a source does in the same frame, which a bent clock does not have.
+        metrics.extend(found.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
         metrics
     }
 }
@@ -515,11 +502,6 @@ fn sentence(error: &impl std::fmt::Display) -> String {
 /// The weights of A and of B where there are no more.
 fn of_two(weight_b: f64) -> [f64; 2] {
     [1.0 - weight_b, weight_b]
-}
-
-/// How much of A (0) or of B (1) there is in the mean.
-fn mean_weight(beats: &[Beat], of: usize) -> f64 {
-    mean(beats.iter().map(|beat| beat.weights[of])).unwrap_or_default()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
-use super::{Cycle, CycleMade, Outcome};
+use super::{Cycle, CycleMade, Measured, Outcome};
 use crate::clip::ground_speed;
 use crate::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use crate::metrics::Metric;
@@ -155,6 +155,9 @@ impl SpeedInputs {
             walk: None,
             driven: None,
             metrics,
+            beside: pair.clips(),
+            measured: Measured::Motion,
+            is_measured: false,
         })
     }
 }

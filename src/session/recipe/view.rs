@@ -1,8 +1,8 @@
 //! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
 
-use super::Outcome;
-use super::feet::{locking, slide_before};
+use super::feet::{locking, slide, slide_before};
 use super::pair::source_of;
+use super::{Measured, Outcome};
 use crate::math::Planar;
 use crate::metrics::{ClipMeter, Metric, SlideMeter};
 use crate::path::{FitOptions, FittedPath};
@@ -49,8 +49,9 @@ impl ViewInputs {
             None => Outcome::plain(Arc::clone(&self.motion)),
             Some(viewed) => viewed.made.clone()?,
         };
+        let measured = Measured::Clip(Arc::clone(&shown.motion.clip));
         let motion = self.ground.moved(&shown.motion)?;
-        Ok(Outcome { motion, ..shown })
+        Ok(Outcome { motion, measured, ..shown })
     }
 }
 
@@ -318,9 +319,10 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             if meter.advance(&motion.clip, &motion.contacts, PER_SLICE) {
                 return Step::On(Stage::Measuring { motion, before, meter });
             }
-            let found = meter.finish(&motion.clip, &motion.ground_frames);
+            let found = meter.finish(&motion.ground_frames);
+            let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
             Step::Done(Box::new(Ok(Outcome {
-                metrics: found.list().into_iter().chain(before).collect(),
+                metrics: slides.chain(found.list()).collect(),
                 ..Outcome::plain(motion)
             })))
         }

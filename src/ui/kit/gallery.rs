@@ -310,13 +310,13 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         let metrics = [
             Metric {
                 value: ["41", "126", "214"][index],
-                label: "seam °/s",
+                label: "jump °/s",
                 rank,
                 hint: "How much the speed of the joints jumps.",
             },
             Metric {
                 value: ["0.6", "0.9", "1.8"][index],
-                label: "skate cm",
+                label: "slide cm",
                 rank: Rank::Middle,
                 hint: "",
             },

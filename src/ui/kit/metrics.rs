@@ -24,7 +24,7 @@ pub(crate) enum Rank {
 pub(crate) struct Metric<'a> {
     /// The number as it is written, sign and degree included.
     pub(crate) value: &'a str,
-    /// What it measures and in which unit: `skate cm`.
+    /// What it measures and in which unit: `slide cm`.
     pub(crate) label: &'a str,
     /// How it compares.
     pub(crate) rank: Rank,

@@ -3,8 +3,8 @@
 use super::trace::Tracer;
 use crate::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use crate::math::Planar;
-use crate::metrics::Metric;
-use crate::session::recipe::Outcome;
+use crate::metrics::{Metric, ResultMetrics};
+use crate::session::recipe::{Gauge, Outcome};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -22,6 +22,7 @@ pub(in crate::session) struct Live {
     /// The ticks of the last jumps.
     jumps: VecDeque<u64>,
     metrics: Vec<Metric>,
+    found: Option<ResultMetrics>,
 }
 
 impl Live {
@@ -34,6 +35,7 @@ impl Live {
             tracer,
             jumps: VecDeque::new(),
             metrics: Vec::new(),
+            found: None,
         })
     }
 
@@ -82,11 +84,12 @@ impl Live {
         self.tracer.frames().saturating_sub(1) as f64 / RATE as f64
     }
 
-    /// What was done last, with numbers.
-    pub(in crate::session) fn outcome(&mut self) -> Result<Outcome, String> {
+    /// What was done last, with numbers: those that every lab has as soon as what it is made of is measured.
+    pub(in crate::session) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, String> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
         if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {
+            self.found = gauge.numbers_now(&outcome);
             self.metrics = self.tracer.metrics(&outcome.motion);
             // Of what was seen last most turns have no beginning or no end.
             self.metrics.retain(|metric| metric.id != "match_turn");
@@ -96,6 +99,7 @@ impl Live {
             }
         }
         outcome.metrics.clone_from(&self.metrics);
+        outcome.take_numbers(self.found);
         Ok(outcome)
     }
 }

@@ -164,6 +164,7 @@ impl Tracer {
         };
         Ok(Outcome {
             driven: Some(Arc::new(driven)),
+            beside: database.motions().iter().map(|motion| Arc::clone(motion.clip())).collect(),
             ..Outcome::plain(Arc::new(motion))
         })
     }

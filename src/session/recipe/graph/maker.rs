@@ -6,7 +6,7 @@ use crate::clip::{Clip, Contacts};
 use crate::graph::{
     Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
 };
-use crate::metrics::{Metric, SlideMeter};
+use crate::metrics::{Metric, MotionTrace, SlideMeter, TraceMeter};
 use crate::session::motion::Motion;
 use crate::session::recipe::feet::{locking, slide, slide_before};
 use crate::skeleton::Side;
@@ -34,8 +34,8 @@ const RUN_EDGES: usize = 200_000;
 
 /// Frames that one slice holds the feet of, about four milliseconds.
 const LOCKED_FRAMES: usize = 2_000;
-/// Frames that one slice measures the feet of, held and free, about four milliseconds.
-const MEASURED_FRAMES: usize = 2_000;
+/// Frames that one slice measures the feet of, held and free, or the whole body, about four milliseconds.
+const MEASURED_FRAMES: usize = 1_000;
 /// Frames that one slice measures the artefacts of, about two milliseconds.
 const METERED_FRAMES: usize = 500;
 
@@ -49,20 +49,54 @@ enum Publishing {
     Measuring(Box<Measuring>),
 }
 
-/// How far the feet of a walk slide, and would if they were not held: of each motion so far.
+/// What the joints and the feet of a walk do, and how far feet would slide if they were not held: of each motion so far.
 #[derive(Debug)]
 struct Measuring {
-    held: Motion,
-    free: Arc<Clip>,
-    meters: [SlideMeter; 2],
+    shown: Motion,
+    meter: TraceMeter,
+    slide: SlideMeter,
+    /// The walk without the foot lock.
+    free: Option<(Arc<Clip>, SlideMeter)>,
+}
+
+/// What was measured of a walk as it is shown.
+#[derive(Debug)]
+struct Seen {
+    trace: Arc<MotionTrace>,
+    slides: Vec<Metric>,
 }
 
 impl Measuring {
+    /// Nothing is measured yet; `free` is the walk without the foot lock, where there is one.
+    fn new(shown: Motion, free: Option<Arc<Clip>>) -> Self {
+        Self {
+            meter: TraceMeter::new(&shown.clip, &shown.roles),
+            slide: SlideMeter::new(&shown.clip, &shown.roles),
+            free: free.map(|free| {
+                let meter = SlideMeter::new(&free, &shown.roles);
+                (free, meter)
+            }),
+            shown,
+        }
+    }
+
     /// A slice. `false` when nothing is left to do.
     fn advance(&mut self, frames: usize) -> bool {
-        let Self { held, free, meters } = self;
-        let [of_held, of_free] = meters;
-        of_held.advance(&held.clip, &held.contacts, frames) | of_free.advance(free, &held.contacts, frames)
+        let Motion { clip, contacts, .. } = &self.shown;
+        let of_free = |(free, meter): &mut (Arc<Clip>, SlideMeter)| meter.advance(free, contacts, frames);
+        if self.slide.advance(clip, contacts, frames) | self.free.as_mut().is_some_and(of_free) {
+            return true;
+        }
+        self.meter.advance(clip, frames)
+    }
+
+    fn finish(self) -> (Motion, Seen) {
+        let before = self.free.map(|(_, meter)| slide_before(meter.worst_cm()));
+        let seen = Seen {
+            trace: Arc::new(self.meter.finish(&self.shown.clip)),
+            slides: std::iter::once(slide(self.slide.worst_cm())).chain(before).collect(),
+        };
+        (self.shown, seen)
     }
 }
 
@@ -95,8 +129,8 @@ pub(super) struct Maker {
     goal: usize,
     /// The walk to be shown, as far as it is put together.
     publishing: Option<Publishing>,
-    /// How far feet slide where they are held, and how far they would.
-    slides: Option<[Metric; 2]>,
+    /// What was measured of the walk that was shown first.
+    seen: Option<Seen>,
     walk: Option<Arc<Walk>>,
 }
 
@@ -152,7 +186,7 @@ impl Maker {
             ends: false,
             goal: 0,
             publishing: None,
-            slides: None,
+            seen: None,
             walk: None,
             choices,
             built: Arc::clone(built),
@@ -232,13 +266,12 @@ impl Maker {
         }
     }
 
-    /// A walk whose feet are held, or what is left to measure of it.
-    fn held(&self, held: Motion, free: Arc<Clip>) -> Result<Motion, Publishing> {
-        if self.slides.is_some() {
-            return Ok(held);
+    /// A walk to be shown, or what is left to measure of it.
+    fn unseen(&self, shown: Motion, free: Option<Arc<Clip>>) -> Result<Motion, Publishing> {
+        if self.seen.is_some() {
+            return Ok(shown);
         }
-        let meters = [&held.clip, &free].map(|clip| SlideMeter::new(clip, &held.roles));
-        Err(Publishing::Measuring(Box::new(Measuring { held, free, meters })))
+        Err(Publishing::Measuring(Box::new(Measuring::new(shown, free))))
     }
 
     /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left to do.
@@ -250,11 +283,11 @@ impl Maker {
                 }
                 let motion = self.motion(*assembling).map_err(|error| sentence(&error))?;
                 if !self.wanted.foot_lock {
-                    return Ok(Ok(motion));
+                    return Ok(self.unseen(motion, None));
                 }
                 match locking(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, motion.ground_m)? {
                     Some(locking) => Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion)))),
-                    None => Ok(self.held(motion.clone(), Arc::clone(&motion.clip))),
+                    None => Ok(self.unseen(motion.clone(), Some(motion.clip))),
                 }
             }
             Publishing::Locking(mut locking, motion) => {
@@ -263,16 +296,15 @@ impl Maker {
                 }
                 let clip = Arc::new(locking.finish().map_err(|error| error.to_string())?);
                 let free = Arc::clone(&motion.clip);
-                Ok(self.held(Motion { clip, ..*motion }, free))
+                Ok(self.unseen(Motion { clip, ..*motion }, Some(free)))
             }
             Publishing::Measuring(mut measuring) => {
                 if measuring.advance(MEASURED_FRAMES) {
                     return Ok(Err(Publishing::Measuring(measuring)));
                 }
-                let Measuring { held, meters, .. } = *measuring;
-                let [of_held, of_free] = meters.map(SlideMeter::worst_cm);
-                self.slides = Some([slide(of_held), slide_before(of_free)]);
-                Ok(Ok(held))
+                let (shown, seen) = measuring.finish();
+                self.seen = Some(seen);
+                Ok(Ok(shown))
             }
         }
     }
@@ -414,15 +446,11 @@ impl Maker {
 
     /// The walk as it is now.
     fn walk_of(&self, motion: Motion) -> Walk {
-        let mut metrics = match &self.metrics {
+        let walked = match &self.metrics {
             Some(metrics) => metrics.clone(),
             None => self.measured(),
         };
-        if let Some(slides) = &self.slides {
-            // That one is of feet that are not held.
-            metrics.retain(|metric| metric.id != "walk_skate_cm");
-            metrics.extend(slides.iter().copied());
-        }
+        let slides = self.seen.iter().flat_map(|seen| &seen.slides);
         let run_secs = self.run.secs(self.built.graph(), &self.choices);
         Walk {
             built: Arc::clone(&self.built),
@@ -430,7 +458,8 @@ impl Maker {
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
             passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
             missed: self.plan.missed().to_vec(),
-            metrics,
+            metrics: slides.copied().chain(walked).collect(),
+            trace: self.seen.as_ref().map(|seen| Arc::clone(&seen.trace)),
             ends: self.ends && motion.clip.frames() == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),

@@ -1,7 +1,7 @@
 use super::Built;
 use crate::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
 use crate::math::Planar;
-use crate::metrics::Metric;
+use crate::metrics::{Metric, MotionTrace};
 use crate::session::motion::Motion;
 use glam::DVec2;
 use std::sync::Arc;
@@ -63,6 +63,8 @@ pub struct Walk {
     pub missed: Vec<(f64, usize)>,
     /// Its artefacts.
     pub metrics: Vec<Metric>,
+    /// What its joints, its hips and its feet do: of what was shown first, and `None` before that is measured.
+    pub trace: Option<Arc<MotionTrace>>,
     /// It has come to a dead end.
     pub ends: bool,
     /// It is one transition, between a part of one clip and a part of another.

@@ -1,0 +1,122 @@
+use super::artefacts::{JointTrace, Sizes};
+use super::{Metric, MotionTrace};
+use crate::math::stats;
+
+/// Of a clip by itself the turn of the hips that it stays below for this share of the time is its own.
+const USUAL_TURN: f32 = 0.75;
+
+/// What a viewer would point at in a motion, whatever made it: measured on all of it, beside the clips that it was made of.
+///
+/// Only what exceeds the clips counts: a joint is measured beyond the most that it does in any of them. A clip by itself, with nothing to be
+/// measured beside, is measured beyond what is usual in it: for a joint the 99th percentile over its frames, for the heading what it stays below
+/// for three quarters of the time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResultMetrics {
+    /// Pose jump, degrees: over all joints and steps, the largest turn of a joint against its parent in one step, less what it turns in the clips in such
+    /// a time.
+    pub pose_jump_deg: Option<f64>,
+    /// Where that is: at the frame before the step; `None` where nothing exceeds the clips.
+    pub pose_jump_at: Option<JointFrame>,
+    /// Velocity jump, degrees per second: over all joints and frames, how much the mean angular velocity over the 1/30 s behind a frame differs (as a
+    /// vector in the parent's frame) from that over the 1/30 s before it, less what it does in the clips. The same at all frame rates from 30 on.
+    pub velocity_jump_dps: Option<f64>,
+    /// Where that is; `None` where nothing exceeds the clips.
+    pub velocity_jump_at: Option<JointFrame>,
+    /// Spin, degrees: how far the hips turn within 0.2 s at most, less what they turn in the clips in such a time. `None` without hip joints.
+    pub spin_deg: Option<f64>,
+    /// The frame from which they do; `None` where they do not exceed the clips.
+    pub spin_at: Option<usize>,
+    /// Skating, centimetres per second: [`MotionTrace::skating_cm_per_sec`].
+    pub skating_cm_per_sec: Option<f64>,
+}
+
+/// A joint in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointFrame {
+    /// The joint.
+    pub joint: usize,
+    /// The frame.
+    pub frame: usize,
+}
+
+impl ResultMetrics {
+    /// Measures a result beside its clips; without any, as a clip by itself. Clips of another number of joints say nothing about joints. O(joints), and
+    /// O(frames) for a clip by itself.
+    #[must_use]
+    pub fn measure(result: &MotionTrace, clips: &[&MotionTrace]) -> Self {
+        let alike = result.alike(clips);
+        let (mut pose, mut velocity): (Option<(f32, JointFrame)>, Option<(f32, JointFrame)>) = (None, None);
+        for (joint, trace) in result.joints.iter().enumerate() {
+            let in_clips = || alike.iter().filter_map(|clip| clip.joints.get(joint));
+            let speed = in_clips().map(|clip| clip.speed.most).reduce(f32::max);
+            let change = in_clips().map(|clip| clip.change.most).reduce(f32::max);
+            let of = |sizes: Sizes, own: Option<f32>| {
+                let beyond = (sizes.most - own.unwrap_or(sizes.usual)).max(0.0);
+                (beyond, JointFrame { joint, frame: sizes.frame })
+            };
+            pose = larger(pose, of(trace.speed, speed));
+            velocity = larger(velocity, of(trace.change, change));
+        }
+        let steps = result.joints.first().map_or(0, JointTrace::steps);
+        let [pose, velocity] = [pose, velocity].map(|found| found.filter(|_| steps > 0));
+        let place = |found: Option<(f32, JointFrame)>| found.filter(|(beyond, _)| *beyond > 0.0).map(|(_, at)| at);
+        let turned = (result.turned_deg().iter().copied().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1));
+        let own_turn = clips.iter().map(|clip| clip.most_turned_deg()).reduce(f64::max);
+        let own_turn = own_turn.or_else(|| stats::percentile(result.turned_deg(), USUAL_TURN).map(f64::from));
+        let spin = turned.map(|(frame, deg)| ((f64::from(deg) - own_turn.unwrap_or(0.0)).max(0.0), frame));
+        Self {
+            pose_jump_deg: pose.map(|(dps, _)| f64::from(dps) / result.fps),
+            pose_jump_at: place(pose),
+            velocity_jump_dps: velocity.map(|(dps, _)| f64::from(dps)),
+            velocity_jump_at: place(velocity),
+            spin_deg: spin.map(|(deg, _)| deg),
+            spin_at: spin.filter(|(deg, _)| *deg > 0.0).map(|(_, frame)| frame),
+            skating_cm_per_sec: result.skating_cm_per_sec(),
+        }
+    }
+
+    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    #[must_use]
+    pub fn list(&self) -> [Metric; 4] {
+        [
+            Metric::lower(
+                "pose_jump_deg",
+                "Pose jump",
+                self.pose_jump_deg,
+                "°",
+                "How far a joint turns in one frame, beyond the most that it does in the clips: the worst. Of a clip by itself, beyond all but one in a hundred of its frames.",
+            ),
+            Metric::lower(
+                "velocity_jump_dps",
+                "Velocity jump",
+                self.velocity_jump_dps,
+                "°/s",
+                "How much a joint's angular velocity changes within 1/30 s, beyond the most that it does in the clips: the worst. Of a clip by itself, beyond all but one in a hundred of its frames.",
+            ),
+            Metric::lower(
+                "spin_deg",
+                "Spin",
+                self.spin_deg,
+                "°",
+                "How far the character turns within 0.2 s at most, beyond the most that it does in the clips. Of a clip by itself, beyond what it does three quarters of the time.",
+            ),
+            Metric::lower(
+                "skating_cmps",
+                "Skating",
+                self.skating_cm_per_sec,
+                "cm/s",
+                "How fast the feet move over the ground while they are within 2.5 cm of it, the more the lower: the mean of all frames, for a body of 1.7 m.",
+            ),
+        ]
+    }
+}
+
+fn larger<T>(found: Option<(f32, T)>, other: (f32, T)) -> Option<(f32, T)> {
+    match found {
+        Some(found) if found.0 >= other.0 => Some(found),
+        _ => Some(other),
+    }
+}
+
+#[cfg(test)]
+mod tests;
