@@ -309,6 +309,8 @@ const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("time_warp", "", 0, "apart_cm", "3.3 cm"),
     ("time_warp", "", 1, "apart_cm", "15.6 cm"),
     ("time_warp", "", 0, "foot_slide_cm", "0.5 cm"),
+    ("time_warp", "", 0, "skating_cmps", "2.3 cm/s"),
+    ("time_warp", "", 1, "skating_cmps", "4.6 cm/s"),
     ("time_warp", "", 1, "foot_slide_cm", "3.1 cm"),
     ("time_warp", "b=run", 0, "apart_cm", "12.7 cm"),
     ("time_warp", "b=run", 1, "apart_cm", "20.6 cm"),

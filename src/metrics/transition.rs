@@ -9,7 +9,7 @@ use std::ops::{Range, RangeInclusive};
 
 /// Seconds on each side of a transition in which stances are followed.
 const MARGIN_SECS: f64 = 0.5;
-/// Below this, degrees, no joint is named for a pose jump: nobody sees it.
+/// Below this, degrees, no joint is named for a turn at the seam: nobody sees it.
 const VISIBLE_DEG: f64 = 0.1;
 /// Below this difference of velocities, metres per second, there is no change of speed to wait for.
 const LEAST_CHANGE_MPS: f64 = 0.1;
@@ -39,7 +39,8 @@ pub struct Subject<'a> {
     pub ground_m: f32,
 }
 
-/// What a viewer would point at in a transition.
+/// What a viewer would point at in a transition, measured about its seam alone, beyond what the clips do in the very frames that play. What is told of
+/// every result is in [`ResultMetrics`](super::ResultMetrics).
 ///
 /// "Usual" is the 99th percentile over the whole source clip or what the source does in the very frame that is shown, whichever is more; the
 /// larger of the two sources'. A clip that goes on as itself has no jump, then, however wild it is.
@@ -48,20 +49,20 @@ pub struct Subject<'a> {
 /// count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransitionMetrics {
-    /// Pose jump, degrees. Over all joints and steps of the transition, the largest turn of a joint against its parent in one step, less what
+    /// Turn at the seam, degrees. Over all joints and steps of the transition, the largest turn of a joint against its parent in one step, less what
     /// is usual for that joint; 0 where no step is unusual.
     pub seam_deg: Option<f64>,
     /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.1°.
     pub seam_joint: Option<usize>,
-    /// Velocity jump, degrees per second. Likewise the largest change of a joint's angular velocity (a vector in the parent's frame) from one step
+    /// Change of velocity at the seam, degrees per second. Likewise the largest change of a joint's angular velocity (a vector in the parent's frame) from one step
     /// to the next, less what is usual for that joint.
     pub seam_dps: Option<f64>,
     /// Place jump, centimetres. The largest step of the character over the ground, less what is usual.
     pub jump_cm: Option<f64>,
-    /// Spin, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by the sources: the largest sum, over any run of consecutive
+    /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by the sources: the largest sum, over any run of consecutive
     /// steps of the transition, of `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns meanwhile.
     pub spin_deg: Option<f64>,
-    /// Foot slide, centimetres. A foot is planted while its source says so: A before B has the greater part, B from then on. In every step
+    /// Slide at the seam, centimetres. A foot is planted while its source says so: A before B has the greater part, B from then on. In every step
     /// between planted frames, the step over the ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
     /// point moves in the source, is added up as a vector; the value is the farthest that this sum gets in any stance which touches
     /// the transition. Stances are followed for half a second on each side. `None` without feet or stances.

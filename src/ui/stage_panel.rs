@@ -667,6 +667,7 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use segue::session::Command;
 
     #[test]
     fn columns_fill_the_stage_without_gaps() {
@@ -675,5 +676,25 @@ mod tests {
         assert_eq!(panes[0].left(), 10.0);
         assert_eq!(panes[2].right(), 1010.0);
         assert!(panes.windows(2).all(|pair| pair[0].right() == pair[1].left()));
+    }
+
+    #[test]
+    fn panes_are_ranked_by_the_numbers_of_every_lab() {
+        for (link, best, worst) in [
+            ("compare=blend_window:30,15,10", 0, 2),
+            ("lab=transition&compare=mistake:none,hemisphere", 0, 1),
+            (
+                "lab=loop&a=walk_left&loop_from=0.3&loop_to=1.2&compare=loop_method:exact,linear",
+                0,
+                1,
+            ),
+            ("lab=register&compare=warp_with:registered,plain", 0, 1),
+        ] {
+            let mut session = Session::new();
+            session.apply(Command::OpenLink(link.into())).unwrap();
+            while session.work() {}
+            let found = verdicts(session.panes());
+            assert_eq!((found.best, found.worst), (Some(best), Some(worst)), "{link}");
+        }
     }
 }

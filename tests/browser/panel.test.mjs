@@ -60,7 +60,7 @@ onBothBackends("three panes, each with its own value and a character in it", asy
     assert.equal(panes.length, 3, name);
     assert.equal(panes[0], value, name);
   }
-  const { seam_dps: seam } = await segue("metrics");
+  const { velocity_jump_dps: seam } = await segue("metrics");
   assert.equal(new Set(seam.panes).size, 3, `the seams differ: ${seam.panes}`);
   const shortened = await until("the panes differ somewhere", async () => {
     for (let t = 1.8; t < 3; t += 0.1) {
@@ -79,7 +79,7 @@ onBothBackends("three panes, each with its own value and a character in it", asy
     return counts.every((clay) => clay > 1500) && counts;
   });
   await segue("set", { compare: "" });
-  const { seam_dps: alone } = await segue("metrics");
+  const { velocity_jump_dps: alone } = await segue("metrics");
   assert.equal(alone.panes.length, 1, `one pane is left of ${clay}`);
 });
 

@@ -687,6 +687,12 @@ fn right_and_wrong_stand_side_by_side() {
         seam(1),
         seam(2)
     );
+    let others = opened("lab=transition&compare=mistake:none,degrees,atan");
+    let of = |pane, id| number_of(&outcome(&others, pane), id);
+    let jumps = [0, 1].map(|pane| of(pane, "velocity_jump_dps"));
+    assert!(jumps[1] > 10.0 * jumps[0], "{jumps:?}");
+    let spins = [0, 2].map(|pane| of(pane, "spin_deg"));
+    assert!(spins[0] < 5.0 && spins[1] > 60.0, "{spins:?}");
     // The other labs know nothing of mistakes.
     let [plain, spoiled] = ["lab=blend&compare=", "lab=blend&mistake=degrees"].map(|link| outcome(&opened(link), 0));
     assert_eq!(plain.motion, spoiled.motion);

@@ -122,7 +122,7 @@ fn the_graph_lab_does_what_is_pressed() {
     };
     assert!(*name == "motion graph.json" && text.contains("\"edges\"") && dot.starts_with("digraph"));
     assert!(
-        markdown.starts_with("| | whole clip | first frame only | first frame, then as recorded |") && csv.lines().count() == 10,
+        markdown.starts_with("| | whole clip | first frame only | first frame, then as recorded |") && csv.lines().count() == 12,
         "{markdown}{csv}"
     );
     // The last experiment again: one pane.
