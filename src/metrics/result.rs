@@ -45,20 +45,20 @@ impl ResultMetrics {
     #[must_use]
     pub fn measure(result: &MotionTrace, clips: &[&MotionTrace]) -> Self {
         let alike = result.alike(clips);
-        let (mut pose, mut velocity): (Option<(f32, JointFrame)>, Option<(f32, JointFrame)>) = (None, None);
-        for (joint, trace) in result.joints.iter().enumerate() {
-            let in_clips = || alike.iter().filter_map(|clip| clip.joints.get(joint));
-            let speed = in_clips().map(|clip| clip.speed.most).reduce(f32::max);
-            let change = in_clips().map(|clip| clip.change.most).reduce(f32::max);
-            let of = |sizes: Sizes, own: Option<f32>| {
-                let beyond = (sizes.most - own.unwrap_or(sizes.usual)).max(0.0);
-                (beyond, JointFrame { joint, frame: sizes.frame })
-            };
-            pose = larger(pose, of(trace.speed, speed));
-            velocity = larger(velocity, of(trace.change, change));
-        }
-        let steps = result.joints.first().map_or(0, JointTrace::steps);
-        let [pose, velocity] = [pose, velocity].map(|found| found.filter(|_| steps > 0));
+        let worst = |sizes: fn(&JointTrace) -> Sizes| -> Option<(f32, JointFrame)> {
+            let moving = result.joints.iter().enumerate().filter(|(_, trace)| trace.steps() > 0);
+            let beyond = moving.map(|(joint, trace)| {
+                let Sizes { most, frame, usual } = sizes(trace);
+                let in_clips = alike
+                    .iter()
+                    .filter_map(|clip| clip.joints.get(joint))
+                    .map(|trace| sizes(trace).most);
+                let own = in_clips.reduce(f32::max).unwrap_or(usual);
+                ((most - own).max(0.0), JointFrame { joint, frame })
+            });
+            beyond.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
+        };
+        let (pose, velocity) = (worst(|joint| joint.speed), worst(|joint| joint.change));
         let place = |found: Option<(f32, JointFrame)>| found.filter(|(beyond, _)| *beyond > 0.0).map(|(_, at)| at);
         let turned = (result.turned_deg().iter().copied().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1));
         let own_turn = clips.iter().map(|clip| clip.most_turned_deg()).reduce(f64::max);
@@ -108,13 +108,6 @@ impl ResultMetrics {
                 "How fast the feet move over the ground while they are within 2.5 cm of it, the more the lower: the mean of all frames, for a body of 1.7 m.",
             ),
         ]
-    }
-}
-
-fn larger<T>(found: Option<(f32, T)>, other: (f32, T)) -> Option<(f32, T)> {
-    match found {
-        Some(found) if found.0 >= other.0 => Some(found),
-        _ => Some(other),
     }
 }
 
