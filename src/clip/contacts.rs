@@ -165,7 +165,9 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
         .iter()
         .zip(after)
         .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
-    steps.enumerate().min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
+    steps
+        .enumerate()
+        .min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
 }
 
 /// World positions, frame by frame.

@@ -82,8 +82,8 @@ mod sampling;
 mod storage;
 mod velocity;
 
-pub(crate) use contacts::{stillest_point, stillest_step};
 pub use contacts::{ContactOptions, Contacts};
+pub(crate) use contacts::{stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
 pub(crate) use jolts::{Jolting, jolts, turn_change};

@@ -132,10 +132,7 @@ impl PathSearch {
     pub fn new(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize, options: &StitchOptions) -> Self {
         let world_from_first = first_place(graph, start, path);
         // A mistake is made in the walk, not in the plan.
-        let options = StitchOptions {
-            mistake: None,
-            ..*options
-        };
+        let options = StitchOptions { mistake: None, ..*options };
         Self {
             stitcher: Stitcher::new(Arc::clone(graph.set()), &options),
             placings: RefCell::default(),

@@ -77,7 +77,9 @@ impl Motion {
         }
         let ground_m = estimate_ground(&clip, roles, &contacts);
         let mut feet = Side::BOTH.map(|side| own_foot(&clip, cycle.as_ref(), roles, &contacts, side));
-        let standing: Vec<f32> = (feet.iter().flatten().filter(|foot| foot.planted)).map(|foot| foot.above_m).collect();
+        let standing: Vec<f32> = (feet.iter().flatten().filter(|foot| foot.planted))
+            .map(|foot| foot.above_m)
+            .collect();
         let stand_m = stats::percentile(&standing, 0.5).unwrap_or(ground_m);
         for foot in feet.iter_mut().flatten() {
             foot.above_m -= stand_m;

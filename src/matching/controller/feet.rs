@@ -271,8 +271,8 @@ fn towards(last: [Quat; 3], wanted: [Quat; 3], most_turn: [f32; 3]) -> [Quat; 3]
 mod tests {
     use super::*;
     use crate::clip::Clip;
-    use crate::skeleton::{Role, Roles};
     use crate::matching::{DatabaseOptions, MatchClip};
+    use crate::skeleton::{Role, Roles};
     use crate::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 
@@ -339,7 +339,8 @@ mod tests {
         let fastest = |usual: &[f32]| {
             let poses = played(&database, usual, stance.start..motion.frames(), own, |_, _| {});
             let legs = Side::BOTH.map(|side| Leg::find(database.skeleton(), database.roles(), side).unwrap().joints());
-            let speed = |joint: usize, pair: &[Pose]| quat::angle_between(pair[0].rotations[joint], pair[1].rotations[joint]) / TICK_SECS as f32;
+            let speed =
+                |joint: usize, pair: &[Pose]| quat::angle_between(pair[0].rotations[joint], pair[1].rotations[joint]) / TICK_SECS as f32;
             let of_leg = |joint: usize| poses.windows(2).map(|pair| speed(joint, pair)).fold(0.0, f32::max) / pace[joint];
             legs.into_iter().flatten().map(of_leg).fold(0.0, f32::max)
         };
@@ -365,7 +366,12 @@ mod tests {
         assert!(stood[39].distance(stood[1]) < 4e-3, "{} {}", stood[1], stood[39]);
         let moved = path(OwnFoot::default());
         // It goes at 0.3 m/s: not as fast as to be lifted to the full, and not at once.
-        assert!((moved[39] - moved[0]).x > 0.14 && moved[39].y - moved[0].y > 0.01, "{} {}", moved[0], moved[39]);
+        assert!(
+            (moved[39] - moved[0]).x > 0.14 && moved[39].y - moved[0].y > 0.01,
+            "{} {}",
+            moved[0],
+            moved[39]
+        );
         assert!(moved.windows(2).all(|pair| pair[1].y - pair[0].y < 6e-3));
         // What the clip itself does is left alone.
         let own = path(OwnFoot {

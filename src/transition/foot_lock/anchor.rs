@@ -57,10 +57,7 @@ impl Foot {
         }
         for (index, stance) in stances.iter().enumerate() {
             let next = stances.get(index + 1).map(|next| next.start);
-            let before = index
-                .checked_sub(1)
-                .and_then(|before| stances.get(before))
-                .map(|before| before.end);
+            let before = index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
             let last = stance.end - 1;
             // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
             let inside = |frame: usize| shifts[frame.clamp(stance.start, last)];

@@ -157,7 +157,11 @@ fn feet_that_swing_clear_the_ground() {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let toe = roles.get(Role::LeftToe).unwrap();
-    let path = |clip: &Clip| (0..clip.frames()).map(|frame| clip.world_pose(frame).positions[toe]).collect::<Vec<_>>();
+    let path = |clip: &Clip| {
+        (0..clip.frames())
+            .map(|frame| clip.world_pose(frame).positions[toe])
+            .collect::<Vec<_>>()
+    };
     let locked = |clearance_m| {
         let options = FootLockOptions {
             clearance_m,
@@ -195,7 +199,8 @@ fn a_stance_near_the_end_of_a_clip_ends_as_any_other() {
     let flags = Side::BOTH.map(|side| (0..end).map(|frame| contacts.planted(side, frame)).collect());
     let locked = foot_lock(&short, &roles, &Contacts::from_flags(flags), &FootLockOptions::default()).unwrap();
     let foot = roles.get(Role::LeftFoot).unwrap();
-    let moved = |frame: usize| (locked.world_pose(frame).positions[foot] - short.world_pose(frame).positions[foot]) * Vec3::new(1.0, 0.0, 1.0);
+    let moved =
+        |frame: usize| (locked.world_pose(frame).positions[foot] - short.world_pose(frame).positions[foot]) * Vec3::new(1.0, 0.0, 1.0);
     let (last, gone) = (moved(stance.end - 1), moved(end - 1));
     assert!(last.length() > 0.03 && gone.length() > 0.6 * last.length(), "{last} {gone}");
 }
