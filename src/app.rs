@@ -13,6 +13,8 @@ mod speech;
 
 pub(crate) use address_bar::link_query;
 
+#[cfg(target_arch = "wasm32")]
+use crate::platform::Storing;
 use crate::platform::{self, Inbox, Incoming, Pace, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, Filming, UiState};
@@ -234,6 +236,18 @@ impl Segue {
         self.window.generation += 1;
     }
 
+    /// What draws at present, or did last, as the API calls it; empty before the first window.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn backend(&self) -> &'static str {
+        self.window.backend
+    }
+
+    /// Says what has happened to the platform.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn complain(&mut self, text: &str) {
+        self.session.say(Level::Error, text);
+    }
+
     /// Carries out a command that the user or the page's API gave.
     pub(crate) fn apply(&mut self, command: Command) -> Result<(), CommandError> {
         // Time that has passed belongs to the state as it was.
@@ -361,6 +375,7 @@ impl Segue {
         self.panels.language = self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
         self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
+        self.panels.stored = self.keeper.progress();
         if self.session.is_driven() {
             self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {
                 walk: pad.left,
@@ -537,8 +552,21 @@ impl Segue {
     }
 
     /// Stores the work at once: the page may be about to go.
-    pub(crate) fn save_now(&mut self) {
-        self.keeper.save_now(&self.session, &self.vault);
+    pub(crate) fn leave(&mut self) {
+        self.keeper.leave(&self.session, &self.vault);
+    }
+
+    /// Whether a file that has come would be gone if the page went now.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn has_unstored_files(&self) -> bool {
+        let progress = self.keeper.files_stored();
+        progress.is_some_and(|progress| progress != Storing::Done || self.session.is_reading_new())
+    }
+
+    /// Whether files with one of these SHA-256 are being stored.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn is_storing(&self, files: &[String]) -> bool {
+        self.keeper.is_storing(files)
     }
 
     /// What there is to tell listeners since the last call.
@@ -631,7 +659,7 @@ impl eframe::App for View {
 
     fn on_exit(&mut self) {
         if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.save_now();
+            segue.leave();
         }
     }
 }

@@ -49,6 +49,14 @@ pub(crate) struct LoadedClips {
     warnings: Vec<String>,
 }
 
+impl LoadedClips {
+    /// The SHA-256 of the files that the clips came from.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn files(&self) -> Vec<String> {
+        self.clips.iter().filter_map(|clip| clip.sha256.clone()).collect()
+    }
+}
+
 /// What `pose()` answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct PoseInfo {

@@ -71,6 +71,8 @@ impl Segue {
                     self.address.is_right(&self.session);
                 }
             }
+            Incoming::StoredElsewhere(entries) => self.keeper.hear_of(&self.session, entries),
+            Incoming::Joined(stored) => self.keeper.join(&mut self.session, &mut self.vault, &stored),
             Incoming::Navigated(query) => {
                 if self.address.is_news(&query) {
                     self.obey(Command::OpenLink(query));
@@ -105,12 +107,16 @@ impl Segue {
                 _ => self.vault.drop_file(key),
             }
         }
+        let brings_clips = self.session.brings_clips(task);
         let Some(result) = self.session.finish_reading(task, report) else {
             return;
         };
-        let result = result.map(|loaded| self.loaded_clips(loaded));
-        if let Some(place) = self.read.get_mut(&task) {
-            *place = Some(result);
+        if let (true, Ok(loaded)) = (brings_clips, &result) {
+            self.keeper.store_clips(&self.session, &self.vault, &loaded.ids);
+        }
+        if self.read.contains_key(&task) {
+            let result = result.map(|loaded| self.loaded_clips(loaded));
+            self.read.insert(task, Some(result));
         }
     }
 
@@ -121,8 +127,9 @@ impl Segue {
         } else {
             self.session.load(name, bytes)
         };
-        if let Err(error) = loaded {
-            log::info!("{name} was not loaded: {error}");
+        match loaded {
+            Ok(loaded) => self.keeper.store_clips(&self.session, &self.vault, &loaded.ids),
+            Err(error) => log::info!("{name} was not loaded: {error}"),
         }
     }
 

@@ -1,7 +1,7 @@
-//! Keeps the work: brings it back at the start, and stores it soon after it has changed.
+//! Keeps the work: brings it back at the start, stores a file as soon as it is read, and everything else soon after it has changed.
 
-use crate::platform::{Storage, Stored, StoredFiles, Vault, Work};
-use segue::session::{Origin, Saved, Session};
+use crate::platform::{Arrival, Storage, Stored, StoredFiles, Storing, Vault, Work};
+use segue::session::{Origin, Saved, SavedEntry, Session};
 use std::collections::BTreeSet;
 
 /// The page does not wait longer than this for what is stored, milliseconds.
@@ -10,6 +10,8 @@ const PATIENCE_MS: f64 = 150.0;
 const LATEST_MS: f64 = 4000.0;
 /// Work that has not changed for so long is stored, milliseconds.
 const QUIET_MS: f64 = 600.0;
+/// Work that changes all the time is stored so often, milliseconds.
+const AT_LEAST_EVERY_MS: f64 = 2000.0;
 
 /// What was stored, or is: when one of the two differs, there is something to store.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,7 +52,14 @@ pub(crate) struct Keeper {
     seen: Mark,
     /// The session's revision at which `seen` was taken.
     revision: u64,
-    changed_at_ms: Option<f64>,
+    changed: Option<Changed>,
+}
+
+/// When the work changed since it was stored last, milliseconds.
+#[derive(Clone, Copy, Debug)]
+struct Changed {
+    first_ms: f64,
+    last_ms: f64,
 }
 
 impl Keeper {
@@ -64,7 +73,7 @@ impl Keeper {
             known: BTreeSet::new(),
             seen: Mark::default(),
             revision: 0,
-            changed_at_ms: None,
+            changed: None,
         }
     }
 
@@ -106,6 +115,7 @@ impl Keeper {
     /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
     pub(crate) fn arrived(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) -> bool {
         let nothing = stored.is_none();
+        let stored = stored.map(|stored| Found::of(stored, session));
         if let Some(stored) = &stored {
             self.known.extend(stored.saved.entries.iter().map(|entry| entry.id.clone()));
         }
@@ -130,7 +140,66 @@ impl Keeper {
         false
     }
 
-    fn open(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) {
+    /// Another window has stored these clips. Those that were never here are asked for.
+    pub(crate) fn hear_of(&self, session: &Session, entries: Vec<SavedEntry>) {
+        let is_new = |entry: &SavedEntry| !self.known.contains(&entry.id) && session.library().get(&entry.id).is_none();
+        let new: Vec<SavedEntry> = entries.into_iter().filter(is_new).collect();
+        if let Some(storage) = self.storage.as_ref().filter(|_| !new.is_empty()) {
+            storage.fetch(new);
+        }
+    }
+
+    /// Clips of another window join the library. They are stored already.
+    pub(crate) fn join(&mut self, session: &mut Session, vault: &mut Vault, stored: &Stored) {
+        let was_stored = self.stored == Mark::of(session);
+        self.known.extend(stored.loose.iter().map(|entry| entry.id.clone()));
+        session.add_stored(&stored.loose, |key| vault.restore(&stored.files, key));
+        if was_stored {
+            self.mark(session);
+        }
+    }
+
+    /// Clips have come from a file: they are stored at once, whatever else is to be stored.
+    pub(crate) fn store_clips(&mut self, session: &Session, vault: &Vault, ids: &[String]) {
+        let Some(storage) = &self.storage else { return };
+        let mut arrivals = Vec::new();
+        for entry in ids.iter().filter_map(|id| session.library().get(id)) {
+            let Origin::File(file) = &entry.origin else { continue };
+            let Some(bytes) = vault.bytes_of(&file.content) else { continue };
+            self.known.insert(entry.id.clone());
+            arrivals.push(Arrival {
+                entry: SavedEntry::from(&**entry),
+                sha256: file.sha256.clone(),
+                bytes,
+            });
+        }
+        if !arrivals.is_empty() {
+            storage.store(arrivals);
+        }
+    }
+
+    /// Whether files with one of these SHA-256 are being written.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn is_storing(&self, files: &[String]) -> bool {
+        let storage = self.storage.as_ref();
+        storage.is_some_and(|storage| files.iter().any(|sha256| storage.is_writing(sha256)))
+    }
+
+    /// How far the files are stored that have come; `None` where nothing is stored.
+    pub(crate) fn files_stored(&self) -> Option<Storing> {
+        self.storage.as_ref()?.progress()
+    }
+
+    /// How far the work is stored; `None` where nothing is.
+    pub(crate) fn progress(&self) -> Option<Storing> {
+        let is_due = self.changed.is_some() || !matches!(self.phase, Phase::Ready);
+        Some(match self.files_stored()? {
+            Storing::Done if is_due => Storing::UnderWay,
+            other => other,
+        })
+    }
+
+    fn open(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Found>) {
         let link = (!self.link.is_empty()).then_some(self.link.as_str());
         match stored {
             Some(stored) => session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link),
@@ -144,7 +213,7 @@ impl Keeper {
     fn mark(&mut self, session: &Session) {
         self.stored = Mark::of(session);
         self.seen.clone_from(&self.stored);
-        self.changed_at_ms = None;
+        self.changed = None;
     }
 
     /// Stores the work when it has been quiet for a while. Returns in how many milliseconds to ask again.
@@ -157,10 +226,12 @@ impl Keeper {
             let now = Mark::of(session);
             if now != self.seen {
                 self.seen = now;
-                self.changed_at_ms = Some(now_ms);
+                let first_ms = self.changed.map_or(now_ms, |changed| changed.first_ms);
+                self.changed = Some(Changed { first_ms, last_ms: now_ms });
             }
         }
-        let wait = self.changed_at_ms? + QUIET_MS - now_ms;
+        let changed = self.changed?;
+        let wait = (changed.last_ms + QUIET_MS).min(changed.first_ms + AT_LEAST_EVERY_MS) - now_ms;
         if wait > 0.0 {
             return Some(wait);
         }
@@ -170,23 +241,60 @@ impl Keeper {
 
     /// Stores the work at once, if there is anything new in it.
     pub(crate) fn save_now(&mut self, session: &Session, vault: &Vault) {
+        if let Some((storage, work)) = self.unsaved_work(session, vault) {
+            storage.save(work);
+        }
+    }
+
+    /// Stores the work before the page goes, which may be any moment.
+    pub(crate) fn leave(&mut self, session: &Session, vault: &Vault) {
+        if let Some((storage, work)) = self.unsaved_work(session, vault) {
+            storage.leave(work);
+        }
+    }
+
+    /// What is to be stored; it counts as stored from now on.
+    fn unsaved_work(&mut self, session: &Session, vault: &Vault) -> Option<(&Storage, Work)> {
         let (Phase::Ready, Some(storage)) = (&self.phase, &self.storage) else {
-            return;
+            return None;
         };
-        self.changed_at_ms = None;
+        self.changed = None;
         let now = Mark::of(session);
         if now == self.stored {
-            return;
+            return None;
         }
         let saved = session.saved();
         self.known.extend(saved.entries.iter().map(|entry| entry.id.clone()));
-        storage.save(Work {
+        self.stored.clone_from(&now);
+        self.seen = now;
+        let work = Work {
             saved,
             known: self.known.clone(),
             files: files_of(session, vault),
-        });
-        self.stored.clone_from(&now);
-        self.seen = now;
+        };
+        Some((storage, work))
+    }
+}
+
+/// Stored work with all the clips that were found with it.
+struct Found {
+    saved: Saved,
+    files: StoredFiles,
+}
+
+impl Found {
+    /// Without a record, what the session shows now is what the clips join.
+    fn of(stored: Stored, session: &Session) -> Self {
+        let mut saved = stored.saved.unwrap_or_else(|| session.saved());
+        for entry in stored.loose {
+            if saved.entries.iter().all(|there| there.id != entry.id) {
+                saved.entries.push(entry);
+            }
+        }
+        Self {
+            saved,
+            files: stored.files,
+        }
     }
 }
 
@@ -207,14 +315,17 @@ mod tests {
     use segue::session::{Command, Key, Slot, Value};
     use std::sync::Arc;
 
+    const STANDING: &str =
+        "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+
     fn stored(query: &str) -> Stored {
         let saved = Saved {
             query: query.into(),
             ..Session::new().saved()
         };
         Stored {
-            saved,
-            files: StoredFiles::new(),
+            saved: Some(saved),
+            ..Stored::default()
         }
     }
 
@@ -293,9 +404,7 @@ mod tests {
 
     #[test]
     fn late_work_joins_what_came_meanwhile() {
-        let bvh =
-            b"HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
-        let file = |add: &str| -> Arc<[u8]> { [&bvh[..], add.as_bytes()].concat().into() };
+        let file = |add: &str| -> Arc<[u8]> { [STANDING, add].concat().into_bytes().into() };
         let mut before = Session::new();
         let stored_id = before.load("stored.bvh", file("")).unwrap().ids.remove(0);
         before.apply(Command::Rename(stored_id.clone(), "mine".into())).unwrap();
@@ -304,8 +413,9 @@ mod tests {
             panic!()
         };
         let late = Stored {
-            saved: before.saved(),
+            saved: Some(before.saved()),
             files: [(source.sha256, FileBytes::Here(file("")))].into(),
+            ..Stored::default()
         };
         let (mut keeper, mut session) = keeper("");
         let vault = &mut Vault::default();
@@ -359,5 +469,69 @@ mod tests {
         assert_eq!(keeper.tend(&session, &Vault::default(), 2600.0), Some(QUIET_MS - 100.0));
         assert_eq!(keeper.tend(&session, &Vault::default(), 2500.0 + QUIET_MS), None);
         assert_eq!(keeper.stored, Mark::of(&session));
+    }
+
+    #[test]
+    fn work_that_changes_all_the_time_is_stored_all_the_same() {
+        let (mut keeper, mut session) = keeper("");
+        keeper.arrived(&mut session, &mut Vault::default(), None);
+        let vault = Vault::default();
+        let mut longest: f64 = 0.0;
+        let mut stored_at = None;
+        for step in 0..100 {
+            set_window(&mut session, 20.0 + f64::from(step % 50));
+            let now_ms = 2000.0 + 100.0 * f64::from(step);
+            keeper.tend(&session, &vault, now_ms);
+            if keeper.stored == Mark::of(&session) {
+                longest = longest.max(now_ms - stored_at.replace(now_ms).unwrap_or(2000.0));
+            }
+        }
+        assert!(longest > 0.0 && longest <= AT_LEAST_EVERY_MS + 200.0, "{longest} ms");
+    }
+
+    #[test]
+    fn clips_that_no_record_names_join_what_a_first_visitor_sees() {
+        let mut session = Session::new();
+        let bytes: Arc<[u8]> = Arc::from(STANDING.as_bytes());
+        let id = session.load("came.bvh", bytes.clone()).unwrap().ids.remove(0);
+        let entry = SavedEntry::from(&**session.library().get(&id).unwrap());
+        let sha256 = entry.file.as_ref().unwrap().sha256.clone();
+        for wait_ms in [0.0, 500.0] {
+            let stored = Stored {
+                saved: None,
+                loose: vec![entry.clone()],
+                files: [(sha256.clone(), FileBytes::Here(bytes.clone()))].into(),
+            };
+            let (mut keeper, mut session) = keeper("");
+            let built_in = session.library().entries().len();
+            keeper.wait(&mut session, &mut Vault::default(), 1000.0 + wait_ms);
+            keeper.arrived(&mut session, &mut Vault::default(), Some(stored));
+            assert_eq!(session.library().entries().len(), built_in + 1, "after {wait_ms} ms");
+            assert!(session.library().get(&id).is_some_and(|entry| entry.motion.is_some()));
+        }
+    }
+
+    #[test]
+    fn clips_of_another_window_join_and_are_not_stored_again() {
+        let mut session = Session::new();
+        let bytes: Arc<[u8]> = Arc::from(STANDING.as_bytes());
+        let id = session.load("came.bvh", bytes.clone()).unwrap().ids.remove(0);
+        let entry = SavedEntry::from(&**session.library().get(&id).unwrap());
+        let joined = Stored {
+            saved: None,
+            files: [(entry.file.as_ref().unwrap().sha256.clone(), FileBytes::Here(bytes))].into(),
+            loose: vec![entry],
+        };
+        let (mut keeper, mut session) = keeper("");
+        let vault = &mut Vault::default();
+        keeper.arrived(&mut session, vault, None);
+        let (shown, built_in) = (session.query(), session.library().entries().len());
+        keeper.join(&mut session, vault, &joined);
+        assert_eq!((session.query(), session.library().entries().len()), (shown, built_in + 1));
+        assert_eq!(keeper.tend(&session, vault, 2000.0), None, "the other window has stored it");
+        // What was removed here does not come again.
+        session.apply(Command::Remove(id.clone())).unwrap();
+        assert_eq!(keeper.tend(&session, vault, 2000.0), Some(QUIET_MS));
+        assert!(keeper.known.contains(&id));
     }
 }

@@ -1,7 +1,7 @@
 use super::{LargeFile, ReadNews, Stored};
 use eframe::egui;
-use segue::session::Sample;
 use segue::session::lesson::Source;
+use segue::session::{Sample, SavedEntry};
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -73,6 +73,10 @@ pub(crate) enum Incoming {
     },
     /// Storage was read; `None` where there was nothing in it, or no storage.
     Stored(Option<Box<Stored>>),
+    /// Another window has stored clips.
+    StoredElsewhere(Vec<SavedEntry>),
+    /// Clips of another window that were asked for.
+    Joined(Box<Stored>),
     /// The user went back or forward; the query that the page's address now has.
     Navigated(String),
     /// The graphics device is gone.

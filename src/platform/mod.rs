@@ -5,6 +5,11 @@
 mod address;
 #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "some things happen to a page only"))]
 mod inbox;
+#[cfg_attr(
+    not(any(test, target_arch = "wasm32")),
+    expect(dead_code, reason = "a folder needs no rows and no windows that leave")
+)]
+mod records;
 mod vault;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -20,8 +25,8 @@ pub(crate) use web::*;
 pub(crate) use inbox::{Inbox, Incoming};
 pub(crate) use vault::Vault;
 
-use segue::session::Saved;
 use segue::session::reading::ReadReport;
+use segue::session::{Saved, SavedEntry};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -49,13 +54,26 @@ pub(crate) enum ReadNews {
     Done(Result<ReadReport, String>),
 }
 
-/// Work that was stored on an earlier visit.
+/// Work that was stored on an earlier visit, or by another window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Stored {
-    /// The library and the parameters.
-    pub(crate) saved: Saved,
+    /// The library and the parameters; none where there is no record of them that can be read.
+    pub(crate) saved: Option<Saved>,
+    /// Clips that came from files and stand in no record.
+    pub(crate) loose: Vec<SavedEntry>,
     /// The bytes of the library's files.
     pub(crate) files: StoredFiles,
+}
+
+/// A clip that has just come from a file, with the file's bytes: it is stored at once.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Arrival {
+    /// The clip.
+    pub(crate) entry: SavedEntry,
+    /// The SHA-256 of its file.
+    pub(crate) sha256: String,
+    /// The file's bytes.
+    pub(crate) bytes: FileBytes,
 }
 
 /// Work to be stored.
@@ -70,13 +88,51 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    /// What is to be stored where `record` is at present: this work, with what other windows have added. As JSON, and the files that it needs.
-    fn over(&self, record: Option<&str>) -> Result<(String, BTreeSet<String>), serde_json::Error> {
-        let there = record
-            .and_then(|record| serde_json::from_str::<Saved>(record).ok())
-            .unwrap_or_default();
-        let all = self.saved.clone().with_others_of(&there, &self.known);
-        Ok((serde_json::to_string(&all)?, all.files().into_iter().map(str::to_owned).collect()))
+    /// What is to be stored where `there` is stored at present: this work, with what other windows have added. Clips whose files are not `held` in
+    /// the storage are left out.
+    fn over(&self, there: &Saved, held: impl Fn(&str) -> bool) -> Saved {
+        let mut all = self.saved.clone().with_others_of(there, &self.known);
+        all.entries
+            .retain(|entry| entry.file.as_ref().is_none_or(|file| held(&file.sha256)));
+        all
+    }
+
+    /// The clips whose files are not `held` in the storage, each with its file.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn missing(&self, held: impl Fn(&str) -> bool) -> Vec<Arrival> {
+        let entries = self.saved.entries.iter().filter_map(|entry| Some((entry, entry.file.as_ref()?)));
+        entries
+            .filter(|(_, file)| !held(&file.sha256))
+            .filter_map(|(entry, file)| {
+                Some(Arrival {
+                    entry: entry.clone(),
+                    sha256: file.sha256.clone(),
+                    bytes: self.files.get(&file.sha256)?.clone(),
+                })
+            })
+            .collect()
+    }
+}
+
+/// How far storing is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Storing {
+    /// Everything is stored.
+    #[default]
+    Done,
+    /// Something is being written.
+    UnderWay,
+    /// Some files could not be stored.
+    Incomplete,
+}
+
+/// A few names, and how many there are besides: `a.bvh, b.bvh, c.bvh and 12 more`.
+#[cfg(any(test, target_arch = "wasm32"))]
+fn in_short(names: &[String]) -> String {
+    const MOST: usize = 3;
+    match names.len().saturating_sub(MOST) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..MOST].join(", ")),
     }
 }
 
@@ -131,9 +187,50 @@ fn last_part(path: &str) -> &str {
     path.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or(path)
 }
 
+/// A stored clip of that id; `name~sha` is one that came from a file.
+#[cfg(test)]
+fn clip_of(id: &str) -> SavedEntry {
+    let sha256 = id.split_once('~').map(|(_, sha256)| sha256);
+    let file = sha256
+        .map(|sha256| serde_json::json!({ "name": id, "sha256": sha256, "index": 0, "options": segue::formats::ImportOptions::default() }));
+    serde_json::from_value(serde_json::json!({ "id": id, "name": id, "file": file, "roles": null })).unwrap()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_clip_without_its_file_is_not_recorded() {
+        let work = Work {
+            saved: Saved {
+                query: "t=1".to_owned(),
+                entries: ["idle", "a~11", "b~22", "c~33"].map(clip_of).into(),
+            },
+            known: BTreeSet::new(),
+            files: [("22".to_owned(), FileBytes::Here(Arc::from([2_u8])))].into(),
+        };
+        let held = |sha256: &str| sha256 == "11";
+        let ids: Vec<String> = work
+            .over(&Saved::default(), held)
+            .entries
+            .into_iter()
+            .map(|entry| entry.id)
+            .collect();
+        assert_eq!(ids, ["idle", "a~11"]);
+        // Nobody has the bytes of the third.
+        let missing: Vec<String> = work.missing(held).into_iter().map(|arrival| arrival.sha256).collect();
+        assert_eq!(missing, ["22"]);
+    }
+
+    #[test]
+    fn many_names_are_told_in_short() {
+        let names: Vec<String> = ["a", "b", "c", "d", "e"].map(str::to_owned).into();
+        assert_eq!(
+            (in_short(&names[..3]).as_str(), in_short(&names).as_str()),
+            ("a, b, c", "a, b, c and 2 more")
+        );
+    }
 
     #[test]
     fn motion_files_are_known_by_their_ending() {

@@ -29,7 +29,10 @@ pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut
 
 /// The clips: first what the user brought and made, then what is built in.
 pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(text::LIBRARY, ui);
+    let header = kit::section_header_ui(text::LIBRARY, ui);
+    if let Some(stored) = state.stored {
+        kit::section_mark_ui(text::stored(stored), header, ui);
+    }
     ui.spacing_mut().item_spacing.y = 1.0;
     let entries = session.library().entries();
     let is_built_in = |entry: &Entry| matches!(entry.origin, Origin::Preset);

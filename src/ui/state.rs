@@ -3,6 +3,7 @@
 use super::drive::DriveHand;
 use super::language::Language;
 use super::path_hand::PathHand;
+use crate::platform::Storing;
 use eframe::egui::Rect;
 use glam::DVec2;
 use segue::graph::Place;
@@ -117,6 +118,8 @@ pub(crate) struct UiState {
     pub(crate) fetching: Vec<(String, Option<f64>)>,
     /// Whether a page around this one can use what is opened here.
     pub(crate) host_reads: bool,
+    /// How far the work is stored; none where nothing is stored.
+    pub(crate) stored: Option<Storing>,
 }
 
 impl Default for UiState {
@@ -151,6 +154,7 @@ impl Default for UiState {
             numbers_top: 0.0,
             fetching: Vec::new(),
             host_reads: false,
+            stored: None,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
 
 use super::*;
+use crate::platform::Storing;
 use crate::ui::theme::Theme;
 use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Vec2, vec2};
 use egui_kittest::{
@@ -361,6 +362,24 @@ fn the_library_opens_the_same_panel_under_the_row() {
         assert!(harness.state().state.joints_open);
         picture(name, &mut harness);
     }
+}
+
+#[test]
+fn the_library_tells_how_far_the_work_is_stored() {
+    let mut harness = harness(DESK, DARK, page("lab=view&play=off"));
+    for words in [text::SAVED, text::SAVING, text::NOT_ALL_SAVED] {
+        assert!(harness.query_by_label(words).is_none(), "{words} where nothing is stored");
+    }
+    for (stored, words) in [
+        (Storing::Done, "Saved"),
+        (Storing::UnderWay, "Saving…"),
+        (Storing::Incomplete, "Not all saved"),
+    ] {
+        harness.state_mut().state.stored = Some(stored);
+        harness.run();
+        harness.get_by_label(words);
+    }
+    picture("stored-desk-dark", &mut harness);
 }
 
 #[test]

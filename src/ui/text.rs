@@ -1,5 +1,6 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
+use crate::platform::Storing;
 use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
@@ -10,6 +11,9 @@ use segue::session::{
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
+pub(crate) const SAVED: &str = "Saved";
+pub(crate) const SAVING: &str = "Saving…";
+pub(crate) const NOT_ALL_SAVED: &str = "Not all saved";
 pub(crate) const SAMPLES: &str = "samples";
 pub(crate) const DROP_HERE: &str = "Drop BVH, ASF + AMC, GLB, a zip or a folder";
 pub(crate) const OPEN_FILES: &str = "open…";
@@ -193,6 +197,15 @@ pub(crate) fn status(entry: &Entry) -> &'static str {
         (None, Origin::File(_)) if entry.unread.is_some() => UNREAD,
         (None, Origin::File(_)) if entry.awaits_skeleton() => AWAITS_SKELETON,
         (None, Origin::File(_)) => READING,
+    }
+}
+
+/// How far the work is stored.
+pub(crate) fn stored(stored: Storing) -> &'static str {
+    match stored {
+        Storing::Done => SAVED,
+        Storing::UnderWay => SAVING,
+        Storing::Incomplete => NOT_ALL_SAVED,
     }
 }
 

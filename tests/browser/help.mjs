@@ -14,6 +14,17 @@ export async function until(what, ask, limitMs = 30_000) {
   }
 }
 
+/** Numbers from 0 to 1, the same for the same seed (mulberry32). */
+export function random(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
 // A body of 31 joints: [name, parent, offset in centimetres].
 const BODY = [
   ["Hips", -1, [0, 0, 0]],

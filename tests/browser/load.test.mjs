@@ -100,8 +100,8 @@ onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
 /** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
 const stored = (page) => page.evaluate(async () => {
   const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
-  const all = (name, what) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what]().onsuccess = (event) => resolve(event.target.result); });
-  const [[work], files] = [await all("work", "getAll"), await all("files", "getAllKeys")];
+  const all = (name, what, ...args) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what](...args).onsuccess = (event) => resolve(event.target.result); });
+  const [work, files] = [await all("work", "get", "latest"), await all("files", "getAllKeys")];
   database.close();
   const { query, entries } = work ? JSON.parse(work) : { query: "", entries: [] };
   return { query, ids: entries.map(({ id }) => id), files };

@@ -1,7 +1,7 @@
 //! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
 
 use super::folders::watch_folders;
-use super::page::{listen, next_frame, sleep, turn, wanted_backend, watch_hiding};
+use super::page::{ask_before_leaving_while, listen, next_frame, now_ms, sleep, turn, wanted_backend, watch_hiding};
 use super::reader::{LargeFile, workers_are_made_by};
 use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
@@ -9,17 +9,17 @@ use crate::platform::{FileBytes, Inbox};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
-use js_sys::{Error, Function, Uint8Array};
+use js_sys::{Error, Function, Object, Reflect, Uint8Array};
 use segue::session::reading::LARGE_BYTES;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
-use web_sys::{Blob, HtmlCanvasElement};
+use web_sys::{Blob, HtmlCanvasElement, WebGl2RenderingContext};
 
 /// The running app, as the page holds it.
 ///
@@ -33,7 +33,12 @@ pub struct SegueHandle {
     inbox: Inbox,
     canvas: Rc<RefCell<HtmlCanvasElement>>,
     listener: Rc<RefCell<Option<Function>>>,
+    /// When a WebGPU device was lost last, milliseconds.
+    lost_ms: Rc<Cell<Option<f64>>>,
 }
+
+/// When a second WebGPU device is lost so soon after the first, WebGL 2 is taken, milliseconds.
+const SOON_MS: f64 = 10_000.0;
 
 fn error(text: impl AsRef<str>) -> JsValue {
     Error::new(text.as_ref()).into()
@@ -55,6 +60,7 @@ impl SegueHandle {
             inbox,
             canvas: Rc::new(RefCell::new(canvas.clone())),
             listener: Rc::default(),
+            lost_ms: Rc::default(),
         };
         handle.run(canvas).await?;
         watch_folders(&handle.inbox);
@@ -63,16 +69,43 @@ impl SegueHandle {
             if let Some(segue) = weak.upgrade()
                 && let Ok(mut segue) = segue.try_borrow_mut()
             {
-                segue.save_now();
+                segue.leave();
             }
+        });
+        let weak = Rc::downgrade(&handle.segue);
+        ask_before_leaving_while(move || {
+            let segue = weak.upgrade();
+            segue.is_some_and(|segue| segue.try_borrow().is_ok_and(|segue| segue.has_unstored_files()))
         });
         Ok(handle)
     }
 
-    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was.
+    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was. When this fails it can be asked again, with
+    /// another canvas.
     pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
-        self.borrow_mut()?.detach();
-        self.run(canvas).await
+        let backend = {
+            let mut segue = self.borrow_mut()?;
+            segue.detach();
+            segue.backend()
+        };
+        if backend == "webgl2" {
+            return self.run_on(canvas, Backends::GL).await;
+        }
+        let now_ms = now_ms();
+        let is_soon = self
+            .lost_ms
+            .replace(Some(now_ms))
+            .is_some_and(|before_ms| now_ms - before_ms < SOON_MS);
+        if !is_soon || wanted_backend().as_deref() == Some("webgpu") {
+            return self.run(canvas).await;
+        }
+        // Where WebGL 2 fails, too, the next attempt is like the first.
+        self.lost_ms.set(None);
+        self.run_on(canvas, Backends::GL).await?;
+        self.change(|segue| {
+            segue.complain("The graphics device was lost twice within 10 seconds, so Segue draws with WebGL 2 now. Reload the page to try WebGPU again.");
+            Ok(())
+        })
     }
 
     /// Resolves when the first frame is on screen.
@@ -126,8 +159,16 @@ impl SegueHandle {
             self.borrow_mut()?.pump();
         }
         self.settled().await?;
-        match self.borrow_mut()?.read_result(task) {
-            Some(Ok(loaded)) => to_js(&loaded),
+        let result = self.borrow_mut()?.read_result(task);
+        match result {
+            Some(Ok(loaded)) => {
+                // Whoever is told that a file is loaded may leave: by then it is stored.
+                let files = loaded.files();
+                while self.borrow()?.is_storing(&files) {
+                    sleep(5).await;
+                }
+                to_js(&loaded)
+            }
             Some(Err(reason)) => Err(error(reason)),
             None => Err(error(format!("{name}: reading it was stopped"))),
         }
@@ -271,7 +312,7 @@ impl SegueHandle {
         {
             let mut segue = self.borrow_mut()?;
             segue.detach();
-            segue.save_now();
+            segue.leave();
         }
         self.runner.destroy();
         Ok(())
@@ -342,6 +383,9 @@ impl SegueHandle {
     }
 
     async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
+        if backends == Backends::GL && is_lost(&canvas) {
+            return Err(error("the browser gives no WebGL context that lives"));
+        }
         let mut setup = WgpuSetupCreateNew::without_display_handle();
         setup.instance_descriptor.backends = backends;
         let options = WebOptions {
@@ -397,6 +441,19 @@ impl SegueHandle {
             turn().await;
         }
     }
+}
+
+/// Whether the canvas has a WebGL context that is lost already: wgpu stops at one that cannot tell its version.
+fn is_lost(canvas: &HtmlCanvasElement) -> bool {
+    let options = Object::new();
+    // As wgpu asks for it: it is given this one.
+    let asked = Reflect::set(&options, &"antialias".into(), &JsValue::FALSE)
+        .and_then(|_| canvas.get_context_with_context_options("webgl2", &options));
+    let context = asked
+        .ok()
+        .flatten()
+        .and_then(|context| context.dyn_into::<WebGl2RenderingContext>().ok());
+    context.is_some_and(|context| context.is_context_lost())
 }
 
 /// Tells the page, once whatever runs now is done: a listener may call back at once.

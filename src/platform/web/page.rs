@@ -123,6 +123,15 @@ pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     listen(window(), "pagehide", move |_| on_hide());
 }
 
+/// Has the browser ask whether to leave the page, while there is something to lose.
+pub(super) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
+    listen(window(), "beforeunload", move |event| {
+        if is_unsafe() {
+            event.prevent_default();
+        }
+    });
+}
+
 /// Has a screen reader say something: what is drawn on a canvas it cannot read.
 pub(crate) fn announce(words: &str) {
     if let Some(spoken) = document().and_then(|document| document.get_element_by_id("spoken")) {

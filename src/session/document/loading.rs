@@ -50,6 +50,10 @@ impl Reading {
     fn is_small(&self) -> bool {
         self.task.size <= LARGE_BYTES || matches!(self.purpose, Purpose::Sample(_))
     }
+
+    fn is_new(&self) -> bool {
+        matches!(self.purpose, Purpose::New(_))
+    }
 }
 
 impl Session {
@@ -213,6 +217,18 @@ impl Session {
     #[must_use]
     pub fn is_reading(&self, task: u64) -> bool {
         self.reading.iter().any(|reading| reading.task.id == task)
+    }
+
+    /// Whether files are being read that are not in the library yet.
+    #[must_use]
+    pub fn is_reading_new(&self) -> bool {
+        self.reading.iter().any(Reading::is_new)
+    }
+
+    /// Whether that task reads a file that is not in the library yet.
+    #[must_use]
+    pub fn brings_clips(&self, task: u64) -> bool {
+        self.reading.iter().any(|reading| reading.task.id == task && reading.is_new())
     }
 
     /// Whether something is being read that is there in a moment: nobody is told how far that is.

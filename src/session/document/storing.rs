@@ -26,7 +26,7 @@ impl Session {
     /// be read no longer, where they are read at once; those that are read elsewhere are asked for with [`super::Request::Read`], first what is shown.
     /// The parameters come from `query` when there is one (a link was opened), else from what was stored.
     pub fn restore(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>, query: Option<&str>) {
-        let (entries, lost) = self.stored_entries(saved, content_of);
+        let (entries, lost) = self.stored_entries(&saved.entries, content_of);
         if !entries.is_empty() {
             self.library = entries.into_iter().collect();
         }
@@ -46,7 +46,7 @@ impl Session {
     /// Brings stored work back into a session that has begun without it. The parameters stay as they are, and so does what came into the library or
     /// was said of a clip by hand meanwhile; every stored clip joins that. Taking back what was done before does not take them away.
     pub fn restore_late(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>) {
-        let (entries, lost) = self.stored_entries(saved, content_of);
+        let (entries, lost) = self.stored_entries(&saved.entries, content_of);
         let before = std::mem::take(&mut self.library);
         let mut came = Vec::new();
         for entry in entries {
@@ -78,10 +78,30 @@ impl Session {
         self.refresh();
     }
 
+    /// Adds clips that another window has stored. Those that are here already stay as they are, and taking back what was done before does not take
+    /// the others away.
+    pub fn add_stored(&mut self, saved: &[SavedEntry], content_of: impl FnMut(&str) -> Option<Content>) {
+        let new: Vec<SavedEntry> = saved
+            .iter()
+            .filter(|entry| self.library.get(&entry.id).is_none())
+            .cloned()
+            .collect();
+        let (entries, lost) = self.stored_entries(&new, content_of);
+        for entry in entries {
+            self.library.put(entry);
+        }
+        self.look_for_clips();
+        self.read_stored(lost);
+        let came: Vec<_> = new.iter().filter_map(|entry| self.library.get(&entry.id).cloned()).collect();
+        self.history.add_to_all(&came);
+        self.library_revision += 1;
+        self.refresh();
+    }
+
     /// The clips of stored work, and the names of files that are gone.
-    fn stored_entries(&self, saved: &Saved, mut content_of: impl FnMut(&str) -> Option<Content>) -> (Vec<Entry>, Vec<String>) {
+    fn stored_entries(&self, saved: &[SavedEntry], mut content_of: impl FnMut(&str) -> Option<Content>) -> (Vec<Entry>, Vec<String>) {
         let (mut entries, mut lost) = (Vec::new(), Vec::new());
-        for stored in &saved.entries {
+        for stored in saved {
             let here = self.library.get(&stored.id).map(|entry| (**entry).clone());
             let is_as_stored = |entry: &Entry| {
                 let is_read_so = match (&entry.origin, &stored.file) {

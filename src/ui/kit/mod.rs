@@ -60,7 +60,7 @@ pub(crate) use notice::{Notice, NoticeEvent, brief_progress_ui, caption_ui, prog
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use profile::profile_ui;
-pub(crate) use section::{folded_ui, note_ui, section_header_ui};
+pub(crate) use section::{folded_ui, note_ui, section_header_ui, section_mark_ui};
 pub(crate) use segmented::{segmented_label_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
 pub(crate) use stick::{stick_size, stick_ui};

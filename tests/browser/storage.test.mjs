@@ -1,0 +1,149 @@
+// What the browser keeps: a file that was called loaded is there again, however the page ended.
+
+import assert from "node:assert/strict";
+import { onBackend } from "./harness.mjs";
+import { random, striding, until } from "./help.mjs";
+
+const SMALL = { viewport: [960, 640] };
+/** The ids of clips that were loaded from files, in the order in which they came. */
+const loaded = async (segue) => (await segue("clips")).filter((clip) => clip.sha256).map(({ id }) => id);
+
+const FILES = 40;
+const MOMENTS = 10;
+const LATEST_MS = 5000;
+
+/** How a page ends; each answers with the page that the work is looked for in. */
+const ENDS = {
+  reload: async (page) => {
+    await page.reload({ waitUntil: "commit" });
+    return page;
+  },
+  close: async (page) => {
+    const context = page.context();
+    await Promise.all([page.waitForEvent("close"), page.close({ runBeforeUnload: true })]);
+    return context.newPage();
+  },
+  kill: async (page) => {
+    const context = page.context();
+    const session = await context.newCDPSession(page);
+    const crashed = page.waitForEvent("crash");
+    session.send("Page.crash").catch(() => {}); // nobody is left to answer
+    await crashed;
+    return context.newPage();
+  },
+};
+
+// Fails when load() resolves before the file is stored, and when what is stored needs a record that was not written yet.
+for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
+  onBackend("webgl2", `files that were loaded are there after a ${end}, whenever it comes`, async ({ open }) => {
+    const next = random(20_261_122 + seed);
+    const texts = Array.from({ length: FILES }, (_, index) => striding({ frames: 12, swing: 10 + index }).toString());
+    let resolved = 0;
+    for (let moment = 0; moment < MOMENTS; moment++) {
+      const { page } = await open("lab=view&play=off", SMALL);
+      const told = [];
+      await page.exposeFunction("tell", (id) => void told.push(id));
+      const loading = page.evaluate(async (texts) => {
+        const segue = await window.segueReady;
+        for (const [index, text] of texts.entries()) {
+          const { clips } = await segue.load(`${index}.bvh`, new TextEncoder().encode(text));
+          window.tell(clips[0].id);
+        }
+      }, texts).catch(() => {}); // the page ends in the middle of it
+      const wait = next() * LATEST_MS;
+      await page.waitForTimeout(wait);
+      const again = await bringAbout(page);
+      await loading;
+      const expected = [...told];
+      resolved += expected.length;
+      if (again !== page) await again.goto(new URL(page.url()).origin, { waitUntil: "commit" });
+      await again.waitForFunction(() => "segueReady" in window);
+      await again.evaluate(async () => (await window.segueReady).set({}));
+      const clips = () => again.evaluate(async () => (await window.segueReady).clips().map(({ id }) => id));
+      await until(`all ${expected.length} files are there, ${wait.toFixed(0)} ms after the first`, async () => {
+        const there = new Set(await clips());
+        return expected.every((id) => there.has(id));
+      }, 10_000).catch(async (error) => {
+        const there = new Set(await clips());
+        throw new Error(`${error.message}; missing: ${expected.filter((id) => !there.has(id))}`);
+      });
+      assert.ok((await clips()).includes("walk"), "the clips that were always there are there");
+      await again.context().close();
+    }
+    assert.ok(resolved > MOMENTS * 3, `${resolved} files were loaded in all`);
+  });
+}
+
+/** In the page's origin: reads or writes the browser's records and files. */
+const inStorage = (page, body, argument) => page.evaluate(async ([body, argument]) => {
+  const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
+  const asked = (request) => new Promise((resolve, reject) => Object.assign(request, { onsuccess: () => resolve(request.result), onerror: () => reject(request.error) }));
+  const stores = (...names) => names.map((name) => database.transaction(names, "readwrite").objectStore(name));
+  try {
+    return await new Function("stores", "asked", "argument", `return (${body})(stores, asked, argument)`)(stores, asked, argument);
+  } finally {
+    database.close();
+  }
+}, [String(body), argument]);
+
+const keysOf = (page, store) => inStorage(page, async (stores, asked, store) => asked(stores(store)[0].getAllKeys()), store);
+
+// Fails when a record that cannot be read is written over, and when it takes clips or files along.
+onBackend("webgl2", "a record that cannot be read is kept, and its clips come back", async ({ open }) => {
+  const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
+  const { clips: [mine] } = await load("mine.bvh", striding({ frames: 12 }));
+  await until("the record is written", async () => (await keysOf(page, "work")).includes("latest"));
+  await page.goto(new URL("manifest.webmanifest", page.url()).href);
+  await inStorage(page, async (stores, asked) => asked(stores("work")[0].put('{"garbage":', "latest")));
+  await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
+  await ready();
+  await segue("set", { blend_window: 19 });
+  await until("the clip is back", async () => (await loaded(segue)).includes(mine.id));
+  await until("the old record is kept under another key", async () => {
+    const keys = await keysOf(page, "work");
+    return keys.includes("latest") && keys.some((key) => key.startsWith("unread "));
+  });
+  assert.deepEqual(await keysOf(page, "files"), [mine.sha256]);
+});
+
+// Fails when one tab does not hear of what another has stored.
+onBackend("webgl2", "two tabs see each other's clips", async ({ open }) => {
+  const { page, load } = await open("lab=view&play=off", SMALL);
+  const other = await page.context().newPage();
+  await other.goto(page.url(), { waitUntil: "commit" });
+  await other.waitForFunction(() => "segueReady" in window);
+  await other.evaluate(async () => (await window.segueReady).set({}));
+  const { clips: [mine] } = await load("mine.bvh", striding({ frames: 12 }));
+  await other.bringToFront();
+  await until("the other tab has it", () => other.evaluate(async (id) => {
+    const clip = (await window.segueReady).clips().find((clip) => clip.id === id);
+    return clip?.frames === 12;
+  }, mine.id));
+});
+
+// Fails when one file that has no room takes those along that have, and when it is not named.
+onBackend("webgl2", "a full storage keeps what has room and names the rest", async ({ open }) => {
+  const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
+  await page.evaluate(() => {
+    window.errors = [];
+    window.segue.on("error", ({ message }) => window.errors.push(message));
+  });
+  // Before anything is stored: a browser asks how much room there is only now and then.
+  const session = await page.context().newCDPSession(page);
+  await session.send("Storage.overrideQuotaForOrigin", { origin: new URL(page.url()).origin, quotaSize: 700_000 });
+  const { clips: [small] } = await load("small.bvh", striding({ frames: 12 }));
+  const large = striding({ frames: 1800 });
+  assert.ok(large.length > 800_000, `${large.length} bytes`);
+  const [{ clips: [huge] }, { clips: [more] }] = await Promise.all([load("huge.bvh", large), load("more.bvh", striding({ frames: 14 }))]);
+  const [told] = await until("it is said", () => page.evaluate(() => window.errors.length && window.errors));
+  assert.match(told, /storage is full: huge\.bvh will not be here/);
+  await until("the rest is stored", async () => (await keysOf(page, "files")).length === 2);
+  await segue("set", { blend_window: 19 });
+  await page.waitForTimeout(3000);
+  await page.reload({ waitUntil: "commit" });
+  await ready();
+  await segue("set", {});
+  await until("those with room are back", async () => (await loaded(segue)).length === 2);
+  const there = await loaded(segue);
+  assert.ok(there.includes(small.id) && there.includes(more.id) && !there.includes(huge.id), there.join());
+});
