@@ -8,7 +8,8 @@ use std::time::Duration;
 
 /// Makes the renderer and leaves it with egui's. Call it once, when the app is created.
 pub(crate) fn install(render_state: &RenderState) {
-    let renderer = StageRenderer::new(&render_state.device, &render_state.adapter, render_state.target_format);
+    let (device, queue, adapter) = (&render_state.device, &render_state.queue, &render_state.adapter);
+    let renderer = StageRenderer::new(device, queue, adapter, render_state.target_format);
     render_state.renderer.write().callback_resources.insert(renderer);
 }
 

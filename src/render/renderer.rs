@@ -6,8 +6,8 @@ use super::skins::{JointTexture, SkinStore};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
 use eframe::wgpu;
 use segue::scene::Stage;
+use std::borrow::Cow;
 use std::cell::Cell;
-use wgpu::util::DeviceExt as _;
 
 /// How much light is worth its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +97,33 @@ struct GrowingBuffer {
     label: &'static str,
     usage: wgpu::BufferUsages,
     buffer: Option<wgpu::Buffer>,
+}
+
+/// Makes a buffer that holds `contents`.
+///
+/// It is never mapped: where a device is dying a browser refuses that by an exception, which wgpu takes for a reason to stop.
+pub(super) fn filled_buffer(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let mut contents = Cow::Borrowed(contents);
+    let size = contents.len().next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT as usize);
+    if contents.len() < size {
+        contents.to_mut().resize(size, 0);
+    }
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    if size > 0 {
+        queue.write_buffer(&buffer, 0, &contents);
+    }
+    buffer
 }
 
 impl GrowingBuffer {
@@ -191,22 +218,16 @@ fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: 
 
 impl StageRenderer {
     /// Makes what all stages share. `output_format` is the format of the page's target.
-    pub(crate) fn new(device: &wgpu::Device, adapter: &wgpu::Adapter, output_format: wgpu::TextureFormat) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, output_format: wgpu::TextureFormat) -> Self {
         let smooth = [COLOR_FORMAT, DEPTH_FORMAT]
             .iter()
             .all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(4));
         let mesh = |sides, rings| {
             let mesh = ConeMesh::new(sides, rings);
-            let buffer = |label, contents: &[u8], usage| {
-                device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                    label: Some(label),
-                    contents,
-                    usage,
-                })
-            };
+            let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "cone", contents, usage);
             Mesh {
-                vertices: buffer("cone", bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
-                indices: buffer("cone", bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+                vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
+                indices: buffer(bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
                 index_count: mesh.indices.len() as u32,
             }
         };
@@ -367,7 +388,7 @@ impl StageRenderer {
             figures_bound,
             ..
         } = view;
-        self.skins.load(device, &drawn.meshes);
+        self.skins.load(device, queue, &drawn.meshes);
         if !drawn.skins.is_empty() {
             joints.write(device, queue, &self.pipelines, &drawn.joints);
         }

@@ -2,10 +2,10 @@
 
 use super::frame::{JointTexels, Mesh};
 use super::pipelines::Pipelines;
+use super::renderer::filled_buffer;
 use eframe::wgpu;
 use segue::skin::SkinnedMesh;
 use std::sync::{Arc, Weak};
-use wgpu::util::DeviceExt as _;
 
 /// Joints in a row of their texture, as skin.wgsl has it.
 const JOINTS_IN_ROW: usize = 512;
@@ -54,14 +54,8 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
 }
 
 impl SkinBuffers {
-    fn new(device: &wgpu::Device, mesh: &Arc<SkinnedMesh>) -> Self {
-        let buffer = |contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("skin"),
-                contents,
-                usage,
-            })
-        };
+    fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Arc<SkinnedMesh>) -> Self {
+        let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
         // A corner that is no vertex takes its whole triangle out.
         let inside = |triangle: &&[u32; 3]| triangle.iter().all(|&corner| (corner as usize) < vertices.len());
@@ -81,11 +75,11 @@ pub(super) struct SkinStore(Vec<SkinBuffers>);
 
 impl SkinStore {
     /// Brings those meshes to the device that are not there yet, and lets go of those that are gone.
-    pub(super) fn load(&mut self, device: &wgpu::Device, meshes: &[Mesh]) {
+    pub(super) fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, meshes: &[Mesh]) {
         self.0.retain(|buffers| buffers.mesh.strong_count() > 0);
         for Mesh(mesh) in meshes {
             if self.get(mesh).is_none() {
-                self.0.push(SkinBuffers::new(device, mesh));
+                self.0.push(SkinBuffers::new(device, queue, mesh));
             }
         }
     }

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { onBackend } from "./harness.mjs";
 
 const STAND_IN = `
-  export default async function init({ module_or_path }) { await module_or_path; }
+  export default async function init({ module_or_path }) { await module_or_path; return { memory: window.memory }; }
   export class SegueHandle {
     static async start(canvas) {
       if (window.startFails) throw "no graphics for you";
@@ -125,6 +125,26 @@ onBackend("webgl2", "a trap outside of any call counts as a panic", async ({ ope
   await panelOf(opened.page).waitFor();
   assert.match(await panelOf(opened.page).innerText(), /unreachable/);
   opened.problems.length = 0;
+});
+
+// Fails when a trap for want of memory is called a mistake, and when any other trap is not.
+onBackend("webgl2", "a trap for want of memory speaks of memory", async ({ open }) => {
+  const prepare = async (page) => {
+    await standIn(page);
+    await page.addInitScript(() => { window.memory = { buffer: { byteLength: 3.9e9 } }; });
+  };
+  const opened = await open("", { prepare });
+  await opened.page.evaluate(() => void setTimeout(() => { throw new WebAssembly.RuntimeError("unreachable"); }));
+  await panelOf(opened.page).waitFor();
+  const text = await panelOf(opened.page).innerText();
+  assert.match(text, /not enough memory[^]*3900 MB[^]*remove clips/);
+  assert.doesNotMatch(text, /mistake/);
+  opened.problems.length = 0;
+
+  const panicked = await open("", { prepare });
+  await panicked.page.evaluate(() => { window.panic = "the knee bent backwards"; });
+  await panelOf(panicked.page).waitFor();
+  assert.match(await panelOf(panicked.page).innerText(), /mistake/);
 });
 
 onBackend("webgl2", "a lost graphics context moves the app to a fresh canvas", async ({ open }) => {

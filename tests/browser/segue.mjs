@@ -23,6 +23,10 @@ const BACKEND_FLAGS = {
   webgpu: [
     "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=vulkan",
   ],
+  // For what goes from one to the other: pictures of what WebGPU draws are empty.
+  both: [
+    "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-unsafe-swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=swiftshader",
+  ],
 };
 
 /**
@@ -129,7 +133,7 @@ const browsers = new Map();
 
 /** One browser per backend and test file, started when first asked for. */
 export function launch(backend) {
-  if (!BACKENDS.includes(backend)) throw new Error(`there is no backend "${backend}", only ${BACKENDS.join(", ")}`);
+  if (!BACKEND_FLAGS[backend]) throw new Error(`there is no backend "${backend}", only ${Object.keys(BACKEND_FLAGS).join(", ")}`);
   if (!browsers.has(backend)) {
     browsers.set(backend, chromium.launch({ executablePath: chromiumPath(), args: [...COMMON_FLAGS, ...BACKEND_FLAGS[backend]] }));
   }

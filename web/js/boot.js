@@ -12,9 +12,13 @@
 
 import { makeApi } from "./api.js";
 import { answerParent } from "./embed.js";
-import { showDownloadFailed, showLost, showPanic, showStartFailed, showUnsupported } from "./panels.js";
+import { showDownloadFailed, showLost, showNoMemory, showPanic, showStartFailed, showUnsupported } from "./panels.js";
 
 const PANIC_POLL_MS = 500;
+/** A trap without a panic, while so much memory is held, comes from an allocation that failed. */
+const MUCH_MEMORY = 1 << 30;
+/** How long to wait before each attempt to replace a graphics device: one that dies at once is given time. */
+const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
 
 async function start(jsUrl, wasmUrl) {
   // Only what costs nothing is asked before the start; a real look at the graphics waits until the start has failed.
@@ -24,11 +28,12 @@ async function start(jsUrl, wasmUrl) {
   }
 
   let bindings;
+  let memory;
   try {
     const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
     const compiled = await WebAssembly.compileStreaming(download(wasmUrl));
     bindings = await module;
-    await bindings.default({ module_or_path: compiled });
+    ({ memory } = (await bindings.default({ module_or_path: compiled })) ?? {});
   } catch (reason) {
     showDownloadFailed(String(reason?.message ?? reason));
     throw new Error(`Segue could not be downloaded: ${reason?.message ?? reason}`, { cause: reason });
@@ -40,7 +45,7 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("The WebAssembly module exports no SegueHandle");
   }
 
-  const life = new Life();
+  const life = new Life(memory);
   try {
     life.handle = await Promise.race([SegueHandle.start(canvas(), newReader), life.trapped]);
     life.watch();
@@ -118,9 +123,13 @@ class Life {
   handle = undefined;
   /** Why it no longer runs, if it does not. */
   stopped = undefined;
+  #memory;
   #restarting = false;
+  #lostMeanwhile = false;
 
-  constructor() {
+  /** @param memory the app's `WebAssembly.Memory` */
+  constructor(memory) {
+    this.#memory = memory;
     // A panic in a callback surfaces only here: as a trap, outside of any call of ours.
     this.trapped = new Promise((_, reject) => {
       window.addEventListener("error", ({ error }) => {
@@ -147,14 +156,19 @@ class Life {
   }
 
   panicText(fallback) {
+    // Which package and line is of use, not where it lay on the machine that compiled it.
+    const summary = this.#summary()?.replace(/^panicked at .*\/registry\/src\/[^/]+\//, "panicked at ");
+    return summary ?? String(fallback?.message ?? fallback ?? "The app stopped without a word.");
+  }
+
+  /** What the app says of its panic, where there was one. */
+  #summary() {
     try {
       const summary = this.handle.panicSummary();
-      // Which package and line is of use, not where it lay on the machine that compiled it.
-      if (summary) return String(summary).replace(/^panicked at .*\/registry\/src\/[^/]+\//, "panicked at ");
+      return summary ? String(summary) : undefined;
     } catch {
-      // what trapped can be past answering
+      return undefined; // what trapped can be past answering
     }
-    return String(fallback?.message ?? fallback ?? "The app stopped without a word.");
   }
 
   facts() {
@@ -181,33 +195,44 @@ class Life {
     }
     if (!panicked) return;
     this.stopped = this.panicText(trap);
-    showPanic(this.stopped, this.facts());
+    const bytes = this.#memory?.buffer.byteLength ?? 0;
+    if (trap && bytes >= MUCH_MEMORY && !this.#summary()) showNoMemory(bytes, this.stopped, this.facts());
+    else showPanic(this.stopped, this.facts());
   }
 
   #guard(element) {
     element.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      this.rebuild();
+      if (element === canvas()) this.rebuild();
     });
   }
 
-  /** The graphics context is gone. A canvas keeps the kind of context it once had, so the app moves to a new one. */
+  /** The graphics context is gone. A canvas keeps the kind of context it once had, so the app moves to a new one, again and again where that is lost, too. */
   async rebuild() {
+    this.#lostMeanwhile = true;
     if (this.#restarting || this.stopped || !this.handle) return;
     this.#restarting = true;
-    try {
-      const old = canvas();
-      const fresh = old.cloneNode(false);
-      old.replaceWith(fresh);
-      this.#guard(fresh);
-      await this.handle.restart(fresh);
-      fresh.focus();
-    } catch (reason) {
-      console.error(reason);
-      showLost(String(reason?.message ?? reason), this.facts());
-    } finally {
-      this.#restarting = false;
+    let last;
+    for (const wait of REPLACE_AFTER_MS) {
+      if (wait) await new Promise((resolve) => setTimeout(resolve, wait));
+      if (this.stopped) break;
+      this.#lostMeanwhile = false;
+      last = await this.#replace().catch((reason) => reason);
+      if (last) console.warn(last);
+      if (!last && !this.#lostMeanwhile) break;
     }
+    this.#restarting = false;
+    if (this.stopped || !(last || this.#lostMeanwhile)) return;
+    showLost(String(last?.message ?? last ?? "It was lost again and again."), this.facts());
+  }
+
+  async #replace() {
+    const old = canvas();
+    const fresh = old.cloneNode(false);
+    old.replaceWith(fresh);
+    this.#guard(fresh);
+    await this.handle.restart(fresh);
+    canvas().focus();
   }
 }
 

@@ -12,6 +12,8 @@ const ENGLISH = {
   lostText: "It may have been reset or taken by another program. Reloading brings back this state.",
   panic: "Segue has stopped",
   panicText: "This is a mistake in Segue, not in your files. Reloading brings back this state; the report helps to mend it.",
+  memory: "There is not enough memory",
+  memoryText: "Segue holds {} MB, and this browser gives it no more. Reloading brings back what is stored; remove clips that you do not need.",
   again: "Try again",
   reload: "Reload with this state",
   report: "Copy a report",
@@ -28,6 +30,8 @@ const CHINESE = {
   lostText: "裝置可能被重設，或被其他程式占用。重新載入即可回到現在的狀態。",
   panic: "Segue 已停止運作",
   panicText: "這是 Segue 的錯誤，不是你的檔案有問題。重新載入即可回到現在的狀態；附上報告有助於修正。",
+  memory: "記憶體不足",
+  memoryText: "Segue 已使用 {} MB，瀏覽器無法再提供更多。重新載入即可回到已儲存的內容；請移除不需要的片段。",
   again: "再試一次",
   reload: "重新載入並保留狀態",
   report: "複製報告",
@@ -55,6 +59,12 @@ export function showLost(reason, facts) {
 
 export function showPanic(summary, facts) {
   show({ title: words().panic, text: words().panicText, detail: summary, buttons: [[words().reload, reload], copyReport(summary, facts)] });
+}
+
+/** An allocation failed. `bytes` is how much memory there is. */
+export function showNoMemory(bytes, summary, facts) {
+  const text = words().memoryText.replace("{}", Math.round(bytes / 1e6));
+  show({ title: words().memory, text, buttons: [[words().reload, reload], copyReport(summary, facts)] });
 }
 
 const copyReport = (text, facts) => [words().report, (button) => copy(report(text, facts), button)];

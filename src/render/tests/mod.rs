@@ -103,7 +103,7 @@ fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
         ..Default::default()
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
-    let renderer = StageRenderer::new(&device, &adapter, output);
+    let renderer = StageRenderer::new(&device, &queue, &adapter, output);
     Some(Gpu { device, queue, renderer })
 }
 

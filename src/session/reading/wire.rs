@@ -10,6 +10,7 @@ use crate::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
 use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{DVec2, Quat, Vec3};
 use serde::{Deserialize, Serialize};
+use std::hint::black_box;
 use std::sync::Arc;
 
 /// The length of a piece, bytes: a whole number of every kind of value below, and copied in well under a millisecond.
@@ -28,6 +29,12 @@ pub enum WireError {
         expected: usize,
         /// What came.
         found: usize,
+    },
+    /// There is no memory for it.
+    #[error("there is no memory for its {} MB: remove clips that you do not need", .bytes.div_ceil(1 << 20))]
+    NoRoom {
+        /// How many bytes it has.
+        bytes: usize,
     },
     /// The arrays make no clip.
     #[error(transparent)]
@@ -451,10 +458,18 @@ impl Unpacker {
     /// Begins with the head.
     ///
     /// # Errors
-    /// [`WireError::Head`] when it is none.
+    /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for what it tells of.
     pub fn new(head: &str) -> Result<Self, WireError> {
+        let head: Head = serde_json::from_str(head)?;
+        let bytes = (head.files.iter().map(FileHead::bytes)).fold(0, usize::saturating_add);
+        // Arrays double while they grow. Where that has no room, an allocation in the middle of it would end the program.
+        let mut room = Vec::<u8>::new();
+        room.try_reserve_exact(bytes.saturating_mul(2))
+            .map_err(|_| WireError::NoRoom { bytes })?;
+        // Without this the compiler leaves out what nobody uses.
+        drop(black_box(room));
         Ok(Self {
-            head: serde_json::from_str(head)?,
+            head,
             files: Vec::new(),
             found: 0,
         })
@@ -568,6 +583,21 @@ mod tests {
         let mut unpacker = Unpacker::new(parcel.head()).unwrap();
         parcel.pieces(|piece| unpacker.push(piece));
         unpacker.finish().unwrap()
+    }
+
+    #[test]
+    fn a_report_that_no_memory_holds_is_refused_at_its_head() {
+        let mut report = report(1.0);
+        report.files[0].unpacked = Some(vec![7; 7]);
+        let parcel = Parcel::new(report).unwrap();
+        let head = parcel.head().replace("\"unpacked\":7", "\"unpacked\":1125899906842624");
+        assert_ne!(head, parcel.head());
+        let Err(error) = Unpacker::new(&head) else {
+            panic!("there is no petabyte");
+        };
+        assert!(matches!(error, WireError::NoRoom { .. }), "{error}");
+        assert!(error.to_string().contains("remove clips"), "{error}");
+        assert!(Unpacker::new(parcel.head()).is_ok());
     }
 
     #[test]

@@ -1,0 +1,106 @@
+// Graphics devices that die, one after the other, while the page plays, is dragged and loads: it lives on, and nothing is lost.
+
+import assert from "node:assert/strict";
+import { onBackend } from "./harness.mjs";
+import { random, striding, until } from "./help.mjs";
+
+const SMALL = { viewport: [960, 640] };
+const LOSSES = 20;
+const BURSTS = 5;
+
+/** In the page: `lose()` takes the graphics away that draw at present. */
+const prepare = (page) => page.addInitScript(() => {
+  if (window.GPUAdapter) {
+    const request = GPUAdapter.prototype.requestDevice;
+    GPUAdapter.prototype.requestDevice = async function (...args) {
+      return (window.device = await request.apply(this, args));
+    };
+  }
+  window.lose = (backend) => {
+    if (backend === "webgpu") return window.device.destroy();
+    // As a real loss would, it may come before the app has drawn anything on a fresh canvas.
+    document.getElementById("segue").getContext("webgl2", { antialias: false })?.getExtension("WEBGL_lose_context")?.loseContext();
+  };
+});
+
+/** Plays, drags the blend window and loads files for as long as `body` takes. Answers with the ids of the files. */
+async function whileBusy({ page, segue, load }, body) {
+  const ids = [];
+  let done = false;
+  const load_all = async () => {
+    for (let index = 0; !done; index++) {
+      const { clips } = await load(`${index}.bvh`, striding({ frames: 12, swing: 10 + (index % 60) }));
+      ids.push(clips[0].id);
+      await page.waitForTimeout(200);
+    }
+  };
+  const drag_all = async () => {
+    for (let step = 0; !done; step++) {
+      await page.mouse.move(820 + (step % 20), 300);
+      await (step % 2 ? page.mouse.up() : page.mouse.down());
+      await segue("set", { blend_window: 10 + (step % 40) });
+    }
+    await page.mouse.up();
+  };
+  await segue("set", { play: true });
+  await Promise.all([body().finally(() => { done = true; }), load_all(), drag_all()]);
+  return [...new Set(ids)];
+}
+
+async function isAlive({ page, segue }, ids) {
+  const { frames } = await segue("stats");
+  await until("it draws", async () => (await segue("stats")).frames > frames + 3);
+  assert.equal(await page.locator(".veil").count(), 0, "nothing has stopped");
+  const there = (await segue("clips")).map(({ id }) => id);
+  assert.ok(ids.length > 0 && ids.every((id) => there.includes(id)), `${ids.length} files`);
+}
+
+onBackend("webgl2", `${LOSSES} lost WebGL contexts at any moment`, async ({ open }) => {
+  const opened = await open("lab=blend", { ...SMALL, prepare });
+  const next = random(22);
+  const ids = await whileBusy(opened, async () => {
+    for (let loss = 0; loss < LOSSES; loss++) {
+      await opened.page.waitForTimeout(50 + 1500 * next());
+      await opened.page.evaluate(() => window.lose("webgl2"));
+    }
+  });
+  await isAlive(opened, ids);
+});
+
+// Fails when a context that is lost before it draws is handed to wgpu, and when a loss during a restart is not seen to.
+onBackend("webgl2", `${BURSTS} bursts of lost WebGL contexts`, async ({ open }) => {
+  const opened = await open("lab=blend", { ...SMALL, prepare });
+  const next = random(23);
+  const ids = await whileBusy(opened, async () => {
+    for (let burst = 0; burst < BURSTS; burst++) {
+      await opened.page.waitForTimeout(2000 * next());
+      await opened.page.evaluate(async () => {
+        const times = [0, 5, 50, 150, 400];
+        await Promise.all(times.map((time) => new Promise((resolve) => setTimeout(() => resolve(window.lose("webgl2")), time))));
+      });
+    }
+  });
+  await isAlive(opened, ids);
+});
+
+onBackend("both", "WebGL 2 draws once two WebGPU devices have died within 10 s", async ({ open }) => {
+  const opened = await open("lab=blend&play=off", { ...SMALL, prepare });
+  const { page, segue } = opened;
+  await page.evaluate(() => {
+    window.errors = [];
+    window.segue.on("error", ({ message }) => window.errors.push(message));
+  });
+  let [losses, drawn] = [0, 0];
+  await until("WebGL 2 draws", async () => {
+    const { backend, frames } = await segue("stats");
+    if (backend === "webgl2") return true;
+    if (losses < 2 && frames > drawn) {
+      losses += 1;
+      drawn = frames + 1; // one that was under way may still be counted
+      await page.evaluate(() => window.lose("webgpu"));
+    }
+    return false;
+  });
+  assert.equal(await page.locator(".veil").count(), 0);
+  await until("it is said", () => page.evaluate(() => window.errors.some((message) => message.includes("WebGL 2"))));
+});
