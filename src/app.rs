@@ -14,7 +14,6 @@ mod speech;
 pub(crate) use address_bar::link_query;
 
 #[cfg(target_arch = "wasm32")]
-use crate::platform::Storing;
 use crate::platform::{self, Inbox, Incoming, Pace, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, Filming, UiState};
@@ -24,7 +23,7 @@ use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
-use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
+use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Storing, Value, link};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

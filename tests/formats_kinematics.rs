@@ -20,7 +20,9 @@ fn check(up: UpAxis, metres_per_unit: f64, world_from_file: impl Fn(Vec3) -> Vec
     };
     let imported = import("input.bvh", INPUT.as_bytes(), &options).unwrap();
     let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
-    assert_eq!(warnings, ["3 scale channels (first: line 13) ignored"]);
+    // The numbers of this file are by chance, and far apart.
+    let wild = "1 jump of the root from one frame to the next, up to 5.1 m";
+    assert_eq!(warnings, ["3 scale channels (first: line 13) ignored", wild]);
     let clip = &imported.clips[0].clip;
     assert_eq!(
         (clip.frames(), clip.fps(), clip.provenance().metres_per_unit),

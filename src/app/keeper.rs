@@ -1,7 +1,7 @@
 //! Keeps the work: brings it back at the start, stores a file as soon as it is read, and everything else soon after it has changed.
 
-use crate::platform::{Arrival, Storage, Stored, StoredFiles, Storing, Vault, Work};
-use segue::session::{Origin, Saved, SavedEntry, Session};
+use crate::platform::{Arrival, Storage, Stored, StoredFiles, Vault, Work};
+use segue::session::{Origin, Saved, SavedEntry, Session, Storing};
 use std::collections::BTreeSet;
 
 /// The page does not wait longer than this for what is stored, milliseconds.

@@ -114,18 +114,6 @@ impl Work {
     }
 }
 
-/// How far storing is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Storing {
-    /// Everything is stored.
-    #[default]
-    Done,
-    /// Something is being written.
-    UnderWay,
-    /// Some files could not be stored.
-    Incomplete,
-}
-
 /// A few names, and how many there are besides: `a.bvh, b.bvh, c.bvh and 12 more`.
 #[cfg(any(test, target_arch = "wasm32"))]
 fn in_short(names: &[String]) -> String {

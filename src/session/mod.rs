@@ -97,4 +97,4 @@ pub use recipe::{HandTag, own_words, write_tags};
 pub use recipe::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
-pub use saved::{Saved, SavedEntry};
+pub use saved::{Saved, SavedEntry, Storing};

@@ -7,6 +7,18 @@ use crate::skeleton::Roles;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
+/// How far storing is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Storing {
+    /// Everything is stored.
+    #[default]
+    Done,
+    /// Something is being written.
+    UnderWay,
+    /// Some files could not be stored.
+    Incomplete,
+}
+
 /// The work, without the bytes of its files.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Saved {

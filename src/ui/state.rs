@@ -3,13 +3,12 @@
 use super::drive::DriveHand;
 use super::language::Language;
 use super::path_hand::PathHand;
-use crate::platform::Storing;
 use eframe::egui::Rect;
 use glam::DVec2;
 use segue::graph::Place;
 use segue::scene::{Camera, PathMarks};
 use segue::session::export::ExportOptions;
-use segue::session::{Key, Session};
+use segue::session::{Key, Session, Storing};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

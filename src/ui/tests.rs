@@ -1,7 +1,6 @@
 //! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
 
 use super::*;
-use crate::platform::Storing;
 use crate::ui::theme::Theme;
 use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Vec2, vec2};
 use egui_kittest::{
@@ -12,7 +11,7 @@ use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
-use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, Slot, SourceFile, Value};
+use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, Slot, SourceFile, Storing, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 

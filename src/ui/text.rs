@@ -1,12 +1,11 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
-use crate::platform::Storing;
 use segue::gait::GaitFacts;
 use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
 use segue::session::{
-    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Trace, Transition, format_number,
+    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Storing, Trace, Transition, format_number,
 };
 
 pub(crate) const APP: &str = "Segue";

@@ -5,10 +5,10 @@
 
 use super::reader::LargeFile;
 use crate::platform::records::{LATEST, Left, Records, Row, is_left, is_unread, left_key, row_id, row_key, unread_key};
-use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Storing, Work, in_short};
+use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work, in_short};
 use idb::{Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode, TransactionResult};
 use js_sys::{Date, Math, Uint8Array};
-use segue::session::SavedEntry;
+use segue::session::{SavedEntry, Storing};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
