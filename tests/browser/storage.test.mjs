@@ -74,17 +74,17 @@ for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
   });
 }
 
-/** In the page's origin: reads or writes the browser's records and files. */
-const inStorage = (page, body, argument) => page.evaluate(async ([body, argument]) => {
+/** In the page's origin: reads or writes the browser's records and files. Sent as text: the page's policy lets no script make a function. */
+const inStorage = (page, body, argument = null) => page.evaluate(`(async () => {
   const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
   const asked = (request) => new Promise((resolve, reject) => Object.assign(request, { onsuccess: () => resolve(request.result), onerror: () => reject(request.error) }));
   const stores = (...names) => names.map((name) => database.transaction(names, "readwrite").objectStore(name));
   try {
-    return await new Function("stores", "asked", "argument", `return (${body})(stores, asked, argument)`)(stores, asked, argument);
+    return await (${body})(stores, asked, ${JSON.stringify(argument)});
   } finally {
     database.close();
   }
-}, [String(body), argument]);
+})()`);
 
 const keysOf = (page, store) => inStorage(page, async (stores, asked, store) => asked(stores(store)[0].getAllKeys()), store);
 

@@ -12,6 +12,8 @@ use std::time::Instant;
 
 /// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked than what a good transition does.
 const CLOSE_CM: f32 = 12.0;
+/// Skating is more than another one's by more than this share: so near do two meters that measure it agree.
+const SAME_SKATING: f64 = 1.05;
 /// Trials that take longer are given up, seconds.
 const MOST_SECS: f64 = 120.0;
 /// An edited path bulges out by this share of its length, and by no more than so many metres.
@@ -161,7 +163,7 @@ impl Trial {
                     let worse = numbers
                         .skating
                         .zip(numbers.source_skating)
-                        .is_some_and(|(own, source)| own > source);
+                        .is_some_and(|(own, source)| own > SAME_SKATING * source);
                     note(self.locked && worse, "skating");
                 }
             }
@@ -320,7 +322,11 @@ impl<'a> Bench<'a> {
                 let is_hard = |outcome: &Arc<Outcome>| outcome.path.as_ref().is_some_and(|path| !path.hard_turns.is_empty());
                 // What is laid on top of a motion adds its own speed to it, by design.
                 let adds = way.lab == "layers" && way.method == "additive";
-                let asks_much = way.jumps || adds || opened.made.as_ref().is_ok_and(is_hard);
+                let is_far = opened
+                    .made
+                    .as_ref()
+                    .is_ok_and(|outcome| own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(CLOSE_CM)));
+                let asks_much = way.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);
                 let bound = !asks_much && (is_close || way.lab == "match") && way.lab != "graph";
                 let numbers = |outcome: &Outcome| {
                     let values: Vec<f64> = outcome.metrics.iter().filter_map(|metric| metric.value).collect();
@@ -466,6 +472,15 @@ fn measured(motion: &Motion, values: &[f64], sources: &[&MotionTrace], feet: &[&
         source_skating: feet.iter().filter_map(|source| source.skating_cm_per_sec()).reduce(f64::max),
         stance_cm: median(trace.stances_cm()),
         source_stance_cm: median(&stances),
+    }
+}
+
+/// How far apart that is which a result brings together: the windows of its transition, the frames that were registered, or the ends of its cycle.
+fn own_distance_cm(outcome: &Outcome) -> Option<f64> {
+    match (outcome.transition.as_ref(), outcome.cycle.as_ref().map(|cycle| &cycle.made)) {
+        (_, Some(CycleMade::Cut { distance_cm, .. })) => Some(*distance_cm),
+        (Some(transition), _) => Some(f64::from(transition.distance_cm)),
+        _ => None,
     }
 }
 

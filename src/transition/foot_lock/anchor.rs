@@ -76,16 +76,18 @@ impl Foot {
         shifts
     }
 
-    /// Lifts the foot, where it swings from one stance to the next, over the height that each of its points has in these.
+    /// Lifts the foot, where it swings from one stance to the next, over the height that each of its points has in these; before the first stance and
+    /// behind the last one over the height that it has there.
     fn clear(&self, stances: &[Range<usize>], fps: f64, scale: f32, clearance_m: f32, shifts: &mut [Vec3]) {
         let longest = (LONGEST_SWING_SECS * fps) as usize;
         let reach = ((LIFT_SECS * fps).round() as usize).max(1);
-        for pair in stances.windows(2) {
-            let swing = pair[0].end..pair[1].start;
-            if swing.len() > longest {
+        for next in 0..=stances.len() {
+            let (before, behind) = (next.checked_sub(1).and_then(|before| stances.get(before)), stances.get(next));
+            let swing = before.map_or(0, |before| before.end)..behind.map_or(shifts.len(), |behind| behind.start);
+            let Some(levels) = before.or(behind).zip(behind.or(before)).filter(|_| swing.len() <= longest) else {
                 continue;
-            }
-            let levels = [&pair[0], &pair[1]].map(|stance| self.levels(stance, shifts));
+            };
+            let levels = [levels.0, levels.1].map(|stance| self.levels(stance, shifts));
             let missing = |frame: usize| {
                 let speed = self.step_into(frame).length() * fps as f32 / scale;
                 let swings = curve::smoothstep((speed - STEPS_MPS) / (SWINGS_MPS - STEPS_MPS));
@@ -103,7 +105,9 @@ impl Foot {
             let lifts = smoothed(&largest_around(&lifts, reach), reach);
             for (index, lift) in lifts.into_iter().enumerate() {
                 // It leaves the ground smoothly, and comes down on time.
-                let near = (index + 1).min(swing.len() - index).min(2 * reach) as f32 / (2 * reach) as f32;
+                let up = before.map_or(usize::MAX, |_| index + 1);
+                let down = behind.map_or(usize::MAX, |_| swing.len() - index);
+                let near = up.min(down).min(2 * reach) as f32 / (2 * reach) as f32;
                 shifts[swing.start + index].y += lift * curve::smoothstep(near);
             }
         }
