@@ -283,7 +283,7 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
 /// The numbers under a pane, by id, with the short names that fit there: first those of every lab. A narrow pane has room for these and
 /// two more.
 pub(crate) const METRICS: &[(&str, &str)] = &[
-    ("pose_jump_deg", "jump"),
+    ("pose_jump_deg", "pose jump"),
     ("velocity_jump_dps", "jump °/s"),
     ("spin_deg", "spin"),
     ("skating_cmps", "skating cm/s"),
