@@ -1,6 +1,6 @@
 use super::Clip;
 use crate::math::quat;
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, rest_is_plausible, uprightness};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance, rest_is_plausible, uprightness};
 use glam::{Quat, Vec3};
 
 /// Frames of a clip that are looked at, at most.
@@ -31,6 +31,14 @@ pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
             widest.map_or(rest, |(sample, _)| clip.world_pose(sample * step))
         }
     }
+}
+
+/// Returns the stance that stands in for the rest pose of a clip's skeleton: its [`canonical_stance`] where the rest pose shows no creature. `None` where it
+/// shows one, and where the roles do not tell.
+#[must_use]
+pub fn stance_for_rest(clip: &Clip, roles: &Roles) -> Option<WorldPose> {
+    let is_strange = rest_is_plausible(clip.skeleton(), roles) == Some(false);
+    is_strange.then(|| canonical_stance(clip.skeleton(), roles, &reference_pose(clip, roles)))
 }
 
 /// How far the joints below the root are turned from rest, radians: the mean over joints and every so many frames.

@@ -1,6 +1,6 @@
 use super::ground::rise_between;
-use super::{Clip, ClipError};
-use crate::skeleton::{Pose, Retargeting, Roles, Skeleton};
+use super::{Clip, ClipError, stance_for_rest};
+use crate::skeleton::{Pose, Retargeting, Roles, Skeleton, WorldPose};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -23,11 +23,33 @@ pub enum RetargetError {
 /// # Errors
 /// [`RetargetError::NothingInCommon`] when no joint of `target` corresponds to one of the clip's.
 pub fn retarget(clip: &Clip, source_roles: &Roles, target: &Arc<Skeleton>, target_roles: &Roles) -> Result<Clip, RetargetError> {
+    retarget_to(clip, source_roles, target, target_roles, || None)
+}
+
+/// As [`retarget`], onto the skeleton of another clip: where that rests in a way that shows no creature, the clip shows how it stands ([`stance_for_rest`]).
+///
+/// # Errors
+/// As [`retarget`].
+pub fn retarget_onto(clip: &Clip, source_roles: &Roles, model: &Clip, model_roles: &Roles) -> Result<Clip, RetargetError> {
+    retarget_to(clip, source_roles, model.skeleton(), model_roles, || {
+        stance_for_rest(model, model_roles)
+    })
+}
+
+fn retarget_to(
+    clip: &Clip,
+    source_roles: &Roles,
+    target: &Arc<Skeleton>,
+    target_roles: &Roles,
+    target_stance: impl FnOnce() -> Option<WorldPose>,
+) -> Result<Clip, RetargetError> {
     let source = clip.skeleton();
     if Arc::ptr_eq(source, target) || source == target {
         return Ok(clip.clone());
     }
-    let way = Retargeting::new(source, source_roles, target, target_roles).ok_or(RetargetError::NothingInCommon)?;
+    let (stance, target_stance) = (stance_for_rest(clip, source_roles), target_stance());
+    let way = Retargeting::standing(source, source_roles, stance.as_ref(), target, target_roles, target_stance.as_ref())
+        .ok_or(RetargetError::NothingInCommon)?;
     let mut poses: Vec<Pose> = (0..clip.frames()).map(|frame| way.pose(&clip.pose(frame))).collect();
     let make = |poses: Vec<Pose>| Clip::from_poses(clip.name(), Arc::clone(target), clip.fps(), poses);
     if !way.is_same_rig() {

@@ -7,7 +7,7 @@ use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
-use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget};
+use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget_onto};
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
 use crate::skeleton::{Roles, Side, Skeleton};
@@ -316,8 +316,10 @@ impl DatabaseBuilder {
     /// A clip on the first clip's skeleton and at the database's rate.
     fn prepared(&self, from: &MatchClip) -> Result<Round, MatchError> {
         let mut clip = Arc::clone(&from.clip);
-        if clip.skeleton() != &self.skeleton {
-            let moved = retarget(&clip, &from.roles, &self.skeleton, &self.roles).map_err(|error| MatchError::Retarget {
+        if clip.skeleton() != &self.skeleton
+            && let Some(model) = self.clips.first()
+        {
+            let moved = retarget_onto(&clip, &from.roles, &model.clip, &model.roles).map_err(|error| MatchError::Retarget {
                 name: clip.name().to_owned(),
                 error,
             })?;

@@ -13,7 +13,8 @@ const SAME_OFFSET_M: f32 = 1e-5;
 /// A driven joint gets the world rotation of the joint that drives it, times the rotation that takes the target's bone at rest to the
 /// source's bone at rest: `world_target = world_source · C`. Where rest directions agree within 2°, C is that of the body as a whole, most
 /// often the identity, and what local rotations the files have survives. Joints of the back that nothing drives share the bend between the
-/// driven ones around them; other joints that nothing drives keep their rest rotation. The hips' way through the world is scaled by the
+/// driven ones around them; other joints that nothing drives keep their rest rotation. A skeleton whose rest pose shows no creature is taken as one that
+/// rests in a stance ([`Retargeting::standing`]): bones that correspond by chance would twist the body. The hips' way through the world is scaled by the
 /// ratio of the legs' lengths, so that steps keep their proportion and feet do not slide.
 #[derive(Clone, Debug)]
 pub struct Retargeting {
@@ -28,17 +29,40 @@ pub struct Retargeting {
     hips: (usize, usize),
     scale: f32,
     same_rig: bool,
+    /// The world rotations of the joints in the stances that stand in for rest poses; none where the rest pose itself counts.
+    source_stance: Option<Vec<Quat>>,
+    target_stance: Option<Vec<Quat>>,
 }
 
 impl Retargeting {
     /// Prepares the way from `source` to `target`; `None` when no joint of the source drives any joint of the target.
     #[must_use]
     pub fn new(source: &Arc<Skeleton>, source_roles: &Roles, target: &Arc<Skeleton>, target_roles: &Roles) -> Option<Self> {
+        Self::standing(source, source_roles, None, target, target_roles, None)
+    }
+
+    /// As [`new`](Self::new), with stances ([`canonical_stance`](super::canonical_stance)) in place of rest poses that show no creature: of the source, and of
+    /// the target.
+    #[must_use]
+    pub fn standing(
+        source: &Arc<Skeleton>,
+        source_roles: &Roles,
+        source_stance: Option<&WorldPose>,
+        target: &Arc<Skeleton>,
+        target_roles: &Roles,
+        target_stance: Option<&WorldPose>,
+    ) -> Option<Self> {
         let map = JointMap::between(target, target_roles, source, source_roles);
         if map.count() == 0 {
             return None;
         }
         let same_rig = is_same_rig(source, target, &map);
+        let stands = |stance: Option<&WorldPose>| stance.filter(|_| !same_rig).map(|stance| stance.rotations.clone());
+        let resting = |skeleton: &Arc<Skeleton>, stance: Option<&WorldPose>| match stance.filter(|_| !same_rig) {
+            Some(stance) => Arc::new(skeleton.resting_in(stance)),
+            None => Arc::clone(skeleton),
+        };
+        let (source, target) = (&resting(source, source_stance), &resting(target, target_stance));
         let (source_body, target_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
         let corrections = if same_rig {
             vec![Quat::IDENTITY; target.len()]
@@ -61,6 +85,8 @@ impl Retargeting {
             corrections,
             scale,
             same_rig,
+            source_stance: stands(source_stance),
+            target_stance: stands(target_stance),
         })
     }
 
@@ -88,7 +114,7 @@ impl Retargeting {
         self.same_rig
     }
 
-    /// The rotation that takes the target's bone at rest to that of the source which drives it; the identity for joints that nothing drives.
+    /// The rotation that takes the target's bone at rest, or in its stance, to that of the source which drives it; the identity for joints that nothing drives.
     #[must_use]
     pub fn correction(&self, target_joint: usize) -> Quat {
         self.corrections.get(target_joint).copied().unwrap_or(Quat::IDENTITY)
@@ -100,6 +126,8 @@ impl Retargeting {
         if self.same_rig {
             return self.copied(pose);
         }
+        let against_stance = self.source_stance.as_ref().map(|stance| turned_in(&self.source, stance, pose));
+        let pose = against_stance.as_ref().unwrap_or(pose);
         let world = world_pose(&self.source, pose);
         let mut worlds: Vec<Quat> = Vec::with_capacity(self.target.len());
         let mut rotations: Vec<Quat> = Vec::with_capacity(self.target.len());
@@ -119,9 +147,13 @@ impl Retargeting {
             translations: Vec::new(),
         };
         let hips = world_pose(&self.target, &standing).positions[self.hips.1];
-        Pose {
+        let made = Pose {
             root_translation: world.positions[self.hips.0] * self.scale - hips,
             ..standing
+        };
+        match &self.target_stance {
+            Some(stance) => turned_back(&self.target, stance, made),
+            None => made,
         }
     }
 
@@ -169,6 +201,28 @@ impl Retargeting {
             rotations: joints.clone().map(rotation).collect(),
             translations: joints.skip(1).filter_map(translation).collect(),
         }
+    }
+}
+
+/// A pose as one of the skeleton that rests in a stance ([`Skeleton::resting_in`]): every joint at the same place in the world.
+fn turned_in(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
+    let of = |joint: Option<usize>| joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY);
+    let local = |(joint, rotation): (usize, &Quat)| quat::renormalize(of(skeleton.parent(joint)) * *rotation * of(Some(joint)).conjugate());
+    let moved = |&(joint, value): &(usize, Vec3)| (joint, of(skeleton.parent(joint)) * value);
+    Pose {
+        root_translation: pose.root_translation,
+        rotations: pose.rotations.iter().enumerate().map(local).collect(),
+        translations: pose.translations.iter().map(moved).collect(),
+    }
+}
+
+/// The way back from [`turned_in`], for a pose without translations.
+fn turned_back(skeleton: &Skeleton, stance: &[Quat], pose: Pose) -> Pose {
+    let of = |joint: Option<usize>| joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY);
+    let local = |(joint, rotation): (usize, &Quat)| quat::renormalize(of(skeleton.parent(joint)).conjugate() * *rotation * of(Some(joint)));
+    Pose {
+        rotations: pose.rotations.iter().enumerate().map(local).collect(),
+        ..pose
     }
 }
 

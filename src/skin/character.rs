@@ -1,7 +1,7 @@
 //! A character of a file, moved by clips of other skeletons.
 
 use super::{RigidTransform, SkinnedMesh};
-use crate::clip::{Clip, ClipError};
+use crate::clip::{Clip, ClipError, stance_for_rest};
 use crate::math::stats;
 use crate::skeleton::{JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
 use glam::Vec3;
@@ -127,7 +127,15 @@ impl Drive {
         let way = if Arc::ptr_eq(source, target) || source == target {
             None
         } else {
-            Some(Retargeting::new(source, roles, target, &character.roles)?)
+            let stance = stance_for_rest(clip, roles);
+            Some(Retargeting::standing(
+                source,
+                roles,
+                stance.as_ref(),
+                target,
+                &character.roles,
+                None,
+            )?)
         };
         let mut drive = Self {
             source: Arc::clone(source),

@@ -3,6 +3,7 @@ use crate::clip::JointTranslations;
 use crate::clip::fixtures::{largest_distance, wander, wander_by};
 use crate::math::{quat, stats};
 use crate::skeleton::{Joint, Role, Side, WorldPose, fixtures};
+use crate::synth::{Action, Params, synthesize};
 use glam::Quat;
 use proptest::prelude::*;
 
@@ -375,5 +376,35 @@ fn strange_trees_come_through() {
         sided.set(Role::RightThigh, Some(2));
         let twice = crate::clip::mirror(&clip, &sided).and_then(|once| crate::clip::mirror(&once, &sided));
         assert!(twice.is_err() || twice.is_ok_and(|twice| twice.world_positions(0..2).iter().all(|p| p.is_finite())));
+    }
+}
+
+/// A rest pose that shows no creature tells nothing of how bones are twisted: a collar bone came out turned half round.
+#[test]
+fn joints_turned_by_constants_come_over_as_the_plain_ones_do() {
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let roles = Roles::detect(clip.skeleton());
+    let target = fixtures::mixamo();
+    let target_roles = fixtures::roles(&target);
+    let plain = retarget(&clip, &roles, &target, &target_roles).unwrap();
+    for seed in 0..3 {
+        let (turned, turns) = fixtures::turned(clip.skeleton(), seed);
+        let poses = (0..clip.frames()).map(|frame| fixtures::turned_pose(clip.skeleton(), &turns, &clip.pose(frame)));
+        let rewritten = Clip::from_poses("turned", turned, clip.fps(), poses).unwrap();
+        let moved = retarget(&rewritten, &roles, &target, &target_roles).unwrap();
+        let back = retarget_onto(&plain, &target_roles, &rewritten, &roles).unwrap();
+        for frame in (0..clip.frames()).step_by(20) {
+            let [plain, moved, back, clip] = [&plain, &moved, &back, &rewritten].map(|clip| clip.world_pose(frame));
+            for role in Role::ALL {
+                if let Some(joint) = target_roles.get(role) {
+                    let apart = quat::angle_between(plain.rotations[joint], moved.rotations[joint]).to_degrees();
+                    assert!(apart < 25.0, "{seed} {frame} {role:?}: {apart}°");
+                }
+                if let Some(joint) = roles.get(role) {
+                    let apart = quat::angle_between(clip.rotations[joint], back.rotations[joint]).to_degrees();
+                    assert!(apart < 25.0, "{seed} {frame} {role:?} and back: {apart}°");
+                }
+            }
+        }
     }
 }

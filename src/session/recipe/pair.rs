@@ -1,6 +1,6 @@
 use super::Retargeted;
 use crate::blend;
-use crate::clip::{Clip, Interpolation, resample, retarget};
+use crate::clip::{Clip, Interpolation, resample, retarget_onto};
 use crate::metrics::Profile;
 use crate::session::motion::Motion;
 use crate::skeleton::Retargeting;
@@ -52,7 +52,7 @@ pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, O
     }
     let mut clip = (*b.clip).clone();
     if !same_skeleton {
-        clip = retarget(&clip, &b.roles, a.clip.skeleton(), &a.roles).map_err(|error| error.to_string())?;
+        clip = retarget_onto(&clip, &b.roles, &a.clip, &a.roles).map_err(|error| error.to_string())?;
     }
     if !same_rate {
         clip = resample(&clip, a.clip.fps(), Interpolation::Cubic).map_err(|error| error.to_string())?;
