@@ -376,6 +376,9 @@ parameters! {
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
+    LockBlend "lock_blend" "Lock blend" Blend number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly.";
+    LockReach "lock_reach" "Lock reach" Blend number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide.";
+    LockClearance "lock_clearance" "Swing clearance" Blend number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are.";
     Ground "ground" "Ground" Blend auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere.";
     ContactHeight "contact_height" "Contact height" Blend number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
     ContactSpeed "contact_speed" "Contact speed" Blend number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";

@@ -145,6 +145,11 @@ pub(super) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         ui.label(words.color(palette_of(ui).warning));
     }
     kit::folded_ui(text::FEET, ui, |ui| {
+        if session.params().is_on(Key::FootLock) {
+            for key in [Key::LockBlend, Key::LockReach, Key::LockClearance] {
+                param_row_ui(key, &Detail::default(), session, out, ui);
+            }
+        }
         for key in [Key::Ground, Key::ContactHeight, Key::ContactSpeed] {
             param_row_ui(key, &Detail::default(), session, out, ui);
         }

@@ -491,6 +491,20 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
 }
 
 #[test]
+fn lock_settings_are_offered_while_feet_are_held() {
+    let rows = ["Lock blend", "Lock reach", "Swing clearance"];
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    press(text::FEET, &mut harness);
+    assert!(harness.query_by_label("Contact height").is_some());
+    assert!(rows.iter().all(|row| harness.query_by_label(row).is_none()));
+    press("Foot lock", &mut harness);
+    for row in rows {
+        let slider = harness.get_by_label(row);
+        assert!(slider.rect().height() > 0.0, "{row}");
+    }
+}
+
+#[test]
 fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
     for (name, size, theme, link) in [
         ("loop-desk-dark", DESK, DARK, "lab=loop&play=off&t=1"),

@@ -99,7 +99,7 @@ pub(crate) const GROUND: &str = "Ground";
 /// Of a body whose feet cannot be held.
 pub(crate) const NO_LEGS: &str =
     "Its feet are not held: this skeleton has no leg with thigh, shin and foot. Choose these joints under Body parts in the View lab.";
-pub(crate) const FEET: &str = "Ground and contacts";
+pub(crate) const FEET: &str = "Feet and ground";
 pub(crate) const MEAN_SPEED: &str = "Mean speed";
 pub(crate) const JOINTS: &str = "Joints";
 pub(crate) const JOINT_TREE: &str = "Joints of the clip";

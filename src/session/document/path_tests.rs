@@ -224,6 +224,21 @@ fn a_kept_path_is_a_clip_for_every_other_lab() {
     );
 }
 
+#[test]
+fn feet_of_a_short_clip_are_held_on_its_own_ground() {
+    let session = open("lab=path&a=run&foot_lock=on&ground=4");
+    let free = open("lab=path&a=run&ground=4");
+    let carried = &free.main_outcome().unwrap().motion;
+    let options = crate::transition::FootLockOptions {
+        ground_m: Some(0.04),
+        ..Default::default()
+    };
+    let locked = crate::transition::foot_lock(&carried.clip, &carried.roles, &carried.contacts, &options).unwrap();
+    let clip = &session.main_outcome().unwrap().motion.clip;
+    assert!((0..clip.frames()).all(|frame| clip.rotations(frame) == locked.rotations(frame)));
+    assert!(!path(&session).awaits_feet);
+}
+
 /// A walk longer than what is planted while a hand moves.
 const LONG: &str = "walk(make_seconds:12)";
 

@@ -1,8 +1,10 @@
 use super::*;
+use crate::clip::Clip;
 use crate::metrics::foot_slide_cm;
 use crate::session::reading::{Content, LARGE_BYTES, read};
 use crate::session::transport::Span;
 use crate::transition::{FootLockOptions, foot_lock};
+use glam::Quat;
 
 fn blend_window(session: &mut Session, frames: f64) {
     session
@@ -304,7 +306,12 @@ fn results_of_every_lab_are_kept_as_recipes() {
             "lab=loop&a=run&loop_method=linear&loop_from=0.5&loop_to=1.5",
             "loop(a:run,loop_from:0.5,loop_to:1.5,loop_method:linear)",
         ),
-        ("lab=layers&mask=arms&foot_lock=on", "layers(a:walk,b:run,foot_lock:on,mask:arms)"),
+        (
+            "lab=layers&mask=arms&foot_lock=on&lock_reach=12&lock_clearance=0",
+            "layers(a:walk,b:run,foot_lock:on,lock_reach:12,lock_clearance:0,mask:arms)",
+        ),
+        // Nothing is locked.
+        ("lab=layers&mask=arms&lock_reach=12", "layers(a:walk,b:run,mask:arms)"),
         ("lab=register&warp_weight=0.3", "register(a:walk,b:run,warp_weight:0.3)"),
         ("lab=speed&speed=2", "speed(a:walk,b:run,speed:2)"),
         (
@@ -539,19 +546,99 @@ fn foot_lock_stills_the_feet_and_tells_what_it_did() {
     assert_eq!(skate.unwrap().value, Some(before));
 }
 
+/// Every lab with a foot lock, where it has something to hold.
+const LOCKING_LABS: [&str; 9] = [
+    "lab=make&gait=stop",
+    "lab=view&a=stop",
+    "lab=blend",
+    "lab=transition",
+    "lab=speed",
+    "lab=loop",
+    "lab=layers&mask=whole",
+    "lab=register&b=walk_left",
+    "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20",
+];
+
+/// All local rotations of a clip, frame by frame.
+fn rotations_of(clip: &Clip) -> Vec<Quat> {
+    (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect()
+}
+
+/// Those of the first pane's result.
+fn rotations(session: &Session) -> Vec<Quat> {
+    rotations_of(&session.main_outcome().unwrap().motion.clip)
+}
+
+#[test]
+fn lock_settings_change_a_held_result_in_every_lab() {
+    // A path is short enough to be held at once, or is held in slices.
+    let paths = ["lab=path&a=run", "lab=path&a=walk(make_seconds:12)"];
+    for lab in LOCKING_LABS.into_iter().chain(paths) {
+        let mut session = opened(&format!("{lab}&foot_lock=on"));
+        let usual = rotations(&session);
+        let settings = [(Key::LockBlend, 0.6), (Key::LockReach, 1.0), (Key::LockClearance, 10.0)];
+        let settings = settings.map(|(key, value)| (key, Value::Number(value)));
+        session.apply(Command::Set(settings.to_vec())).unwrap();
+        settle(&mut session);
+        assert_ne!(rotations(&session), usual, "{lab}");
+        for (key, _) in settings {
+            session.apply(Command::Reset(key)).unwrap();
+        }
+        settle(&mut session);
+        assert_eq!(rotations(&session), usual, "{lab}");
+    }
+}
+
+#[test]
+fn each_lock_setting_changes_a_held_result_and_no_other() {
+    let [held, free] = ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
+    let (usual_held, usual_free) = (rotations(&opened(&held)), rotations(&opened(&free)));
+    for setting in ["lock_blend=0.6", "lock_reach=3", "lock_clearance=8"] {
+        assert_ne!(rotations(&opened(&format!("{held}&{setting}"))), usual_held, "{setting}");
+        assert_eq!(rotations(&opened(&format!("{free}&{setting}"))), usual_free, "{setting}");
+        // Nor is a clip kept, or shown as changed, for what has no effect.
+        let mut view = opened(&format!("lab=view&a=walk&{setting}"));
+        assert!(!view.view_is_changed() && view.apply(Command::Keep(0)).is_err(), "{setting}");
+        assert!(opened(&format!("lab=view&a=walk&foot_lock=on&{setting}")).view_is_changed());
+    }
+}
+
+#[test]
+fn clearance_of_zero_leaves_the_swing_as_it_is() {
+    let free = opened("lab=blend");
+    let motion = &free.main_outcome().unwrap().motion;
+    let held = |clearance_m| {
+        let options = FootLockOptions {
+            ground_m: Some(motion.ground_m),
+            clearance_m,
+            ..FootLockOptions::default()
+        };
+        rotations_of(&foot_lock(&motion.clip, &motion.roles, &motion.contacts, &options).unwrap())
+    };
+    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=0")), held(None));
+    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=8")), held(Some(0.08)));
+    assert_ne!(held(None), held(Some(0.08)));
+}
+
+#[test]
+fn lock_settings_come_back_from_a_link() {
+    let link = "lab=transition&foot_lock=on&lock_blend=0.5&lock_reach=12&lock_clearance=0";
+    let session = opened(link);
+    let query = session.query();
+    for setting in ["lock_blend=0.5", "lock_reach=12", "lock_clearance=0"] {
+        assert!(query.split('&').any(|pair| pair == setting), "{setting} in {query}");
+    }
+    let again = opened(&query);
+    assert_eq!(again.query(), query);
+    assert_eq!(rotations(&again), rotations(&session));
+    let panes = opened("lab=transition&foot_lock=on&compare=lock_reach:30,3");
+    let of_pane = |pane: usize| rotations_of(&panes.panes()[pane].outcome.as_ref().unwrap().motion.clip);
+    assert_ne!(of_pane(0), of_pane(1));
+}
+
 #[test]
 fn one_switch_holds_the_feet_in_every_lab() {
-    for lab in [
-        "lab=make&gait=stop",
-        "lab=view&a=stop",
-        "lab=blend",
-        "lab=transition",
-        "lab=speed",
-        "lab=loop",
-        "lab=layers&mask=whole",
-        "lab=register&b=walk_left",
-        "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20",
-    ] {
+    for lab in LOCKING_LABS {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
         settle(&mut session);

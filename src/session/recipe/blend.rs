@@ -1,4 +1,4 @@
-use super::feet::{slide, slide_before, with_feet};
+use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
 use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
 use crate::blend::{AlignBy, RootBlend, WeightLaw};
@@ -20,7 +20,7 @@ pub(in crate::session) struct BlendInputs {
     place: Place,
     options: TransitionOptions,
     mistake: Option<Mistake>,
-    foot_lock: bool,
+    foot_lock: Option<Lock>,
 }
 
 impl PartialEq for BlendInputs {
@@ -233,7 +233,7 @@ impl Blender {
             pair: Arc::clone(pair),
             place,
             mistake: in_transition.then(|| mistake_of(params)).flatten(),
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
             options: TransitionOptions {
                 method,
                 align: params.is_on(Key::Align),
@@ -368,7 +368,7 @@ impl BlendInputs {
             place,
             options,
             mistake,
-            foot_lock: is_locked,
+            foot_lock,
         } = self;
         let [a, b] = &pair.profiles;
         let (from, to) = (a.source(), b.source());
@@ -393,7 +393,7 @@ impl BlendInputs {
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
         let roles = pair.a.roles.clone();
         let free = Arc::new(made.clip.with_name(name));
-        let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *is_locked)?;
+        let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *foot_lock)?;
         let motion = Motion {
             clip,
             roles,
@@ -405,7 +405,7 @@ impl BlendInputs {
         };
         let slid = |clip: &Clip| foot_slide_cm(clip, &motion.roles, &motion.contacts);
         let mut metrics = vec![slide(slid(&motion.clip))];
-        if *is_locked {
+        if foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
         let at_seam = TransitionMetrics::measure(&Subject {

@@ -35,7 +35,17 @@ pub(in crate::session) fn belongs_to(key: Key, lab: &str) -> bool {
 
 /// Whether a parameter says how feet are read and held: every lab with clips has these.
 fn is_of_feet(key: Key) -> bool {
-    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed)
+    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed) || is_of_lock(key)
+}
+
+/// Whether a parameter says how planted feet are held.
+fn is_of_lock(key: Key) -> bool {
+    matches!(key, Key::LockBlend | Key::LockReach | Key::LockClearance)
+}
+
+/// Whether a parameter can change the result: how feet are held changes nothing while they are not.
+pub(super) fn counts(params: &Params, key: Key) -> bool {
+    params.is_on(Key::FootLock) || !is_of_lock(key)
 }
 
 /// Whether a parameter is part of what a lab's result is made from.
@@ -85,7 +95,10 @@ pub(in crate::session) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f6
             params.set(key, Value::Number(value)).ok()?;
         }
     }
-    let ingredients = PARAMS.iter().filter(|param| is_ingredient(param.key, lab)).filter(|param| {
+    let ingredients = PARAMS
+        .iter()
+        .filter(|param| is_ingredient(param.key, lab) && counts(&params, param.key));
+    let ingredients = ingredients.filter(|param| {
         let named = matches!(param.kind, Kind::Clip);
         named || *params.get(param.key) != param.default_value()
     });
@@ -123,7 +136,8 @@ pub(in crate::session) fn recipe_params(id: &str) -> Option<Params> {
 
 /// Whether the View lab changes nothing of its clip.
 pub(in crate::session) fn is_as_it_is(params: &Params) -> bool {
-    let changes = |param: &Param| belongs_to(param.key, "view") && *params.get(param.key) != param.default_value();
+    let matters = |key: Key| belongs_to(key, "view") && counts(params, key);
+    let changes = |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
     !PARAMS.iter().any(changes)
 }
 
@@ -264,6 +278,7 @@ mod tests {
             "blend(gait:run)",
             "loop(a:walk,b:run)",
             "view(a:walk)",
+            "view(a:walk,lock_blend:0.5)",
             "view(a:walk,b:run,foot_lock:on)",
             "make(gait:run)",
             "blend(a:walk,blend_window:0)",

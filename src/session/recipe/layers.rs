@@ -1,4 +1,4 @@
-use super::feet::{slide, slide_before, with_feet};
+use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::{Pair, source_of};
 use super::{Measured, Outcome, Slot, Source};
 use crate::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
@@ -42,7 +42,7 @@ pub(in crate::session) struct LayerInputs {
     pair: Arc<Pair>,
     timed: Arc<Timed>,
     options: LayerOptions,
-    foot_lock: bool,
+    foot_lock: Option<Lock>,
 }
 
 impl PartialEq for LayerInputs {
@@ -92,7 +92,7 @@ impl Layerer {
             pair: Arc::clone(pair),
             timed: self.timed(pair, params)?,
             options: options_of(params),
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
         })
     }
 
@@ -259,7 +259,7 @@ impl LayerInputs {
         let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
         let slid = |clip: &Clip| foot_slide_cm(clip, &roles, &contacts);
         let mut metrics = vec![slide(slid(&clip))];
-        if self.foot_lock {
+        if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
         let everywhere = TransitionMetrics::measure(&Subject {

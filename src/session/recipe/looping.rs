@@ -1,5 +1,6 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
+use super::feet::Lock;
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
@@ -16,7 +17,7 @@ use std::sync::Arc;
 pub(in crate::session) struct LoopInputs {
     found: Arc<Found>,
     options: LoopOptions,
-    foot_lock: bool,
+    foot_lock: Option<Lock>,
 }
 
 impl PartialEq for LoopInputs {
@@ -55,7 +56,7 @@ impl CycleFinder {
         Ok(LoopInputs {
             found: self.found(motion, given)?,
             options: options(params),
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
         })
     }
 

@@ -1,6 +1,6 @@
 use super::Outcome;
-use super::feet::{slide, slide_before, with_feet};
-use super::kept::belongs_to;
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::kept::{belongs_to, counts};
 use crate::metrics::foot_slide_cm;
 use crate::session::motion::{FeetReading, Motion};
 use crate::session::outside::short;
@@ -76,8 +76,9 @@ pub(in crate::session) fn make(params: &Params) -> Result<Outcome, String> {
     let mut motion = Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
     let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
     let mut metrics = vec![slide(slid(&motion))];
-    if params.is_on(Key::FootLock) {
-        motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, motion.ground_m, true)?;
+    let lock = Lock::of(params);
+    motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, motion.ground_m, lock)?;
+    if lock.is_some() {
         metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
     }
     Ok(Outcome {
@@ -100,7 +101,8 @@ pub(in crate::session) fn preset_motion(id: &str) -> Result<Motion, String> {
 pub(in crate::session) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait && has(params, param.key));
+        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait)
+        .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
             // As it is made, not as it was set for another motion.

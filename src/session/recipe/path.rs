@@ -1,10 +1,10 @@
 //! The Path lab: a motion on another path.
 
-use super::feet::{slide, slide_before};
+use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
 use crate::math::Planar;
-use crate::metrics::Metric;
+use crate::metrics::{Metric, foot_slide_cm};
 use crate::path::{
     CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Offset, Orientation, PathEditor,
     Road, SplineEnds, Timing, Waypoint,
@@ -12,7 +12,6 @@ use crate::path::{
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
-use crate::transition::FootLockOptions;
 use planter::{Planted, Planter};
 use std::sync::Arc;
 
@@ -99,6 +98,8 @@ pub(in crate::session) struct PathInputs {
     /// The word of the edited path; empty for the fitted one.
     code: String,
     carry: CarryOptions,
+    /// How planted feet are held, where they are.
+    lock: Option<Lock>,
     feet: Feet,
 }
 
@@ -115,9 +116,9 @@ enum Feet {
 const AT_ONCE: usize = 400;
 
 impl PathInputs {
-    /// Whether it is the same motion on the same path, whatever becomes of the feet.
+    /// Whether it is the same motion on the same path with its feet held alike, at once or later.
     fn makes_the_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && self.carry == other.carry
+        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && (self.carry, self.lock) == (other.carry, other.lock)
     }
 }
 
@@ -171,9 +172,10 @@ impl Paths {
             fitted: self.fitted(motion, options)?,
             code: params.text(Key::Path).to_owned(),
             carry: carry_options(params),
+            lock: Lock::of(params),
             feet: Feet::Free,
         };
-        if params.is_on(Key::FootLock) {
+        if inputs.lock.is_some() {
             inputs.feet = if motion.clip.frames() <= AT_ONCE {
                 Feet::AtOnce
             } else {
@@ -226,10 +228,6 @@ fn carry_options(params: &Params) -> CarryOptions {
 
 /// The path, and the motion on it as its feet come.
 fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String> {
-    motion_on(inputs, None)
-}
-
-fn motion_on(inputs: &PathInputs, foot_lock: Option<FootLockOptions>) -> Result<(Arc<Road>, EditedMotion), String> {
     let fitted = &inputs.fitted;
     let road = if inputs.code.is_empty() {
         Arc::clone(&fitted.road)
@@ -239,7 +237,7 @@ fn motion_on(inputs: &PathInputs, foot_lock: Option<FootLockOptions>) -> Result<
     };
     let options = MotionOptions {
         carry: inputs.carry,
-        foot_lock,
+        foot_lock: None,
     };
     let made = fitted.editor.motion(&road, &options).map_err(|error| error.to_string())?;
     Ok((road, made))
@@ -253,16 +251,21 @@ impl PathInputs {
 
     /// The motion on the path.
     pub(in crate::session) fn run(&self) -> Result<Outcome, String> {
-        let lock = matches!(self.feet, Feet::AtOnce).then(FootLockOptions::default);
-        let (road, mut made) = motion_on(self, lock)?;
-        if let Feet::Planted(planted) = &self.feet {
-            let (clip, slide_cm) = planted.made.clone()?;
-            made.clip = (*clip).clone();
-            made.slide_cm.locked = slide_cm;
-        }
+        let (road, made) = free_motion(self)?;
         let fitted = &self.fitted;
+        let free = Arc::new(made.clip);
+        let (clip, slide_cm) = match &self.feet {
+            Feet::Free | Feet::Awaited => (free, made.slide_cm.carried),
+            Feet::AtOnce => {
+                let roles = &fitted.motion.roles;
+                let clip = with_feet(&free, roles, &made.contacts, fitted.motion.ground_m, self.lock)?;
+                let slide_cm = foot_slide_cm(&clip, roles, &made.contacts);
+                (clip, slide_cm)
+            }
+            Feet::Planted(planted) => planted.made.clone()?,
+        };
         let mut metrics = vec![
-            slide(made.slide_cm.locked),
+            slide(slide_cm),
             Metric::fact(
                 "foot_slide_original_cm",
                 "Foot slide of the original",
@@ -311,10 +314,10 @@ impl PathInputs {
                 "The fitted path from its start to its end.",
             ));
         }
-        let (frames, before) = (made.clip.frames(), fitted.motion.clip.frames().max(1));
+        let (frames, before) = (clip.frames(), fitted.motion.clip.frames().max(1));
         let seams = fitted.motion.seams_at(|frame| frame * frames / before);
         let motion = Motion {
-            clip: Arc::new(made.clip),
+            clip,
             roles: fitted.motion.roles.clone(),
             contacts: made.contacts,
             ground_frames: made.characters,

@@ -10,7 +10,7 @@ pub(in crate::session) use pairs::{read_also, read_pins, read_weights};
 pub(in crate::session) use registrar::Registrars;
 
 use super::blend::weight_law;
-use super::feet::{slide, slide_before, with_feet};
+use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
 use super::{Measured, Outcome, Slot, Source, Transition};
 use crate::blend::{
@@ -151,7 +151,7 @@ pub(in crate::session) struct RegisterInputs {
     also: Vec<Also>,
     made: Made,
     is_plain: bool,
-    foot_lock: bool,
+    foot_lock: Option<Lock>,
 }
 
 /// A further clip of a blend, registered to A.
@@ -461,7 +461,7 @@ impl RegisterInputs {
         let roles = &self.pair.a.roles;
         let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
         let mut metrics = vec![slide(slid(clip))];
-        if self.foot_lock {
+        if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(free)));
         }
         metrics.push(Metric::lower(

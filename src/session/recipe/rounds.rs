@@ -1,6 +1,6 @@
 //! A cycle that is played several times: what the Speed and the Loop lab show.
 
-use super::feet::{slide, slide_before, with_feet};
+use super::feet::{Lock, slide, slide_before, with_feet};
 use crate::clip::{Clip, ClipError, Contacts, character_frames};
 use crate::metrics::{Metric, foot_slide_cm};
 use crate::session::motion::{FeetReading, Motion};
@@ -29,7 +29,7 @@ pub(super) fn rounds(
     three: Clip,
     contacts: &Contacts,
     ground_m: f32,
-    lock: bool,
+    lock: Option<Lock>,
 ) -> Result<Rounds, String> {
     let sentence = |error: ClipError| error.to_string();
     let fps = three.fps();
@@ -43,7 +43,7 @@ pub(super) fn rounds(
     let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
     let mut slides = vec![slide(slid(&three))];
     let held = with_feet(&three, roles, contacts, ground_m, lock)?;
-    if lock {
+    if lock.is_some() {
         slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
     }
     let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;

@@ -1,5 +1,6 @@
 //! The Speed lab: two gaits at a speed.
 
+use super::feet::Lock;
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome};
@@ -23,7 +24,7 @@ pub(in crate::session) struct SpeedInputs {
     gaits: Arc<Gaits>,
     alignment: PhaseAlignment,
     asked_mps: f64,
-    foot_lock: bool,
+    foot_lock: Option<Lock>,
 }
 
 impl PartialEq for SpeedInputs {
@@ -52,7 +53,7 @@ impl GaitFinder {
                 PhaseAlignment::None
             },
             asked_mps: params.optional(Key::Speed).unwrap_or_else(|| middle_mps(clips_mps)),
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
             gaits,
         })
     }

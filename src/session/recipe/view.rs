@@ -1,6 +1,6 @@
 //! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
 
-use super::feet::{locking, slide, slide_before};
+use super::feet::{Lock, locking, slide, slide_before};
 use super::pair::source_of;
 use super::{Measured, Outcome};
 use crate::math::Planar;
@@ -29,7 +29,7 @@ pub(in crate::session) struct ViewInputs {
 impl PartialEq for ViewInputs {
     fn eq(&self, other: &Self) -> bool {
         let same_view = match (&self.viewed, &other.viewed) {
-            (Some(a), Some(b)) => a.is_held == b.is_held,
+            (Some(a), Some(b)) => a.lock == b.lock,
             (None, None) => true,
             _ => false,
         };
@@ -125,7 +125,7 @@ impl Ground {
 #[derive(Debug)]
 struct Viewed {
     of: Arc<Motion>,
-    is_held: bool,
+    lock: Option<Lock>,
     made: Result<Outcome, String>,
 }
 
@@ -142,7 +142,7 @@ pub(in crate::session) struct Viewer {
 #[derive(Debug)]
 struct UnderWay {
     motion: Arc<Motion>,
-    is_held: bool,
+    lock: Option<Lock>,
     is_wanted: bool,
     stage: Stage,
 }
@@ -150,7 +150,7 @@ struct UnderWay {
 #[derive(Debug)]
 enum Stage {
     /// The feet as they are, of a clip whose feet will be held.
-    Before(SlideMeter),
+    Before(Lock, SlideMeter),
     Locking {
         before_cm: Option<f64>,
         locking: Box<FootLocking>,
@@ -183,41 +183,40 @@ impl Viewer {
     /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
     /// comes at once, and again with its numbers.
     pub(in crate::session) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
-        let is_held = params.is_on(Key::FootLock);
-        let viewed = self.known(motion, is_held).or_else(|| {
-            let index = self.begin(motion, is_held);
+        let lock = Lock::of(params);
+        let viewed = self.known(motion, lock).or_else(|| {
+            let index = self.begin(motion, lock);
             while motion.clip.frames() <= AT_ONCE && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion)) {
                 self.step(index);
             }
-            self.known(motion, is_held)
+            self.known(motion, lock)
         });
-        (viewed.is_some() || !is_held).then(|| ViewInputs {
+        (viewed.is_some() || lock.is_none()).then(|| ViewInputs {
             motion: Arc::clone(motion),
             viewed,
             ground: Ground::of(params),
         })
     }
 
-    fn known(&self, motion: &Arc<Motion>, is_held: bool) -> Option<Arc<Viewed>> {
-        let is_it = |viewed: &&Arc<Viewed>| Arc::ptr_eq(&viewed.of, motion) && viewed.is_held == is_held;
+    fn known(&self, motion: &Arc<Motion>, lock: Option<Lock>) -> Option<Arc<Viewed>> {
+        let is_it = |viewed: &&Arc<Viewed>| Arc::ptr_eq(&viewed.of, motion) && viewed.lock == lock;
         self.known.iter().find(is_it).cloned()
     }
 
     /// Has it done, if nobody else has; where it stands among what is under way.
-    fn begin(&mut self, motion: &Arc<Motion>, is_held: bool) -> usize {
-        let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.is_held == is_held;
+    fn begin(&mut self, motion: &Arc<Motion>, lock: Option<Lock>) -> usize {
+        let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
         if let Some(index) = self.under_way.iter().position(is_it) {
             self.under_way[index].is_wanted = true;
             return index;
         }
         self.under_way.push(UnderWay {
             motion: Arc::clone(motion),
-            is_held,
+            lock,
             is_wanted: true,
-            stage: if is_held {
-                Stage::Before(SlideMeter::new(&motion.clip, &motion.roles))
-            } else {
-                Stage::measuring(Arc::clone(motion), None)
+            stage: match lock {
+                Some(lock) => Stage::Before(lock, SlideMeter::new(&motion.clip, &motion.roles)),
+                None => Stage::measuring(Arc::clone(motion), None),
             },
         });
         self.under_way.len() - 1
@@ -242,9 +241,9 @@ impl Viewer {
 
     /// How much is done of the feet that are being held, 0 to 1; `None` when there are none. Nobody waits for numbers.
     pub(in crate::session) fn progress(&self) -> Option<f32> {
-        let at = self.under_way.iter().find(|at| at.is_held)?;
+        let at = self.under_way.iter().find(|at| at.lock.is_some())?;
         Some(match &at.stage {
-            Stage::Before(_) => 0.0,
+            Stage::Before(..) => 0.0,
             Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
             Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
         })
@@ -253,7 +252,7 @@ impl Viewer {
     fn step(&mut self, index: usize) {
         let UnderWay {
             motion,
-            is_held,
+            lock,
             is_wanted,
             stage,
         } = self.under_way.remove(index);
@@ -262,14 +261,14 @@ impl Viewer {
                 index,
                 UnderWay {
                     motion,
-                    is_held,
+                    lock,
                     is_wanted,
                     stage,
                 },
             ),
             Step::Done(made) => {
                 let made = *made;
-                self.known.push(Arc::new(Viewed { of: motion, is_held, made }));
+                self.known.push(Arc::new(Viewed { of: motion, lock, made }));
                 let surplus = self.known.len().saturating_sub(MAX_PANES);
                 self.known.drain(..surplus);
             }
@@ -285,12 +284,12 @@ enum Step {
 
 fn next(of: &Arc<Motion>, stage: Stage) -> Step {
     match stage {
-        Stage::Before(mut meter) => {
+        Stage::Before(lock, mut meter) => {
             if meter.advance(&of.clip, &of.contacts, PER_SLICE) {
-                return Step::On(Stage::Before(meter));
+                return Step::On(Stage::Before(lock, meter));
             }
             let before_cm = meter.worst_cm();
-            match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m) {
+            match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m, lock) {
                 Ok(Some(locking)) => Step::On(Stage::Locking {
                     before_cm,
                     locking: Box::new(locking),

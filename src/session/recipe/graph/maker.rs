@@ -282,10 +282,10 @@ impl Maker {
                     return Ok(Err(Publishing::Assembling(assembling)));
                 }
                 let motion = self.motion(*assembling).map_err(|error| sentence(&error))?;
-                if !self.wanted.foot_lock {
+                let Some(lock) = self.wanted.foot_lock else {
                     return Ok(self.unseen(motion, None));
-                }
-                match locking(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, motion.ground_m)? {
+                };
+                match locking(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, motion.ground_m, lock)? {
                     Some(locking) => Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion)))),
                     None => Ok(self.unseen(motion.clone(), Some(motion.clip))),
                 }

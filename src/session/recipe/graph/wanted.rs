@@ -3,6 +3,7 @@ use crate::math::Decay;
 use crate::session::outside::short;
 use crate::session::params::{Key, Params, Value};
 use crate::session::recipe::blend::{align_by, root_blend, weight_law};
+use crate::session::recipe::feet::Lock;
 use crate::session::recipe::kept::{read_ids, write_ids};
 use crate::transition::{Inertialization, Method, Mistake};
 use glam::DVec2;
@@ -21,8 +22,8 @@ pub(super) struct Wanted {
     pub(super) seed: u64,
     pub(super) discount: f64,
     pub(super) stitch: StitchOptions,
-    /// Planted feet are held.
-    pub(super) foot_lock: bool,
+    /// How planted feet are held, where they are.
+    pub(super) foot_lock: Option<Lock>,
     /// How much of the walk is measured, seconds.
     pub(super) measured_secs: f64,
     /// When to set off for which clip: seconds, and its index.
@@ -113,7 +114,7 @@ impl Wanted {
                 mistake: of_transform.or(of_angle.map(WalkMistake::Transition)),
                 ..StitchOptions::new(method)
             },
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
             measured_secs: params.number(Key::WalkSeconds),
             visits,
             path: read_path(params.text(Key::WalkPath))?,

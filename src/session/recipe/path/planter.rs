@@ -94,12 +94,14 @@ impl Planter {
 fn begin(of: &PathInputs) -> Result<Stage, String> {
     let (_, free) = free_motion(of)?;
     let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
-    Ok(
-        match locking(Arc::clone(&clip), roles, &free.contacts, of.fitted.motion.ground_m)? {
-            Some(locking) => Stage::Locking(locking, free.contacts),
-            None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
-        },
-    )
+    let locking = match of.lock {
+        Some(lock) => locking(Arc::clone(&clip), roles, &free.contacts, of.fitted.motion.ground_m, lock)?,
+        None => None,
+    };
+    Ok(match locking {
+        Some(locking) => Stage::Locking(locking, free.contacts),
+        None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
+    })
 }
 
 /// The next stage, or what came of it all.

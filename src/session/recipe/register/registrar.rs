@@ -5,6 +5,7 @@ use crate::registration::{
 use crate::session::compare::MAX_PANES;
 use crate::session::motion::Motion;
 use crate::session::params::{Key, Params};
+use crate::session::recipe::feet::Lock;
 use crate::session::recipe::pair::{Pair, Pairs};
 use std::sync::Arc;
 
@@ -79,7 +80,7 @@ impl Registrars {
             also,
             made,
             is_plain: params.text(Key::WarpWith) == "plain",
-            foot_lock: params.is_on(Key::FootLock),
+            foot_lock: Lock::of(params),
         }))
     }
 
