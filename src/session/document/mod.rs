@@ -724,7 +724,7 @@ impl Session {
             motion.map_or(1.0, |motion| motion.clip.fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
-        if params.text(Key::Lab) == "view" && !params.is_on(Key::FootLock) {
+        if params.text(Key::Lab) == "view" && is_as_it_is(&params) {
             return Err(known);
         }
         let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(

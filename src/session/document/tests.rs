@@ -312,6 +312,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
         ),
         // Nothing is locked.
         ("lab=layers&mask=arms&lock_reach=12", "layers(a:walk,b:run,mask:arms)"),
+        ("lab=view&root_motion=in_place", "view(a:walk,root_motion:in_place)"),
         ("lab=register&warp_weight=0.3", "register(a:walk,b:run,warp_weight:0.3)"),
         ("lab=speed&speed=2", "speed(a:walk,b:run,speed:2)"),
         (
