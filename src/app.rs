@@ -13,7 +13,6 @@ mod speech;
 
 pub(crate) use address_bar::link_query;
 
-#[cfg(target_arch = "wasm32")]
 use crate::platform::{self, Inbox, Incoming, Pace, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
 use crate::ui::{self, Action, CurveCache, Filming, UiState};
@@ -23,7 +22,9 @@ use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
-use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Storing, Value, link};
+#[cfg(target_arch = "wasm32")]
+use segue::session::Storing;
+use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
