@@ -276,6 +276,7 @@ impl Segue {
 
     /// Takes what has come in, sends what is asked for, and works on what is left over for a while. `true` while there is more to do.
     pub(crate) fn pump(&mut self) -> bool {
+        platform::follow_memory(&mut self.reader, &mut self.session);
         for incoming in self.inbox.take() {
             self.receive(incoming);
         }

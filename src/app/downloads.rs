@@ -1,12 +1,11 @@
 //! Files and lessons that come over the network. Files are handed on in the order in which they were asked for: the first one is A, the second B.
 
-use crate::platform::{self, Fetch, Inbox, fetch, file_name_of};
+use crate::platform::{self, Fetch, FileBytes, Inbox, fetch, file_name_of};
 use segue::session::lesson::Source;
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 /// Bytes, or why there are none.
-pub(crate) type Fetched = Result<Arc<[u8]>, String>;
+pub(crate) type Fetched = Result<FileBytes, String>;
 
 /// Everything under way.
 #[derive(Debug, Default)]

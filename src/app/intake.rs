@@ -2,7 +2,7 @@
 
 use super::downloads::lesson_file;
 use super::{Event, Segue};
-use crate::platform::{self, Incoming, LargeFile, ReadNews};
+use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadNews};
 use crate::ui;
 use segue::session::reading::Content;
 use segue::session::{Command, Key, Level, Request, Value};
@@ -58,7 +58,11 @@ impl Segue {
                 self.downloads.finished(&address, result);
                 while let Some((name, fetched)) = self.downloads.next_ready() {
                     match fetched {
-                        Ok(bytes) => self.load(&name, bytes, true),
+                        Ok(FileBytes::Here(bytes)) => self.load(&name, bytes, true),
+                        Ok(FileBytes::Large(file)) => {
+                            let (size, content) = self.keep_outside(file);
+                            self.session.begin_reading_fetched(&name, content, size);
+                        }
                         Err(reason) => self.session.say_of(Level::Error, &name, reason),
                     }
                 }
@@ -90,27 +94,37 @@ impl Segue {
 
     /// Has a large file read elsewhere. Returns the task's number.
     pub(crate) fn begin_reading(&mut self, name: &str, file: LargeFile) -> u64 {
-        let size = file.len();
-        let key = self.vault.take(file);
-        self.session.begin_reading(name, Content::Outside(key), size)
+        let (size, content) = self.keep_outside(file);
+        self.session.begin_reading(name, content, size)
+    }
+
+    /// Keeps a large file. Returns how many bytes it has, and what the document knows of it.
+    fn keep_outside(&mut self, file: LargeFile) -> (u64, Content) {
+        (file.len(), Content::Outside(self.vault.take(file)))
     }
 
     fn hear_of_reading(&mut self, task: u64, news: ReadNews) {
-        let report = match news {
-            ReadNews::Progress(done) => return self.session.progress_reading(task, done),
-            ReadNews::Done(report) => report,
-        };
-        let key = self.session.reading_key(task).map(str::to_owned);
-        if let (Some(key), Ok(report)) = (&key, &report) {
-            match report.files.as_slice() {
-                [file] if file.result.is_ok() && report.is_one_file() => self.vault.name(key, &file.sha256),
-                _ => self.vault.drop_file(key),
-            }
+        if let ReadNews::Progress(done) = news {
+            return self.session.progress_reading(task, done);
         }
         let brings_clips = self.session.brings_clips(task);
-        let Some(result) = self.session.finish_reading(task, report) else {
-            return;
+        if let Some(key) = self.session.reading_key(task).map(str::to_owned) {
+            match &news {
+                ReadNews::Done(Ok(report)) => match report.files.as_slice() {
+                    [file] if file.result.is_ok() && report.is_one_file() => self.vault.name(&key, &file.sha256),
+                    _ => self.vault.drop_file(&key),
+                },
+                // A file that is not in the library yet will not be: nobody else has it.
+                _ if brings_clips => self.vault.drop_file(&key),
+                _ => {}
+            }
+        }
+        let result = match news {
+            ReadNews::Progress(_) => None,
+            ReadNews::NoRoom(needed) => self.session.refuse_for_memory(task, needed),
+            ReadNews::Done(report) => self.session.finish_reading(task, report),
         };
+        let Some(result) = result else { return };
         if let (true, Ok(loaded)) = (brings_clips, &result) {
             self.keeper.store_clips(&self.session, &self.vault, &loaded.ids);
         }
@@ -140,11 +154,13 @@ impl Segue {
                 Request::Lesson(source) => self.downloads.start_lesson(source, &self.inbox),
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {
-                    if let Some(bytes) = self.vault.bytes_of(&task.content) {
+                    if let Some(needed) = self.session.memory_lacking_for(&task) {
+                        self.hear_of_reading(task.id, ReadNews::NoRoom(needed));
+                    } else if let Some(bytes) = self.vault.bytes_of(&task.content) {
                         self.reader.start(task, bytes);
                     } else {
                         let gone = Err("it is not here any more, drop it again".to_owned());
-                        self.session.finish_reading(task.id, gone);
+                        self.hear_of_reading(task.id, ReadNews::Done(gone));
                     }
                 }
                 Request::StopReading { task, forget } => {

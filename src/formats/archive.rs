@@ -3,12 +3,13 @@
 //! What comes out is motion only, in the order of paths, whatever order the archive has. Nothing is ever allocated because a header says so, an
 //! archive inside the archive is opened and one inside that is not, and paths never lead out of the archive: they are names, nothing else.
 
-use super::gzip::read_at_most;
+use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;
 use super::warning::{ImportWarning, Tally, WarningKind};
 use super::{ImportError, ImportOptions, has_extension};
 use flate2::bufread::{DeflateDecoder, GzDecoder};
 use rawzip::{CompressionMethod, ErrorKind, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
+use std::io;
 
 /// The endings of files that hold motion, or a part of it.
 const MOTION: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
@@ -125,6 +126,17 @@ enum Miss {
     Unreadable(String),
     /// The archive is refused.
     TooMuch,
+    /// Likewise, for there is no memory for the file.
+    NoMemory,
+}
+
+impl From<io::Error> for Miss {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::OutOfMemory => Self::NoMemory,
+            _ => Self::Unreadable(format!("it is damaged ({error})")),
+        }
+    }
 }
 
 impl Unpacking<'_> {
@@ -183,11 +195,7 @@ impl Unpacking<'_> {
         }
         let mut bytes = match self.read(archive, entry) {
             Ok(bytes) => bytes,
-            Err(Miss::TooMuch) => return Err(self.too_much()),
-            Err(Miss::Unreadable(why)) => {
-                self.unreadable(&path, why);
-                return Ok(());
-            }
+            Err(miss) => return self.miss(&path, miss),
         };
         if is_zip {
             match open(&bytes) {
@@ -201,10 +209,7 @@ impl Unpacking<'_> {
             match read_at_most(GzDecoder::new(bytes.as_slice()), self.left) {
                 Ok(Some(unpacked)) => (bytes, kept) = (unpacked, inner),
                 Ok(None) => return Err(self.too_much()),
-                Err(error) => {
-                    self.unreadable(&path, format!("damaged ({error})"));
-                    return Ok(());
-                }
+                Err(error) => return self.miss(&path, error.into()),
             }
         }
         self.left = self.left.saturating_sub(bytes.len());
@@ -217,8 +222,8 @@ impl Unpacking<'_> {
         if entry.flags().is_encrypted() {
             return Err(Miss::Unreadable("it is encrypted".to_owned()));
         }
-        let damaged = |error: &dyn std::fmt::Display| Miss::Unreadable(format!("it is damaged ({error})"));
-        let packed = archive.get_entry(entry.wayfinder()).map_err(|error| damaged(&error))?;
+        let packed = archive.get_entry(entry.wayfinder());
+        let packed = packed.map_err(|error| Miss::Unreadable(format!("it is damaged ({error})")))?;
         let bytes = match entry.compression_method() {
             CompressionMethod::STORE => read_at_most(packed.verifying_reader(packed.data()), self.left),
             CompressionMethod::DEFLATE => read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), self.left),
@@ -227,7 +232,19 @@ impl Unpacking<'_> {
                 return Err(Miss::Unreadable(format!("it is packed with {name}, which is not read here")));
             }
         };
-        bytes.map_err(|error| damaged(&error))?.ok_or(Miss::TooMuch)
+        bytes?.ok_or(Miss::TooMuch)
+    }
+
+    /// Leaves a file out, or refuses the archive.
+    fn miss(&mut self, path: &str, miss: Miss) -> Result<(), ImportError> {
+        match miss {
+            Miss::TooMuch => Err(self.too_much()),
+            Miss::NoMemory => Err(no_memory(self.name)),
+            Miss::Unreadable(why) => {
+                self.unreadable(path, why);
+                Ok(())
+            }
+        }
     }
 
     fn unreadable(&mut self, path: &str, why: String) {

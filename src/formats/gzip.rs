@@ -21,11 +21,19 @@ pub fn unpack_gzip(name: &str, packed: &[u8], most: usize) -> Result<Vec<u8>, Im
             let found = format!("more than {} MB after unpacking", most >> 20);
             Err(ImportError::whole_file(name, found, "a smaller file"))
         }
+        Err(error) if error.kind() == io::ErrorKind::OutOfMemory => Err(no_memory(name)),
         Err(error) => Err(ImportError::whole_file(name, error.to_string(), "a gzip file")),
     }
 }
 
-/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what comes, whatever a header promises.
+/// Says that there is no memory for what comes out of the packed file `name`.
+pub(super) fn no_memory(name: &str) -> ImportError {
+    let found = "more than there is memory for after unpacking";
+    ImportError::whole_file(name, found, "a smaller file").with_hint("unpack the archive and open a part of its files")
+}
+
+/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what comes, whatever a header promises;
+/// where there is no memory for it, the error is of the kind [`io::ErrorKind::OutOfMemory`].
 pub(super) fn read_at_most(reader: impl Read, most: usize) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     reader.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;

@@ -1,5 +1,6 @@
 //! A motion on its way from a file to a [`Clip`]: in the file's units and axes, and not yet checked.
 
+use super::error::Fault;
 use super::measure::Measure;
 use crate::clip::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
 use crate::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_pose_into};
@@ -35,6 +36,19 @@ impl RawMotion {
     /// The root's way, and then the tracks.
     pub(super) fn translations_mut(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
         std::iter::once(&mut self.root_translations).chain(self.tracks.iter_mut().map(|(_, values)| values))
+    }
+
+    /// Takes the memory for so many more frames.
+    pub(super) fn reserve(&mut self, frames: usize) -> Result<(), Fault> {
+        let joints = self.joints.len();
+        let mut taken = self.rotations.try_reserve_exact(frames.saturating_mul(joints));
+        for track in self.translations_mut() {
+            taken = taken.and_then(|()| track.try_reserve_exact(frames));
+        }
+        taken.map_err(|_| {
+            let found = format!("a motion for which there is no memory after {} frames", self.frames());
+            Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts")
+        })
     }
 
     /// The local rotations of one frame; empty for one that there is not.
@@ -141,4 +155,30 @@ fn with_end_sites(joints: &[Joint], world: WorldPose) -> Vec<Vec3> {
     let mut points = world.positions;
     points.extend(ends);
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_memory_cannot_hold_are_refused_and_take_nothing() {
+        let joint = Joint {
+            name: "root".into(),
+            parent: None,
+            offset: Vec3::ZERO,
+            end_site: None,
+            channels: Vec::new(),
+        };
+        let mut raw = RawMotion {
+            joints: vec![joint],
+            ..RawMotion::default()
+        };
+        for frames in [usize::MAX, usize::MAX / 64] {
+            let refused = raw.reserve(frames).unwrap_err();
+            assert!(refused.found.contains("no memory"), "{refused:?}");
+        }
+        raw.reserve(100).unwrap();
+        assert!(raw.rotations.capacity() >= 100 && raw.root_translations.capacity() >= 100);
+    }
 }

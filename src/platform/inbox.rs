@@ -1,4 +1,4 @@
-use super::{LargeFile, ReadNews, Stored};
+use super::{FileBytes, LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue::session::lesson::Source;
 use segue::session::{Sample, SavedEntry};
@@ -69,7 +69,7 @@ pub(crate) enum Incoming {
         /// The file's address.
         address: String,
         /// Its bytes, or why they did not come.
-        result: Result<Arc<[u8]>, String>,
+        result: Result<FileBytes, String>,
     },
     /// Storage was read; `None` where there was nothing in it, or no storage.
     Stored(Option<Box<Stored>>),

@@ -50,6 +50,8 @@ pub(crate) type StoredFiles = BTreeMap<String, FileBytes>;
 pub(crate) enum ReadNews {
     /// So many bytes are read.
     Progress(u64),
+    /// There is no memory for what it gave, so many bytes.
+    NoRoom(u64),
     /// It is done, or cannot be done.
     Done(Result<ReadReport, String>),
 }

@@ -1,5 +1,6 @@
-use super::library::{Entry, Library};
+use super::library::{Entry, Library, Origin};
 use super::params::{Key, PARAMS, Params};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// What undo brings back.
@@ -55,6 +56,33 @@ impl History {
                 state.library.put_shared(entry);
             }
         }
+    }
+
+    /// Lets go of the motions of files that `library` does not hold; says whether there were any. They are read again when a step brings them back.
+    pub(super) fn let_go_of_motions_outside(&mut self, library: &Library) -> bool {
+        let held: BTreeSet<_> = library
+            .entries()
+            .iter()
+            .filter_map(|entry| entry.motion.as_ref().map(Arc::as_ptr))
+            .collect();
+        let mut any = false;
+        for state in self.past.iter_mut().chain(&mut self.future) {
+            let is_outside = |entry: &&Arc<Entry>| {
+                let motion = entry.motion.as_ref().map(Arc::as_ptr);
+                matches!(entry.origin, Origin::File(_)) && motion.is_some_and(|motion| !held.contains(&motion))
+            };
+            let ids: Vec<String> = state
+                .library
+                .entries()
+                .iter()
+                .filter(is_outside)
+                .map(|entry| entry.id.clone())
+                .collect();
+            for id in &ids {
+                any |= state.library.change(id, |entry| (entry.motion, entry.mesh) = (None, None));
+            }
+        }
+        any
     }
 
     pub(super) fn can_undo(&self) -> bool {

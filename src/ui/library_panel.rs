@@ -12,6 +12,9 @@ use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, Sc
 use segue::session::export::{ExportFormat, ExportOptions};
 use segue::session::{Command, Entry, Key, Origin, Session, Slot};
 
+/// The share of the memory from which on it is shown how much is in use.
+const MEMORY_SHOWN_FROM: f32 = 0.25;
+
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let frame = Frame::new().inner_margin(Margin {
@@ -59,12 +62,14 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
 
 /// Where files are dropped or asked for, and the bundled takes.
 pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let memory = session.memory().filter(|memory| memory.share() > MEMORY_SHOWN_FROM);
     // A panel is as large as what was in it the last time: it is laid out once more before anybody sees it cut off.
     let rows = (
         state.fetching.len(),
         session.jobs().iter().filter(|job| job.size.is_some()).count(),
         session.samples_progress().is_some(),
         state.samples_open,
+        memory.is_some(),
     );
     let rows_id = Id::unique("rows of the drop zone");
     if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(rows_id), rows)) != rows {
@@ -87,6 +92,9 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     if let Some((come, asked)) = session.samples_progress() {
         let detail = format!("{come} / {asked}");
         kit::brief_progress_ui(text::LOADING_SAMPLES, come as f32 / asked as f32, &detail, ui);
+    }
+    if let Some(memory) = memory {
+        kit::brief_progress_ui(text::MEMORY, memory.share(), &text::memory(memory), ui);
     }
     if state.samples_open {
         samples_ui(session, out, ui);

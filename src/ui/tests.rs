@@ -11,7 +11,7 @@ use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue::session::export::{ExportFormat, ExportOptions, export};
 use segue::session::reading::Content;
-use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, Slot, SourceFile, Storing, Value};
+use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -379,6 +379,23 @@ fn the_library_tells_how_far_the_work_is_stored() {
         harness.get_by_label(words);
     }
     picture("stored-desk-dark", &mut harness);
+}
+
+#[test]
+fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
+    let mut harness = harness(DESK, DARK, page("lab=view&play=off"));
+    for (bytes, words) in [(750_000_000, None), (1_234_000_000, Some("1234 MB of 3 GB"))] {
+        harness.state_mut().session.note_memory(PageMemory {
+            bytes,
+            limit: 3_000_000_000,
+            coming: 0,
+        });
+        harness.run();
+        assert_eq!(harness.query_by_label_contains("Memory").is_some(), words.is_some());
+        if let Some(words) = words {
+            harness.get_by_label_contains(words);
+        }
+    }
 }
 
 #[test]

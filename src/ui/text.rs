@@ -5,7 +5,8 @@ use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue::path::HardTurn;
 use segue::session::export::ExportFormat;
 use segue::session::{
-    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, OnPath, Origin, Retargeted, Storing, Trace, Transition, format_number,
+    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, MemoryUse, OnPath, Origin, Retargeted, Storing, Trace, Transition,
+    format_number,
 };
 
 pub(crate) const APP: &str = "Segue";
@@ -13,6 +14,7 @@ pub(crate) const LIBRARY: &str = "Library";
 pub(crate) const SAVED: &str = "Saved";
 pub(crate) const SAVING: &str = "Saving…";
 pub(crate) const NOT_ALL_SAVED: &str = "Not all saved";
+pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const SAMPLES: &str = "samples";
 pub(crate) const DROP_HERE: &str = "Drop BVH, ASF + AMC, GLB, a zip or a folder";
 pub(crate) const OPEN_FILES: &str = "open…";
@@ -206,6 +208,12 @@ pub(crate) fn stored(stored: Storing) -> &'static str {
         Storing::UnderWay => SAVING,
         Storing::Incomplete => NOT_ALL_SAVED,
     }
+}
+
+/// How much memory is in use, and how much there is.
+pub(crate) fn memory(memory: MemoryUse) -> String {
+    let limit_gb = (memory.limit as f64 / 1e8).round() / 10.0;
+    format!("{:.0} MB of {limit_gb} GB", memory.used as f64 / 1e6)
 }
 
 /// The name of a file format on screen.

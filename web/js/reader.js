@@ -8,6 +8,9 @@ import init, { readFile } from "./read/reader.js";
 const started = init();
 started.catch(() => {}); // each task tells of it
 
+/** A trap, while so much memory is held, comes from an allocation that failed. */
+const MUCH_MEMORY = 1 << 30;
+
 self.onmessage = async ({ data: { task, name, setup, file } }) => {
   const tell = (news, transfer = []) => self.postMessage({ task, ...news }, transfer);
   try {
@@ -19,7 +22,9 @@ self.onmessage = async ({ data: { task, name, setup, file } }) => {
     readFile(name, bytes, setup, sha256, progress, (head) => tell({ head }), (piece) => tell({ piece }, [piece.buffer]));
     tell({ end: true });
   } catch (reason) {
-    tell({ failed: String(reason?.message ?? reason) });
+    const trapped = reason instanceof WebAssembly.RuntimeError;
+    const noMemory = trapped && (await started).memory.buffer.byteLength >= MUCH_MEMORY;
+    tell({ failed: noMemory ? "there is no memory to read it" : String(reason?.message ?? reason) });
   }
 };
 

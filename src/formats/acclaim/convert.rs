@@ -2,7 +2,7 @@
 
 use super::asf::Dof;
 use super::skeleton::{AcclaimSkeleton, Motor};
-use crate::formats::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE};
+use crate::formats::bvh::{FIRST_ROWS, MEMORY_FLOOR, MEMORY_PER_BYTE};
 use crate::formats::error::Fault;
 use crate::formats::raw::RawMotion;
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -16,6 +16,8 @@ pub(super) struct Converter<'s> {
     /// The root's orientation: the frame of reference of the whole motion.
     orientation: DQuat,
     bytes_per_row: u64,
+    /// Rows for which there is memory.
+    room: usize,
     bytes: u64,
     limit: u64,
 }
@@ -43,6 +45,7 @@ impl<'s> Converter<'s> {
             orientation: skeleton.motors.first().map_or(DQuat::IDENTITY, |root| DQuat::from_mat3(&root.axes)),
             raw,
             bytes_per_row,
+            room: 0,
             bytes: 0,
             limit: MEMORY_FLOOR.saturating_add(MEMORY_PER_BYTE.saturating_mul(bytes as u64)),
         }
@@ -56,6 +59,12 @@ impl<'s> Converter<'s> {
         if self.bytes > self.limit {
             let found = format!("a motion of more than {} MB, most of it in bones without values", self.limit >> 20);
             return Err(Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts"));
+        }
+        if self.raw.frames() == self.room {
+            let fits = (self.limit / self.bytes_per_row.max(1)) as usize;
+            let rows = (self.room / 2).max(FIRST_ROWS).min(fits).max(1);
+            self.raw.reserve(rows)?;
+            self.room += rows;
         }
         let mut tracks = self.raw.tracks.iter_mut().peekable();
         for (joint, motor) in self.skeleton.motors.iter().enumerate() {

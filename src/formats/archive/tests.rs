@@ -169,3 +169,23 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn an_archive_that_memory_cannot_hold_is_refused_and_not_called_damaged() {
+    let mut unpacking = Unpacking {
+        name: "all.zip",
+        left: 1,
+        limits: ArchiveLimits::default(),
+        files: Vec::new(),
+        tally: Tally::default(),
+    };
+    let damaged = io::Error::new(io::ErrorKind::InvalidData, "a bad block");
+    assert_eq!(unpacking.miss("a.bvh", damaged.into()), Ok(()));
+    let refused = unpacking
+        .miss("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into())
+        .unwrap_err();
+    assert_eq!(refused.file, "all.zip");
+    assert!(refused.found.contains("memory"), "{refused}");
+    let left_out = unpacking.tally.into_warnings(b"");
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+}

@@ -14,7 +14,7 @@ use std::ops::Range;
 pub(in crate::formats) const MEMORY_PER_BYTE: u64 = 16;
 
 /// Rows that there is room for before their length is known.
-const FIRST_ROWS: usize = 64;
+pub(in crate::formats) const FIRST_ROWS: usize = 64;
 
 /// Motions below this are always taken.
 pub(in crate::formats) const MEMORY_FLOOR: u64 = 64 << 20;
@@ -123,7 +123,7 @@ impl Converter {
 
     /// Makes room for the rows to come, as many as the bytes from `end` on hold if they are as long as those before. Growing by halves, as
     /// vectors do, would at the end need room for the motion twice.
-    fn make_room(&mut self, end: usize) {
+    fn make_room(&mut self, end: usize) -> Result<(), Fault> {
         let left = self.bytes.end.saturating_sub(end) as f64;
         let as_before = left * self.rows as f64 / end.saturating_sub(self.bytes.start).max(1) as f64;
         // The header is believed as far as the bytes agree.
@@ -132,10 +132,10 @@ impl Converter {
         let rows = (expected as u64).min(fits) as usize;
         let rows = rows.max(self.rows / 8).max(FIRST_ROWS.min(fits as usize)).max(1);
         for character in &mut self.characters {
-            character.raw.rotations.reserve_exact(rows * character.raw.joints.len());
-            character.raw.translations_mut().for_each(|track| track.reserve_exact(rows));
+            character.raw.reserve(rows)?;
         }
         self.room += rows;
+        Ok(())
     }
 
     /// What channels are before any good value: positions stand at their OFFSET, rotations at 0.
@@ -167,7 +167,7 @@ impl RowSink for Converter {
             return Err(Fault::new(0, found, "a motion that fits into memory").with_hint("export fewer frames or fewer joints"));
         }
         if self.rows == self.room {
-            self.make_room(end);
+            self.make_room(end)?;
         }
         self.rows += 1;
         let value = |column: usize| values.get(column).copied().unwrap_or_default();

@@ -19,7 +19,7 @@ mod turns;
 mod write;
 
 // What reading text takes in any format.
-pub(super) use convert::{MEMORY_FLOOR, MEMORY_PER_BYTE};
+pub(super) use convert::{FIRST_ROWS, MEMORY_FLOOR, MEMORY_PER_BYTE};
 pub(super) use hierarchy::MAX_DEPTH;
 pub(super) use number::{Scan, scan};
 

@@ -1,6 +1,7 @@
 //! Large files are read on threads of their own.
 
 use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
+use segue::session::Session;
 use segue::session::reading::{ReadTask, read};
 use std::fmt;
 use std::sync::Arc;
@@ -32,6 +33,9 @@ impl fmt::Debug for LargeFile {
         write!(f, "LargeFile({} bytes)", self.0.len())
     }
 }
+
+/// A window has as much memory as the system gives.
+pub(crate) fn follow_memory(_reader: &mut Reader, _session: &mut Session) {}
 
 /// Reads files elsewhere.
 #[derive(Debug)]
@@ -84,7 +88,6 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::Session;
     use segue::session::reading::Content;
     use std::time::Duration;
 

@@ -2,11 +2,12 @@
 
 use super::page::window;
 use super::words_of;
-use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, file_name_of, too_large};
-use js_sys::{Reflect, Uint8Array};
+use crate::platform::{FileBytes, Inbox, Incoming, LargeFile, MAX_FILE_BYTES, file_name_of, too_large};
+use js_sys::{Array, Reflect, Uint8Array};
 use segue::session::Sample;
 use segue::session::lesson::{MOST_BYTES, Source, host_of};
 use segue::session::outside::short;
+use segue::session::reading::LARGE_BYTES;
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -127,7 +128,7 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
         if call.is_over() && !call.0.is_late.get() {
             return;
         }
-        let result = result.map(Arc::from);
+        let result = result.and_then(|pieces| pieces.into_file(&file_name_of(&address)));
         inbox.push(Incoming::Fetched { address, result });
     });
     fetch
@@ -152,7 +153,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
             Source::BuiltIn(file) => bundled(&format!("lessons/{file}"), &call, &inbox)
                 .await
                 .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
-            Source::Web(address) => get(address, &LESSON, &call, &inbox).await.map(Arc::from),
+            Source::Web(address) => get(address, &LESSON, &call, &inbox).await.map(|pieces| pieces.to_bytes()),
         };
         if call.is_over() && !call.0.is_late.get() {
             return;
@@ -183,7 +184,7 @@ async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>,
         return Err(format!("its server answered {}", response.status()));
     }
     let bytes = read(&response, address, None, MAX_FILE_BYTES, call, inbox).await;
-    bytes.map(Arc::from).map_err(|_| refused())
+    bytes.map(|pieces| pieces.to_bytes()).map_err(|_| refused())
 }
 
 /// What is asked for at an address.
@@ -217,7 +218,7 @@ async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Respon
     JsFuture::from(window.fetch_with_str_and_init(address, &init)).await?.dyn_into()
 }
 
-async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Result<Vec<u8>, String> {
+async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Result<Pieces, String> {
     let name = file_name_of(address);
     let Ok(response) = request(address, RequestMode::Cors, call).await else {
         return Err(match call.lateness(address, &name) {
@@ -265,6 +266,44 @@ async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Resu
         })
 }
 
+/// What came of an answer. It stays with the browser until all of it is there: the page's own memory would keep the size of a file that is refused.
+struct Pieces {
+    parts: Array,
+    bytes: u64,
+}
+
+impl Pieces {
+    fn new() -> Self {
+        Self {
+            parts: Array::new(),
+            bytes: 0,
+        }
+    }
+
+    fn push(&mut self, piece: &Uint8Array) {
+        self.bytes += u64::from(piece.length());
+        self.parts.push(piece);
+    }
+
+    /// All of it in the page's memory.
+    fn to_bytes(&self) -> Arc<[u8]> {
+        let mut bytes = Vec::with_capacity(self.bytes as usize);
+        for part in self.parts.iter() {
+            bytes.extend(part.unchecked_into::<Uint8Array>().to_vec());
+        }
+        Arc::from(bytes)
+    }
+
+    /// The file `name`: in the page's memory only where it is small.
+    fn into_file(self, name: &str) -> Result<FileBytes, String> {
+        if self.bytes <= LARGE_BYTES {
+            return Ok(FileBytes::Here(self.to_bytes()));
+        }
+        let file = LargeFile::of_pieces(&self.parts).map(FileBytes::Large);
+        file.ok_or_else(|| format!("This browser has no room for {name}."))
+    }
+}
+
 enum Unread {
     TooLarge(String),
     Broken(JsValue),
@@ -284,27 +323,27 @@ async fn read(
     most_bytes: u64,
     call: &Call,
     inbox: &Inbox,
-) -> Result<Vec<u8>, Unread> {
+) -> Result<Pieces, Unread> {
+    let mut pieces = Pieces::new();
     let Some(stream) = response.body() else {
-        return Ok(Vec::new());
+        return Ok(pieces);
     };
     let reader: ReadableStreamDefaultReader = stream.get_reader().dyn_into().map_err(JsValue::from)?;
-    let mut bytes = Vec::new();
     loop {
         let chunk = JsFuture::from(reader.read()).await?;
         call.goes_on();
         if Reflect::get(&chunk, &"done".into())?.is_truthy() {
-            return Ok(bytes);
+            return Ok(pieces);
         }
         let piece: Uint8Array = Reflect::get(&chunk, &"value".into())?.dyn_into()?;
-        let done = bytes.len() as u64 + u64::from(piece.length());
+        let done = pieces.bytes + u64::from(piece.length());
         if done > most_bytes {
             JsFuture::from(reader.cancel()).await.ok();
             return Err(Unread::TooLarge(
                 too_large(&file_name_of(address), done, most_bytes).unwrap_or_default(),
             ));
         }
-        bytes.extend(piece.to_vec());
+        pieces.push(&piece);
         // The length is that of what travels, packed; once there is more than that, it says nothing.
         let total = total.filter(|&total| done <= total);
         inbox.push(Incoming::Progress {

@@ -2,7 +2,7 @@
 
 use super::folders::watch_folders;
 use super::page::{ask_before_leaving_while, listen, next_frame, now_ms, sleep, turn, wanted_backend, watch_hiding};
-use super::reader::{LargeFile, workers_are_made_by};
+use super::reader::{LargeFile, page_bytes, workers_are_made_by};
 use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
 use crate::platform::{FileBytes, Inbox};
@@ -303,8 +303,7 @@ impl SegueHandle {
 
     /// How the app is doing.
     pub fn stats(&self) -> Result<JsValue, JsValue> {
-        const PAGE_BYTES: u64 = 65_536;
-        to_js(&self.borrow()?.stats(core::arch::wasm32::memory_size(0) as u64 * PAGE_BYTES))
+        to_js(&self.borrow()?.stats(page_bytes()))
     }
 
     /// Ends the app; what there is to store is stored.

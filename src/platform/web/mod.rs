@@ -22,7 +22,7 @@ pub(crate) use page::{
     READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, announce, between_frames, full_link, is_framed, languages, location_query, now_ms, open_page,
     prefers_stillness, replace_query, tell_language, watch_navigation,
 };
-pub(crate) use reader::{LargeFile, Reader};
+pub(crate) use reader::{LargeFile, Reader, follow_memory};
 pub(crate) use storage::Storage;
 
 use wasm_bindgen::{JsCast as _, JsValue};

@@ -1,10 +1,11 @@
 //! Files are read by a worker, which has a WebAssembly of its own: `src/bin/reader.rs`. `web/js/reader.js` starts it.
 
-use super::page::listen;
+use super::page::{listen, window};
 use super::words_of;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
-use segue::session::reading::{LARGE_BYTES, ReadTask, Unpacker};
+use segue::session::reading::{LARGE_BYTES, ReadTask, Unpacker, WireError};
+use segue::session::{MemoryUse, PageMemory, Session};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
@@ -24,7 +25,12 @@ impl LargeFile {
 
     /// A file of these bytes; none when the browser has no room for it.
     pub(crate) fn of_bytes(bytes: &Uint8Array) -> Option<Self> {
-        Blob::new_with_u8_array_sequence(&Array::of1(bytes)).ok().map(Self)
+        Self::of_pieces(&Array::of1(bytes))
+    }
+
+    /// A file of these pieces, each a `Uint8Array`; none when the browser has no room for it.
+    pub(super) fn of_pieces(pieces: &Array) -> Option<Self> {
+        Blob::new_with_u8_array_sequence(pieces).ok().map(Self)
     }
 
     /// How many bytes it has.
@@ -67,6 +73,31 @@ pub(super) fn workers_are_made_by(make: Function) {
 /// A worker that has read more than this is ended, for its memory never shrinks, bytes.
 const KEPT_UP_TO: u64 = 16 << 20;
 
+/// The length of a page of WebAssembly's memory, bytes.
+const PAGE_BYTES: u64 = 65536;
+
+/// How large the page's memory is by now, bytes.
+pub(super) fn page_bytes() -> u64 {
+    core::arch::wasm32::memory_size(0) as u64 * PAGE_BYTES
+}
+
+/// Tells the session how much memory the page has, and the reader how much of it is left.
+pub(crate) fn follow_memory(reader: &mut Reader, session: &mut Session) {
+    // Not every browser tells.
+    let navigator = window().map(|window| window.navigator());
+    let device_gib = navigator.and_then(|navigator| Reflect::get(&navigator, &"deviceMemory".into()).ok()?.as_f64());
+    let states = [&reader.large, &reader.small];
+    session.note_memory(PageMemory {
+        bytes: page_bytes(),
+        limit: PageMemory::limit_of(device_gib),
+        coming: states.map(|state| state.borrow().coming()).iter().sum(),
+    });
+    let left = session.memory().map_or(u64::MAX, MemoryUse::left);
+    for state in states {
+        state.borrow_mut().room = left;
+    }
+}
+
 /// Reads files elsewhere: large ones one after the other, and small ones beside them.
 pub(crate) struct Reader {
     large: Rc<RefCell<State>>,
@@ -78,6 +109,8 @@ struct State {
     worker: Option<Worker>,
     waiting: VecDeque<(ReadTask, FileBytes)>,
     current: Option<Current>,
+    /// How much memory there is for what is read, bytes.
+    room: u64,
 }
 
 struct Current {
@@ -101,6 +134,7 @@ impl Reader {
                 worker: None,
                 waiting: VecDeque::new(),
                 current: None,
+                room: u64::MAX,
             }))
         };
         Self {
@@ -144,10 +178,21 @@ impl State {
         self.inbox.push(Incoming::Reading { task, news });
     }
 
-    /// Gives the current task up.
+    /// How much memory is set aside for what is on its way, bytes.
+    fn coming(&self) -> u64 {
+        let unpacker = self.current.as_ref().and_then(|current| current.unpacker.as_ref());
+        unpacker.map_or(0, Unpacker::bytes)
+    }
+
+    /// Gives the current task up, for that reason.
     fn fail(&mut self, reason: String) {
+        self.give_up(ReadNews::Done(Err(reason)));
+    }
+
+    /// Gives the current task up, and tells so.
+    fn give_up(&mut self, news: ReadNews) {
         if let Some(current) = self.current.take() {
-            self.tell(current.task, ReadNews::Done(Err(reason)));
+            self.tell(current.task, news);
         }
         self.end_worker();
     }
@@ -175,8 +220,12 @@ impl State {
             let task = current.task;
             self.tell(task, ReadNews::Progress(done as u64));
         } else if let Some(head) = part("head").as_string() {
-            match Unpacker::new(&head) {
-                Ok(unpacker) => current.unpacker = Some(unpacker),
+            match Unpacker::new(&head, self.room) {
+                Ok(unpacker) => {
+                    self.room = self.room.saturating_sub(unpacker.bytes());
+                    current.unpacker = Some(unpacker);
+                }
+                Err(WireError::NoRoom { bytes }) => self.give_up(ReadNews::NoRoom(bytes as u64)),
                 Err(error) => self.fail(error.to_string()),
             }
         } else if let (Ok(piece), Some(unpacker)) = (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker) {

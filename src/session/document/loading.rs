@@ -92,6 +92,12 @@ impl Session {
         self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
     }
 
+    /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by [`Session::load_fetched`].
+    pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
+        let setup = self.setup_for_new();
+        self.begin(name, content, size, setup, Purpose::New(Came::ByLink))
+    }
+
     pub(super) fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
         self.tasks += 1;
         let task = ReadTask {
@@ -156,26 +162,15 @@ impl Session {
 
     /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody waits for it any longer.
     pub fn finish_reading(&mut self, task: u64, report: Result<ReadReport, String>) -> Option<Result<Loaded, String>> {
-        let at = self.reading.iter().position(|reading| reading.task.id == task)?;
-        let Reading { task, purpose, .. } = self.reading.remove(at);
-        self.revision += 1;
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
-                if let Purpose::Sample(sample) = purpose {
-                    // It would be asked for at once, and so on for ever: the next thing that is done asks for it.
-                    self.fail_sample(sample, &reason);
-                    return Some(Err(reason));
-                }
-                let text = format!("{} could not be read: {reason}.", task.name);
-                if let Purpose::Again(_) = purpose {
-                    self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
-                }
-                self.say(Level::Error, text);
-                self.refresh();
-                return Some(Err(reason));
+                let (name, _) = self.file_of_task(task)?;
+                let text = format!("{name} could not be read: {reason}.");
+                return self.fail_reading(task, reason, text);
             }
         };
+        let Reading { task, purpose, .. } = self.end_task(task)?;
         // What lies outside is from now on known by what it holds.
         let content = match (task.content.clone(), report.files.as_slice()) {
             (Content::Outside(_), [file]) if report.is_one_file() => Content::Outside(file.sha256.clone()),
@@ -211,6 +206,34 @@ impl Session {
             Purpose::Sample(sample) => self.take_sample(sample, report).map(|()| Loaded::default()),
         };
         Some(loaded.map_err(|error| error.to_string()))
+    }
+
+    /// Ends a task whose file is not read, for that reason; `text` is what is said of it.
+    pub(super) fn fail_reading(&mut self, task: u64, reason: String, text: String) -> Option<Result<Loaded, String>> {
+        let Reading { task, purpose, .. } = self.end_task(task)?;
+        if let Purpose::Sample(sample) = purpose {
+            // It would be asked for at once, and so on for ever: the next thing that is done asks for it.
+            self.fail_sample(sample, &reason);
+            return Some(Err(reason));
+        }
+        if let Purpose::Again(_) = purpose {
+            self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
+        }
+        self.notices.say_of(Level::Error, &task.name, text);
+        self.refresh();
+        Some(Err(reason))
+    }
+
+    fn end_task(&mut self, task: u64) -> Option<Reading> {
+        let at = self.reading.iter().position(|reading| reading.task.id == task)?;
+        self.revision += 1;
+        Some(self.reading.remove(at))
+    }
+
+    /// The name and the size of the file that a task reads, bytes.
+    pub(super) fn file_of_task(&self, task: u64) -> Option<(&str, u64)> {
+        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        Some((&reading.task.name, reading.task.size))
     }
 
     /// Whether that task is under way.

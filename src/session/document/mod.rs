@@ -6,6 +6,7 @@ mod driving;
 mod going_round;
 mod graphing;
 mod loading;
+mod memory;
 mod panes;
 mod slots;
 mod storing;
@@ -24,6 +25,7 @@ use super::compare::Compare;
 use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin};
 use super::link;
+use super::memory::Memory;
 use super::motion::{FeetReader, Motion};
 use super::notice::{Level, Notices};
 use super::outside;
@@ -100,6 +102,10 @@ pub struct Session {
     reads: Option<Reads>,
     reading: Vec<Reading>,
     tasks: u64,
+    /// The page's memory, where that has an end.
+    memory: Option<Memory>,
+    /// The library revision at which motion outside of the library was let go last.
+    let_go_at: Option<u64>,
     /// Whether A and B were named with the addresses of the link, or since.
     named: [bool; 2],
     library_revision: u64,
@@ -155,6 +161,8 @@ impl Session {
             awaited: bundled::AwaitedSamples::default(),
             reading: Vec::new(),
             tasks: 0,
+            memory: None,
+            let_go_at: None,
             named: [false; 2],
             library_revision: 0,
             revision: 0,
@@ -822,6 +830,8 @@ mod keeping_tests;
 mod loading_tests;
 #[cfg(test)]
 mod measuring_tests;
+#[cfg(test)]
+mod memory_tests;
 #[cfg(test)]
 mod path_tests;
 #[cfg(test)]

@@ -5,12 +5,13 @@ use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
 use crate::formats::{FileKind, ImportError};
 use crate::math::Planar;
+use crate::session::memory::motion_bytes;
 use crate::session::motion::{FeetReading, Motion};
 use crate::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
 use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::{DVec2, Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use std::hint::black_box;
+use std::collections::TryReserveError;
 use std::sync::Arc;
 
 /// The length of a piece, bytes: a whole number of every kind of value below, and copied in well under a millisecond.
@@ -31,7 +32,7 @@ pub enum WireError {
         found: usize,
     },
     /// There is no memory for it.
-    #[error("there is no memory for its {} MB: remove clips that you do not need", .bytes.div_ceil(1 << 20))]
+    #[error("there is no memory for its {} MB: remove clips that you do not need", .bytes.div_ceil(1_000_000))]
     NoRoom {
         /// How many bytes it has.
         bytes: usize,
@@ -321,6 +322,19 @@ impl MeshHead {
             .saturating_add(self.joints.saturating_mul(28))
     }
 
+    /// A mesh with the memory that its arrays need.
+    fn room(&self) -> Result<SkinnedMesh, TryReserveError> {
+        let mut mesh = SkinnedMesh::default();
+        mesh.positions.try_reserve_exact(self.vertices)?;
+        mesh.normals.try_reserve_exact(self.vertices)?;
+        mesh.joints.try_reserve_exact(self.vertices)?;
+        mesh.weights.try_reserve_exact(self.vertices)?;
+        mesh.colors.try_reserve_exact(self.colors)?;
+        mesh.triangles.try_reserve_exact(self.triangles)?;
+        mesh.bind.try_reserve_exact(self.joints)?;
+        Ok(mesh)
+    }
+
     /// Takes what the mesh still needs from the front of `bytes`.
     fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
         let vector = |b: &[u8; 12]| Vec3::from_array(floats(b));
@@ -355,6 +369,21 @@ struct Arrays {
 }
 
 impl Arrays {
+    /// Takes the memory that a clip needs.
+    fn with_room_for(head: &ClipHead) -> Result<Self, TryReserveError> {
+        let mut arrays = Self::default();
+        arrays.rotations.try_reserve_exact(head.frames.saturating_mul(head.joints.len()))?;
+        arrays.translations.resize_with(head.moving.len() + 1, Vec::new);
+        for values in &mut arrays.translations {
+            values.try_reserve_exact(head.frames)?;
+        }
+        arrays.ground_frames.try_reserve_exact(head.frames)?;
+        for flags in &mut arrays.contacts {
+            flags.try_reserve_exact(head.frames)?;
+        }
+        Ok(arrays)
+    }
+
     /// Takes what it still needs from the front of `bytes`.
     fn take(&mut self, head: &ClipHead, bytes: &mut &[u8]) {
         let frames = head.frames;
@@ -367,7 +396,6 @@ impl Arrays {
                 Quat::from_xyzw(x, y, z, w)
             },
         );
-        self.translations.resize_with(head.moving.len() + 1, Vec::new);
         for values in &mut self.translations {
             fill(values, frames, bytes, |b: &[u8; 12]| Vec3::from_array(floats(b)));
         }
@@ -417,11 +445,6 @@ fn fill<T, const N: usize>(values: &mut Vec<T>, wanted: usize, bytes: &mut &[u8]
     let missing = wanted.saturating_sub(values.len());
     let (all, _) = bytes.as_chunks::<N>();
     let coming = &all[..missing.min(all.len())];
-    if values.is_empty() && !coming.is_empty() {
-        // In one piece: to grow by doubling would copy many megabytes between two frames. The number is from the worker, not from the file, and
-        // where there is no room for it, growing fails with the same words.
-        values.try_reserve_exact(missing).ok();
-    }
     values.extend(coming.iter().map(read));
     *bytes = &bytes[coming.len() * N..];
 }
@@ -434,6 +457,10 @@ fn floats<const N: usize, const M: usize>(bytes: &[u8; N]) -> [f32; M] {
 pub struct Unpacker {
     head: Head,
     files: Vec<Incoming>,
+    /// How many bytes are expected.
+    bytes: usize,
+    /// The file that comes in; those before it are complete.
+    at: usize,
     found: usize,
 }
 
@@ -455,40 +482,47 @@ impl std::fmt::Debug for Unpacker {
 }
 
 impl Unpacker {
-    /// Begins with the head.
+    /// Begins with the head, and takes all the memory that the arrays will need, up to `room` bytes: nothing grows when the pieces come.
     ///
     /// # Errors
     /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for what it tells of.
-    pub fn new(head: &str) -> Result<Self, WireError> {
+    pub fn new(head: &str, room: u64) -> Result<Self, WireError> {
         let head: Head = serde_json::from_str(head)?;
         let bytes = (head.files.iter().map(FileHead::bytes)).fold(0, usize::saturating_add);
-        // Arrays double while they grow. Where that has no room, an allocation in the middle of it would end the program.
-        let mut room = Vec::<u8>::new();
-        room.try_reserve_exact(bytes.saturating_mul(2))
-            .map_err(|_| WireError::NoRoom { bytes })?;
-        // Without this the compiler leaves out what nobody uses.
-        drop(black_box(room));
+        let no_room = || WireError::NoRoom { bytes };
+        if bytes as u64 > room {
+            return Err(no_room());
+        }
+        let mut files = Vec::new();
+        for file in &head.files {
+            files.push(Incoming::with_room_for(file).map_err(|_| no_room())?);
+        }
         Ok(Self {
             head,
-            files: Vec::new(),
+            files,
+            bytes,
+            at: 0,
             found: 0,
         })
+    }
+
+    /// How many bytes the arrays take.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes as u64
     }
 
     /// Takes the next piece.
     pub fn push(&mut self, piece: &[u8]) {
         self.found += piece.len();
         let mut rest = piece;
-        // Those before the last one are complete.
-        let mut at = self.files.len().saturating_sub(1);
-        while let (false, Some(head)) = (rest.is_empty(), self.head.files.get(at)) {
-            if at == self.files.len() {
-                self.files.push(Incoming::default());
+        while let (Some(head), Some(file)) = (self.head.files.get(self.at), self.files.get_mut(self.at)) {
+            file.take(head, &mut rest);
+            if rest.is_empty() {
+                // There may be more of this one.
+                return;
             }
-            if let Some(file) = self.files.get_mut(at) {
-                file.take(head, &mut rest);
-            }
-            at += 1;
+            self.at += 1;
         }
     }
 
@@ -496,15 +530,13 @@ impl Unpacker {
     ///
     /// # Errors
     /// [`WireError`] when something is missing or makes no clip.
-    pub fn finish(mut self) -> Result<ReadReport, WireError> {
-        let expected = self.head.files.iter().map(FileHead::bytes).sum();
-        if self.found != expected {
+    pub fn finish(self) -> Result<ReadReport, WireError> {
+        if self.found != self.bytes {
             return Err(WireError::Length {
-                expected,
+                expected: self.bytes,
                 found: self.found,
             });
         }
-        self.files.resize_with(self.head.files.len(), Incoming::default);
         let files = self.head.files.into_iter().zip(self.files);
         let files: Result<Vec<ReadFile>, WireError> = files.map(|(head, file)| file.into_file(head)).collect();
         Ok(ReadReport {
@@ -515,20 +547,30 @@ impl Unpacker {
 }
 
 impl Incoming {
+    /// Takes the memory that a file needs.
+    fn with_room_for(head: &FileHead) -> Result<Self, TryReserveError> {
+        let mut unpacked = Vec::new();
+        unpacked.try_reserve_exact(head.unpacked.unwrap_or(0))?;
+        let clips: Result<Vec<Arrays>, TryReserveError> = head.clips().iter().map(Arrays::with_room_for).collect();
+        let meshes: Result<Vec<SkinnedMesh>, TryReserveError> = head.meshes().iter().map(MeshHead::room).collect();
+        Ok(Self {
+            unpacked,
+            clips: clips?,
+            meshes: meshes?,
+        })
+    }
+
     fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
         fill(&mut self.unpacked, head.unpacked.unwrap_or(0), bytes, |&[byte]| byte);
-        self.clips.resize_with(head.clips().len(), Arrays::default);
         for (head, clip) in head.clips().iter().zip(&mut self.clips) {
             clip.take(head, bytes);
         }
-        self.meshes.resize_with(head.meshes().len(), SkinnedMesh::default);
         for (head, mesh) in head.meshes().iter().zip(&mut self.meshes) {
             head.take(mesh, bytes);
         }
     }
 
-    fn into_file(mut self, head: FileHead) -> Result<ReadFile, WireError> {
-        self.clips.resize_with(head.clips().len(), Arrays::default);
+    fn into_file(self, head: FileHead) -> Result<ReadFile, WireError> {
         let result = match head.result {
             Ok(read) => {
                 let clips = read.clips.into_iter().zip(self.clips);
@@ -557,8 +599,7 @@ impl Incoming {
 impl ClipHead {
     /// How many bytes its arrays take.
     fn bytes(&self) -> usize {
-        let per_frame = 16 * self.joints.len() + 12 * (self.moving.len() + 1) + 24 + 2;
-        self.frames.saturating_mul(per_frame)
+        usize::try_from(motion_bytes(self.frames, self.joints.len(), self.moving.len())).unwrap_or(usize::MAX)
     }
 }
 
@@ -568,6 +609,29 @@ mod tests {
     use crate::formats::bvh;
     use crate::session::reading::{ReadSetup, read};
     use crate::synth::{Action, Params, synthesize};
+
+    impl Unpacker {
+        /// How many values its arrays have room for.
+        fn room(&self) -> Vec<usize> {
+            let of_clip = |clip: &Arrays| {
+                let translations: usize = clip.translations.iter().map(Vec::capacity).sum();
+                let contacts: usize = clip.contacts.iter().map(Vec::capacity).sum();
+                [clip.rotations.capacity(), translations, clip.ground_frames.capacity(), contacts]
+            };
+            let of_mesh = |mesh: &SkinnedMesh| {
+                let vertices = mesh.positions.capacity() + mesh.normals.capacity() + mesh.joints.capacity() + mesh.weights.capacity();
+                [vertices, mesh.colors.capacity(), mesh.triangles.capacity(), mesh.bind.capacity()]
+            };
+            let of_file = |file: &Incoming| {
+                let clips = file.clips.iter().flat_map(of_clip);
+                clips
+                    .chain(file.meshes.iter().flat_map(of_mesh))
+                    .chain([file.unpacked.capacity()])
+                    .collect::<Vec<_>>()
+            };
+            self.files.iter().flat_map(of_file).collect()
+        }
+    }
 
     fn report(secs: f32) -> ReadReport {
         let made = synthesize(&Params {
@@ -580,8 +644,10 @@ mod tests {
 
     fn sent(report: &ReadReport) -> ReadReport {
         let parcel = Parcel::new(report.clone()).unwrap();
-        let mut unpacker = Unpacker::new(parcel.head()).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
+        let room = unpacker.room();
         parcel.pieces(|piece| unpacker.push(piece));
+        assert_eq!(unpacker.room(), room, "nothing grows on the way");
         unpacker.finish().unwrap()
     }
 
@@ -592,12 +658,15 @@ mod tests {
         let parcel = Parcel::new(report).unwrap();
         let head = parcel.head().replace("\"unpacked\":7", "\"unpacked\":1125899906842624");
         assert_ne!(head, parcel.head());
-        let Err(error) = Unpacker::new(&head) else {
+        let Err(error) = Unpacker::new(&head, u64::MAX) else {
             panic!("there is no petabyte");
         };
         assert!(matches!(error, WireError::NoRoom { .. }), "{error}");
         assert!(error.to_string().contains("remove clips"), "{error}");
-        assert!(Unpacker::new(parcel.head()).is_ok());
+        // What there is room for is a matter of bytes.
+        let bytes = Unpacker::new(parcel.head(), u64::MAX).unwrap().bytes();
+        assert!(Unpacker::new(parcel.head(), bytes).is_ok());
+        assert!(matches!(Unpacker::new(parcel.head(), bytes - 1), Err(WireError::NoRoom { .. })));
     }
 
     #[test]
@@ -634,9 +703,9 @@ mod tests {
     #[test]
     fn what_is_lost_on_the_way_is_noticed() {
         let parcel = Parcel::new(report(2.0)).unwrap();
-        let mut unpacker = Unpacker::new(parcel.head()).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
         parcel.pieces(|piece| unpacker.push(&piece[..piece.len() - 2]));
         assert!(matches!(unpacker.finish(), Err(WireError::Length { .. })));
-        assert!(Unpacker::new("{}").is_err());
+        assert!(Unpacker::new("{}", u64::MAX).is_err());
     }
 }
