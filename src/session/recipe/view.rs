@@ -263,7 +263,7 @@ impl Viewer {
                     motion,
                     lock,
                     is_wanted,
-                    stage,
+                    stage: *stage,
                 },
             ),
             Step::Done(made) => {
@@ -278,29 +278,33 @@ impl Viewer {
 
 /// What a slice of work leads to.
 enum Step {
-    On(Stage),
+    On(Box<Stage>),
     Done(Box<Result<Outcome, String>>),
+}
+
+fn on(stage: Stage) -> Step {
+    Step::On(Box::new(stage))
 }
 
 fn next(of: &Arc<Motion>, stage: Stage) -> Step {
     match stage {
         Stage::Before(lock, mut meter) => {
             if meter.advance(&of.clip, &of.contacts, PER_SLICE) {
-                return Step::On(Stage::Before(lock, meter));
+                return on(Stage::Before(lock, meter));
             }
             let before_cm = meter.worst_cm();
             match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m, lock) {
-                Ok(Some(locking)) => Step::On(Stage::Locking {
+                Ok(Some(locking)) => on(Stage::Locking {
                     before_cm,
                     locking: Box::new(locking),
                 }),
-                Ok(None) => Step::On(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
+                Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
                 Err(error) => Step::Done(Box::new(Err(error))),
             }
         }
         Stage::Locking { before_cm, mut locking } => {
             if locking.advance(PER_SLICE) {
-                return Step::On(Stage::Locking { before_cm, locking });
+                return on(Stage::Locking { before_cm, locking });
             }
             match locking.finish() {
                 // Hips are only raised and lowered: the character stands where it stood.
@@ -309,14 +313,14 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
                         clip: Arc::new(locked),
                         ..Motion::clone(of)
                     };
-                    Step::On(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
+                    on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
                 }
                 Err(error) => Step::Done(Box::new(Err(error.to_string()))),
             }
         }
         Stage::Measuring { motion, before, mut meter } => {
             if meter.advance(&motion.clip, &motion.contacts, PER_SLICE) {
-                return Step::On(Stage::Measuring { motion, before, meter });
+                return on(Stage::Measuring { motion, before, meter });
             }
             let found = meter.finish(&motion.ground_frames);
             let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
