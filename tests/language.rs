@@ -320,8 +320,9 @@ fn no_translation_is_of_something_that_is_not_said() {
     assert_eq!(lines, entries.len(), "an entry stands in two sections");
 }
 
-/// Sentences that are made of several literals: their whole is an entry, because it cannot be told from its parts.
-const MADE: [&str; 16] = [
+/// Sentences that are made of several literals: their whole is an entry, because it cannot be told from its parts. And one that a script says.
+const MADE: [&str; 17] = [
+    "there is no memory to read it",
     "{#} units tall, read as {}: {#} m; {}",
     "{#} units tall, set to {}: {#} m; {}",
     "Found automatically: best match of both windows, {#} cm.",

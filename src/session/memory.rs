@@ -155,20 +155,24 @@ pub(super) fn refusal(name: &str, size: u64, needed: u64, memory: MemoryUse, lib
     let named: Vec<String> = large
         .iter()
         .take(MOST_NAMED)
-        .map(|(name, bytes)| format!("{name} ({} MB)", megabytes(*bytes)))
+        .map(|(name, bytes)| {
+            let size = format!("{} MB", megabytes(*bytes));
+            format!("{name} ({size})")
+        })
         .collect();
     let advice = if named.is_empty() {
         "Cut the motion into parts.".to_owned()
     } else {
         format!("Remove clips that you do not need; the largest are {}.", named.join(", "))
     };
-    format!(
-        "There is no memory for {name} ({} MB): its clips need {} MB, and {} of {} MB are left. {advice}",
+    let told = format!(
+        "There is no memory for {name} ({} MB): its clips need {} MB, and {} of {} MB are left.",
         megabytes(size),
         megabytes(needed),
         memory.left() / 1_000_000,
         megabytes(memory.limit),
-    )
+    );
+    format!("{told} {advice}")
 }
 
 #[cfg(test)]
