@@ -2,10 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue::scene::{Colors, Director, Look, Viewport};
-use segue::session::{Command, Session};
-use segue::skeleton::Roles;
-use segue::skin::{Sculptor, SkinnedMesh};
-use segue::synth::humanoid;
+use segue_motion::skeleton::Roles;
+use segue_motion::skin::{Sculptor, SkinnedMesh};
+use segue_motion::synth::humanoid;
+use segue_session::{Command, Session};
 use std::hint::black_box;
 
 fn frame(c: &mut Criterion) {

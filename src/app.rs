@@ -23,8 +23,8 @@ use frames::Frames;
 use keeper::Keeper;
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
-use segue::session::Storing;
-use segue::session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
+use segue_session::Storing;
+use segue_session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

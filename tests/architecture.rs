@@ -1,54 +1,45 @@
-//! The arrows between the folders of `src` go one way, and what is unfinished does not pass. Read from the text of the sources, so that a
-//! slip is told by its line.
+//! What the crates cannot say by themselves: the order of the folders inside `segue-motion` and the app, what the libraries never use, and that
+//! nothing unfinished passes. Read from the text of the sources, so that a violation is reported with its line.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The folders of the library, each with those that its code may name beside itself.
-const LIBRARY: [(&str, &str); 16] = [
+/// The folders of `segue-motion`, each with those that its code may name beside itself.
+const MOTION: [(&str, &str); 13] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
     ("skin", "math skeleton clip"),
-    ("formats", "math skeleton clip skin"),
     ("synth", "math skeleton clip"),
     ("registration", "math skeleton clip"),
     ("transition", "math skeleton clip registration blend"),
     ("blend", "math skeleton clip registration"),
     ("metrics", "math skeleton clip blend"),
     ("gait", "math skeleton clip registration blend transition"),
-    ("graph", MOTION),
-    ("path", MOTION),
-    ("matching", MOTION),
-    ("session", ALL_MOTION),
-    ("scene", ALL_MOTION_AND_SESSION),
+    ("graph", BELOW),
+    ("path", BELOW),
+    ("matching", BELOW),
 ];
 
-/// The folders of the app, and the worker that reads files, which has nothing of it. The platform holds the handle by which the page drives the app, so these two know each other.
-const APP: [(&str, &str); 6] = [
-    ("render", LIBRARY_WITHOUT_SESSION),
-    ("ui", WHOLE_LIBRARY),
-    ("platform", WHOLE_LIBRARY_AND_APP),
-    ("app", EVERYTHING),
+const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics";
+
+/// The folders of the app, and the worker that reads files, which uses none of them; what they may name of the app and of the workspace's crates.
+/// The platform holds the handle by which the page drives the app, so these two name each other.
+const APP: [(&str, &str); 7] = [
+    ("scene", "segue_motion segue_session"),
+    ("render", "scene segue_motion"),
+    ("ui", "scene segue_motion segue_formats segue_session"),
+    ("platform", "app scene segue_motion segue_formats segue_session"),
+    ("app", "scene render ui platform segue_motion segue_formats segue_session"),
     ("main", "app platform render ui"),
-    ("bin", "session"),
+    ("bin", "segue_session"),
 ];
 
-const MOTION: &str = "math skeleton clip formats synth registration transition gait blend metrics";
-const ALL_MOTION: &str = "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching";
-const ALL_MOTION_AND_SESSION: &str =
-    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session";
-const LIBRARY_WITHOUT_SESSION: &str =
-    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching scene";
-const WHOLE_LIBRARY: &str =
-    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene";
-const WHOLE_LIBRARY_AND_APP: &str =
-    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene app";
-const EVERYTHING: &str =
-    "math skeleton clip skin formats synth registration transition gait blend metrics graph path matching session scene render ui platform";
+/// The crates of the workspace that are libraries.
+const CRATES: [&str; 3] = ["segue_motion", "segue_formats", "segue_session"];
 
-/// What the library never names: screens, the browser, files, clock and threads.
+/// What the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 13] = [
     "egui",
     "eframe",
@@ -75,10 +66,13 @@ const UNFINISHED: [&str; 4] = [
 
 #[test]
 fn arrows_go_one_way() {
-    let sources = sources("src");
+    let sources: Vec<_> = ["src", "crates"].into_iter().flat_map(sources).collect();
     let tests = test_modules(&sources);
     let mut slips = Vec::new();
-    for (path, text) in sources.iter().filter(|(path, _)| !is_test_file(path, &tests)) {
+    for (path, text) in sources
+        .iter()
+        .filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
+    {
         slips.extend(violations(path, text));
     }
     assert!(sources.len() > 100, "only {} sources found", sources.len());
@@ -87,7 +81,7 @@ fn arrows_go_one_way() {
 
 #[test]
 fn nothing_is_left_unfinished() {
-    let sources: Vec<_> = ["src", "tests", "benches", "examples", "fuzz/fuzz_targets", "xtask/src"]
+    let sources: Vec<_> = ["src", "crates", "tests", "benches", "examples", "fuzz/fuzz_targets", "xtask/src"]
         .into_iter()
         .flat_map(sources)
         .collect();
@@ -95,7 +89,7 @@ fn nothing_is_left_unfinished() {
     let mut slips = Vec::new();
     for (path, text) in &sources {
         slips.extend(unfinished(path, text));
-        if path.starts_with("src") && !is_test_file(path, &tests) {
+        if is_production(path) && !is_test_file(path, &tests) {
             slips.extend(unwraps(path, text));
         }
     }
@@ -105,30 +99,36 @@ fn nothing_is_left_unfinished() {
 #[test]
 fn a_violation_is_seen() {
     let found = |path: &str, text: &str| violations(Path::new(path), text);
-    assert_eq!(found("src/clip/storage.rs", "use crate::math::quat;\nuse super::Clip;\n"), [""; 0]);
     assert_eq!(
-        found("src/clip/storage.rs", "\nuse crate::session::Session;\n"),
-        ["src/clip/storage.rs:2: `clip` names `session`"]
+        found("crates/motion/src/clip/storage.rs", "use crate::math::quat;\nuse super::Clip;\n"),
+        [""; 0]
     );
     assert_eq!(
-        found("src/math/quat.rs", "fn f() { crate::clip::g(); }"),
-        ["src/math/quat.rs:1: `math` names `clip`"]
+        found("crates/motion/src/clip/storage.rs", "\nuse crate::graph::Walk;\n"),
+        ["crates/motion/src/clip/storage.rs:2: `clip` names `graph`"]
     );
     assert_eq!(
-        found("src/blend/mod.rs", "use crate::{\n    clip::{Clip, graph},\n    path,\n};"),
-        ["src/blend/mod.rs:1: `blend` names `path`"]
+        found("crates/motion/src/math/quat.rs", "fn f() { crate::clip::g(); }"),
+        ["crates/motion/src/math/quat.rs:1: `math` names `clip`"]
+    );
+    assert_eq!(
+        found(
+            "crates/motion/src/blend/mod.rs",
+            "use crate::{\n    clip::{Clip, graph},\n    path,\n};"
+        ),
+        ["crates/motion/src/blend/mod.rs:1: `blend` names `path`"]
     );
     assert_eq!(
         found("src/scene/rig.rs", "use super::super::ui;"),
         ["src/scene/rig.rs:1: `super` leaves `scene`"]
     );
     assert_eq!(
-        found("src/render/frame.rs", "use segue::session::Session;"),
-        ["src/render/frame.rs:1: `render` names `session`"]
+        found("src/render/frame.rs", "use segue_session::Session;\nuse segue::scene::Pane;"),
+        ["src/render/frame.rs:1: `render` names `segue_session`"]
     );
     assert_eq!(
-        found("src/scene/rig.rs", "use egui::Ui;"),
-        ["src/scene/rig.rs:1: `scene` names `egui`"]
+        found("crates/session/src/link.rs", "use egui::Ui;"),
+        ["crates/session/src/link.rs:1: a library names `egui`"]
     );
     assert_eq!(found("src/attic/old.rs", ""), ["src/attic/old.rs:1: `attic` has no row here"]);
     // Comments and tests may name what they like, but what comes after the tests is code again.
@@ -145,12 +145,12 @@ fn a_violation_is_seen() {
     }
 
     let parent = (
-        PathBuf::from("src/skeleton/mod.rs"),
-        "#[cfg(test)]\npub(crate) mod fixtures;\nmod tree;\n".to_owned(),
+        PathBuf::from("crates/motion/src/skeleton/mod.rs"),
+        "#[cfg(any(test, feature = \"fixtures\"))]\npub mod fixtures;\nmod tree;\n".to_owned(),
     );
     let tests = test_modules(&[parent]);
-    assert!(is_test_file(Path::new("src/skeleton/fixtures/rigs.rs"), &tests));
-    assert!(!is_test_file(Path::new("src/skeleton/tree.rs"), &tests));
+    assert!(is_test_file(Path::new("crates/motion/src/skeleton/fixtures/rigs.rs"), &tests));
+    assert!(!is_test_file(Path::new("crates/motion/src/skeleton/tree.rs"), &tests));
 }
 
 /// The Rust files below a folder of the repository, by their paths in it.
@@ -173,14 +173,17 @@ fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The modules of a path in `src`, outermost first: `src/a/b.rs` and `src/a/b/mod.rs` are both `a`, `b`.
+/// Whether a file belongs to a crate's `src`, not to its tests, benches or examples.
+fn is_production(path: &Path) -> bool {
+    path.starts_with("src") || path.iter().nth(2).is_some_and(|folder| folder == "src")
+}
+
+/// Returns the modules of a path below `src`, outermost first: `src/a/b.rs` and `src/a/b/mod.rs` are both `a`, `b`.
 fn modules(path: &Path) -> Vec<String> {
-    let mut names: Vec<String> = path
-        .with_extension("")
-        .iter()
-        .skip(1)
-        .map(|name| name.to_string_lossy().into_owned())
-        .collect();
+    let path = path.with_extension("");
+    let mut names: Vec<String> = path.iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    let source = names.iter().position(|name| name == "src").map_or(0, |at| at + 1);
+    names.drain(..source);
     if names
         .last()
         .is_some_and(|name| name == "mod" || (names.len() == 1 && name == "lib"))
@@ -188,6 +191,13 @@ fn modules(path: &Path) -> Vec<String> {
         names.pop();
     }
     names
+}
+
+/// Returns the folder of a path's crate and its modules.
+fn located(path: &Path) -> Vec<String> {
+    let folder: Vec<_> = path.iter().take_while(|name| *name != "src").collect();
+    let folder = folder.into_iter().collect::<PathBuf>().display().to_string();
+    std::iter::once(folder).chain(modules(path)).collect()
 }
 
 /// The modules in files of their own that are compiled for tests only.
@@ -210,7 +220,7 @@ fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
                     .and_then(|item| item.rsplit_once("mod "))
                     .map(|(_, name)| name);
                 if let (true, Some(name)) = (for_tests, name) {
-                    let mut module = modules(path);
+                    let mut module = located(path);
                     if file.is_some() && !path.ends_with("mod.rs") {
                         module.pop();
                     }
@@ -225,12 +235,14 @@ fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
 }
 
 fn is_test_file(path: &Path, tests: &BTreeSet<Vec<String>>) -> bool {
-    let modules = modules(path);
+    let modules = located(path);
     tests.iter().any(|test| modules.starts_with(test))
 }
 
 fn is_for_tests(line: &str) -> bool {
-    line.starts_with("#[cfg(test)]") || line.starts_with("#[cfg(all(test,")
+    ["#[cfg(test)]", "#[cfg(all(test,", "#[cfg(any(test,"]
+        .iter()
+        .any(|start| line.starts_with(start))
 }
 
 /// The text without comments and without items for tests; its lines stay where they are.
@@ -296,30 +308,39 @@ fn heads(rest: &str) -> Vec<&str> {
     names
 }
 
-/// What one source names against the arrows, a sentence each.
+/// Returns what one source names against the order, a sentence each.
 fn violations(path: &Path, text: &str) -> Vec<String> {
     let code = code(text);
     let modules = modules(path);
     let mut found = Vec::new();
     let line = |at: usize| code[..at].matches('\n').count() + 1;
     let mut tell = |at: usize, what: String| found.push((at, format!("{}:{}: {what}", path.display(), line(at))));
-    if let Some(own) = modules.first() {
-        let in_library = LIBRARY.iter().any(|(name, _)| name == own);
-        let row = LIBRARY.iter().chain(&APP).find(|(name, _)| name == own);
+    let in_app = path.starts_with("src");
+    let rows: &[(&str, &str)] = match path.starts_with("crates/motion") {
+        true => &MOTION,
+        false if in_app => &APP,
+        false => &[],
+    };
+    if let Some(own) = modules.first().filter(|_| !rows.is_empty()) {
+        let row = rows.iter().find(|(name, _)| name == own);
         if row.is_none() {
             tell(0, format!("`{own}` has no row here"));
         }
         let allowed = row.map_or("", |(_, allowed)| allowed);
+        let is_allowed = |name: &str| name == own || allowed.split(' ').any(|other| other == name);
         for root in ["crate", "segue"] {
             for at in places(&code, root) {
                 let Some(rest) = code[at + root.len()..].strip_prefix("::") else {
                     continue;
                 };
-                for name in heads(rest) {
-                    if name != own && !allowed.split(' ').any(|other| other == name) {
-                        tell(at, format!("`{own}` names `{name}`"));
-                    }
+                for name in heads(rest).into_iter().filter(|name| !is_allowed(name)) {
+                    tell(at, format!("`{own}` names `{name}`"));
                 }
+            }
+        }
+        for name in CRATES.into_iter().filter(|name| in_app && !is_allowed(name)) {
+            for at in places(&code, name) {
+                tell(at, format!("`{own}` names `{name}`"));
             }
         }
         for at in places(&code, "super") {
@@ -328,16 +349,10 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
                 tell(at, format!("`super` leaves `{own}`"));
             }
         }
-        for outside in OUTSIDE.iter().filter(|_| in_library) {
-            for at in places(&code, outside) {
-                tell(at, format!("`{own}` names `{outside}`"));
-            }
-        }
-    } else {
-        for outside in OUTSIDE {
-            for at in places(&code, outside) {
-                tell(at, format!("the library names `{outside}`"));
-            }
+    }
+    for outside in OUTSIDE.iter().filter(|_| !in_app) {
+        for at in places(&code, outside) {
+            tell(at, format!("a library names `{outside}`"));
         }
     }
     found.sort();

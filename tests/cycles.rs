@@ -3,18 +3,18 @@
 
 #![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use formats_common::{bvh_files, captured, shared_data};
-use segue::blend::Source;
-use segue::clip::{Clip, ContactOptions, Contacts, character_frames};
-use segue::formats::{ImportOptions, import};
-use segue::registration::{REFERENCE_HEIGHT_M, distances_directly, limb_weights};
-use segue::session::{Command, Session};
-use segue::skeleton::{Roles, Side};
-use segue::synth::{Action, Params, synthesize};
-use segue::transition::{CycleSearch, LoopOptions, close_loop, find_cycle};
+use common::{bvh_files, captured, shared_data};
+use segue_formats::{ImportOptions, import};
+use segue_motion::blend::Source;
+use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames};
+use segue_motion::registration::{REFERENCE_HEIGHT_M, distances_directly, limb_weights};
+use segue_motion::skeleton::{Roles, Side};
+use segue_motion::synth::{Action, Params, synthesize};
+use segue_motion::transition::{CycleSearch, LoopOptions, close_loop, find_cycle};
+use segue_session::{Command, Session};
 use std::sync::Arc;
 
 /// Made walks and runs of several speeds, along lines and curves, and captured ones.

@@ -1,16 +1,16 @@
 //! A result depends on the motion, not on how a file writes it down: every lab gives the same for one motion in ten files.
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 #[path = "encodings/rigs.rs"]
 mod rigs;
 
 use glam::{Quat, Vec3};
 use rigs::{encodings, placed};
-use segue::clip::{Clip, Interpolation, resample};
-use segue::formats::{ImportOptions, import};
-use segue::session::{Command, Outcome, Session};
-use segue::synth::{Action, Params, synthesize};
+use segue_formats::{ImportOptions, import};
+use segue_motion::clip::{Clip, Interpolation, resample};
+use segue_motion::synth::{Action, Params, synthesize};
+use segue_session::{Command, Outcome, Session};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ fn unrepeated(clip: &Clip) -> Clip {
 
 /// Captured motion, where this machine has it, at 60 frames per second.
 fn captured() -> Vec<Subject> {
-    let mut takes = formats_common::captured(&["15", "35"]).into_iter();
+    let mut takes = common::captured(&["15", "35"]).into_iter();
     let (Some((_, a)), Some((_, b))) = (takes.next(), takes.next()) else {
         return vec![];
     };

@@ -1,17 +1,17 @@
 //! Feet that slide in a transition are planted: on captured motion, where this machine has it, and on made motion everywhere.
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use formats_common::captured;
-use segue::blend::{Concatenation, Source};
-use segue::clip::{Clip, ContactOptions, Contacts};
-use segue::math::{Decay, quat};
-use segue::metrics::{Profile, Subject, TransitionMetrics};
-use segue::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
-use segue::skeleton::{Role, Roles, Side};
-use segue::synth::{Action, Params, synthesize};
-use segue::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
+use common::captured;
+use segue_motion::blend::{Concatenation, Source};
+use segue_motion::clip::{Clip, ContactOptions, Contacts};
+use segue_motion::math::{Decay, quat};
+use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
+use segue_motion::skeleton::{Role, Roles, Side};
+use segue_motion::synth::{Action, Params, synthesize};
+use segue_motion::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
 use std::sync::Arc;
 
 struct Take {

@@ -1,18 +1,19 @@
 //! Every sentence that reaches the screen has a Chinese one in `assets/lang/zh-Hant.json`, and every entry there is one that the program
 //! says. Read from the text of the sources, so that a new sentence cannot be forgotten.
 
-use segue::session::{Kind, PARAMS};
+use segue_session::{Kind, PARAMS};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
 /// Where no sentence is for the screen: what is drawn is named for graphics tools there, files and reports get their keywords and names, the page's
 /// API and the programs that test it are spoken to in English.
-const NOT_SHOWN: [&str; 13] = [
-    "src/session/report.rs",
+const NOT_SHOWN: [&str; 14] = [
+    "crates/session/src/report.rs",
     "src/app/api.rs",
-    "src/formats/bvh/write.rs",
-    "src/graph/export.rs",
+    "crates/formats/src/bvh/write.rs",
+    "crates/motion/src/graph/export.rs",
+    "crates/motion/src/lib.rs",
     "src/lib.rs",
     "src/main.rs",
     "src/platform/vault.rs",
@@ -25,7 +26,7 @@ const NOT_SHOWN: [&str; 13] = [
 ];
 
 /// Where words stand alone: elsewhere a word without a space is taken for a key.
-const WORDS: [&str; 3] = ["src/ui/text.rs", "src/ui/kit/words.rs", "src/session/params.rs"];
+const WORDS: [&str; 3] = ["src/ui/text.rs", "src/ui/kit/words.rs", "crates/session/src/params.rs"];
 
 /// What stands before a literal that nobody sees: reasons for the next programmer, the log, names of widgets.
 const UNSEEN: [&str; 17] = [
@@ -205,7 +206,9 @@ fn without_tests(source: &str) -> String {
 
 /// The sources of the program, by their paths; not those for tests.
 fn sources() -> Vec<(String, String)> {
-    let mut open = vec![root().join("src")];
+    let mut open = ["src", "crates/motion/src", "crates/formats/src", "crates/session/src"]
+        .map(|folder| root().join(folder))
+        .to_vec();
     let mut found = Vec::new();
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(folder).expect("a folder of sources") {
@@ -275,7 +278,7 @@ fn every_sentence_has_its_translation() {
     let mut missing = BTreeSet::new();
     let mut seen = 0;
     for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
-        if path == "src/session/params.rs" {
+        if path == "crates/session/src/params.rs" {
             continue;
         }
         for text in shown(path, source) {

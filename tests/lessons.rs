@@ -2,8 +2,8 @@
 
 mod bundled;
 
-use segue::session::lesson::{CONTENTS, LESSONS, MOST_BYTES, Page, file_name, parse};
-use segue::session::{Command, Level, Session, link};
+use segue_session::lesson::{CONTENTS, LESSONS, MOST_BYTES, Page, file_name, parse};
+use segue_session::{Command, Level, Session, link};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +82,7 @@ fn tried(lesson: &str, query: &str) -> Session {
     session
         .apply(Command::OpenLink(format!("lesson={lesson}")))
         .expect("a link is never refused");
-    let source = segue::session::lesson::source_of(lesson, "en").expect("a lesson of the list").0;
+    let source = segue_session::lesson::source_of(lesson, "en").expect("a lesson of the list").0;
     session.finish_lesson(&source, Ok(text("en", lesson).as_bytes()));
     session.apply(Command::Try(query.to_owned())).expect("a lesson is open");
     assert!(session.is_tried(query), "{lesson}: {query}");

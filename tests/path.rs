@@ -1,22 +1,22 @@
 //! Paths of motions, edited: on made motion everywhere, and on captured motion where this machine has it.
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use formats_common::shared_data;
+use common::shared_data;
 use glam::DVec2;
 use proptest::prelude::*;
-use segue::blend::Source;
-use segue::clip::{Clip, ContactOptions, Contacts};
-use segue::formats::{ImportOptions, import};
-use segue::math::{Planar, quat};
-use segue::path::{
+use segue_formats::{ImportOptions, import};
+use segue_motion::blend::Source;
+use segue_motion::clip::{Clip, ContactOptions, Contacts};
+use segue_motion::math::{Planar, quat};
+use segue_motion::path::{
     Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset, Orientation, PathEdit, PathEditError, PathEditor,
     Pins, Road, SplineEnds, Timing, carry, hard_turns,
 };
-use segue::skeleton::Roles;
-use segue::synth::{Action, Params, presets, synthesize};
-use segue::transition::FootLockOptions;
+use segue_motion::skeleton::Roles;
+use segue_motion::synth::{Action, Params, presets, synthesize};
+use segue_motion::transition::FootLockOptions;
 use std::sync::Arc;
 
 const TIMINGS: [Timing; 3] = [Timing::Metres, Timing::Speed, Timing::Duration];

@@ -1,12 +1,12 @@
 //! Every lab on motions that nobody chose: synthesised ones everywhere, captured ones where this machine has them. `cargo xtask quality` does so for any
 //! folder, and prints the numbers.
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 #[path = "../examples/quality/trials/mod.rs"]
 mod trials;
 
-use segue::session::{Command, write_ids};
+use segue_session::{Command, write_ids};
 use trials::folder::{Motions, encoded};
 use trials::trial::{Came, Trial, try_all};
 
@@ -57,7 +57,7 @@ fn synthesised_motions_have_no_artefacts_in_any_lab() {
 
 #[test]
 fn captured_motions_have_no_artefacts_in_any_lab() {
-    let Some(folder) = formats_common::subject_16() else { return };
+    let Some(folder) = common::subject_16() else { return };
     let motions = Motions::of_folder(&folder).expect("the folder can be read");
     assert!(motions.takes.len() >= 15 && motions.refused.is_empty(), "{:?}", motions.refused);
     let trials = try_all(&motions, 3, 2);
@@ -70,7 +70,7 @@ fn captured_motions_have_no_artefacts_in_any_lab() {
 
 #[test]
 fn a_long_walk_through_captured_motion_neither_spins_nor_flashes() {
-    let Some(folder) = formats_common::subject_16() else { return };
+    let Some(folder) = common::subject_16() else { return };
     let motions = Motions::of_folder(&folder).expect("the folder can be read");
     let all: Vec<usize> = (0..motions.takes.len()).collect();
     let (mut session, ids) = motions.open(&all).expect("the takes are read");

@@ -1,6 +1,6 @@
 //! The README's table of parameters is made from the one table of parameters. `cargo xtask docs` writes it.
 
-use segue::session::{Kind, PARAMS, Param};
+use segue_session::{Kind, PARAMS, Param};
 use std::fmt::Write as _;
 
 const BEGIN: &str = "<!-- parameters -->\n";

@@ -1,28 +1,15 @@
 //! Roles, mirror images, other skeletons and contacts on real captures. Passes without the files, which are not part of the project.
 
-#![expect(clippy::print_stdout, reason = "a skipped test says so")]
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use segue::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed, mirror, retarget};
-use segue::formats::{ImportOptions, import};
-use segue::skeleton::{Found, Joint, Role, Roles, Side, Skeleton};
-use std::path::{Path, PathBuf};
-
-fn data() -> Option<PathBuf> {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let places = [
-        std::env::var_os("SEGUE_SHARED").map(PathBuf::from),
-        Some(here.join("../shared/data")),
-        Some(here.join("../../shared/data")),
-    ];
-    let found = places.into_iter().flatten().find(|place| place.join("games105").is_dir());
-    if found.is_none() {
-        println!("skipped: the captures are not here");
-    }
-    found
-}
+use common::shared_data;
+use segue_formats::{ImportOptions, import};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed, mirror, retarget};
+use segue_motion::skeleton::{Found, Joint, Role, Roles, Side, Skeleton};
 
 fn clips(names: &[&str]) -> Vec<(Clip, Roles)> {
-    let Some(data) = data() else { return Vec::new() };
+    let Some(data) = shared_data() else { return Vec::new() };
     let load = |name: &&str| {
         let bytes = std::fs::read(data.join(name)).ok()?;
         let clip = import(name, &bytes, &ImportOptions::default()).ok()?.clips.swap_remove(0).clip;

@@ -1,14 +1,14 @@
 //! Registered blends of captured walks against plain ones, where this machine has the data.
 
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use formats_common::captured;
+use common::captured;
 use glam::Vec3;
-use segue::blend::{DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join};
-use segue::clip::{Clip, ContactOptions, Contacts, Interpolation};
-use segue::registration::{PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights};
-use segue::skeleton::{Roles, Side, world_pose};
+use segue_motion::blend::{DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Interpolation};
+use segue_motion::registration::{PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights};
+use segue_motion::skeleton::{Roles, Side, world_pose};
 use std::sync::Arc;
 
 struct Take {

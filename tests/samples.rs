@@ -1,14 +1,14 @@
 //! The bundled takes of one actor: what their files hold, and that it is what the database's own files hold, where this machine has those.
 
 mod bundled;
-#[path = "formats_common/mod.rs"]
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
-use formats_common::captured;
-use segue::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed};
-use segue::formats::{ImportOptions, import, unpack_gzip};
-use segue::session::{Sample, Session};
-use segue::skeleton::{Roles, Side, WorldPose};
+use common::captured;
+use segue_formats::{ImportOptions, import, unpack_gzip};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed};
+use segue_motion::skeleton::{Roles, Side, WorldPose};
+use segue_session::{Sample, Session};
 use sha2::{Digest as _, Sha256};
 
 /// What all takes of the set may weigh together, bytes.

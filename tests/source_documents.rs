@@ -3,16 +3,17 @@
 //!
 //! Motions are synthesised. Where the homework's own files lie beside the project they are used as well.
 
-mod formats_common;
+#[path = "../crates/formats/tests/common/mod.rs"]
+mod common;
 
 use glam::{DVec2, Vec3};
 use petgraph::visit::EdgeRef;
-use segue::blend::WeightLaw;
-use segue::graph::{Construction, MotionGraph};
-use segue::math::{Planar, quat, spring};
-use segue::path::SplineEnds;
 use segue::scene::{Colors, Director, Look, Viewport};
-use segue::session::{Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk};
+use segue_motion::blend::WeightLaw;
+use segue_motion::graph::{Construction, MotionGraph};
+use segue_motion::math::{Planar, quat, spring};
+use segue_motion::path::SplineEnds;
+use segue_session::{Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk};
 use std::sync::Arc;
 
 /// An angle by the shorter way round, radians.
@@ -282,7 +283,7 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
     let own = clip(&mut session, "walk_left");
     assert!(Arc::ptr_eq(&motion(&session, 0).clip, &own.clip));
     let still = motion(&session, 1);
-    let facing = segue::clip::character_frames(&still.clip, &still.roles);
+    let facing = segue_motion::clip::character_frames(&still.clip, &still.roles);
     for (frame, told) in facing.iter().zip(&still.ground_frames) {
         for stands in [frame, told] {
             assert!(stands.shift.length() < 1e-3 && stands.yaw.abs() < 1e-3, "{stands:?}");
@@ -550,7 +551,7 @@ fn every_search_finds_the_same_frames() {
 /// The homework's own files, where they are.
 #[test]
 fn the_homeworks_own_files_are_shown_in_place_and_on_a_path() {
-    let Some(data) = formats_common::shared_data() else { return };
+    let Some(data) = common::shared_data() else { return };
     for name in ["walk_forward.bvh", "run_forward.bvh"] {
         let Ok(bytes) = std::fs::read(data.join("games105").join(name)) else {
             continue;

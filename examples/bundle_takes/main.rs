@@ -7,9 +7,9 @@
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use segue::clip::Clip;
-use segue::formats::acclaim::{read_motion, read_skeleton};
-use segue::formats::{ImportOptions, bvh};
+use segue_formats::acclaim::{read_motion, read_skeleton};
+use segue_formats::{ImportOptions, bvh};
+use segue_motion::clip::Clip;
 use sha2::{Digest as _, Sha256};
 use std::error::Error;
 use std::fmt::Write as _;

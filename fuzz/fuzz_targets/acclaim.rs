@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::formats::ImportOptions;
-use segue::formats::acclaim::{best_skeleton, bone_names, read_motion, read_skeleton, skeleton_clip};
+use segue_formats::ImportOptions;
+use segue_formats::acclaim::{best_skeleton, bone_names, read_motion, read_skeleton, skeleton_clip};
 
 fuzz_target!(|bytes: &[u8]| {
     let options = ImportOptions::default();

@@ -4,8 +4,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::formats::bvh::{WriteOptions, read, write};
-use segue::formats::{ImportOptions, Imported};
+use segue_formats::bvh::{WriteOptions, read, write};
+use segue_formats::{ImportOptions, Imported};
 
 fuzz_target!(|bytes: &[u8]| {
     let found = read("fuzz.bvh", bytes, &ImportOptions::default());

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::session::lesson::{Block, Span, Target, parse};
+use segue_session::lesson::{Block, Span, Target, parse};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(pages) = parse(bytes) else { return };

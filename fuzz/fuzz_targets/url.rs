@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::session::{Command, Session};
+use segue_session::{Command, Session};
 use std::cell::RefCell;
 
 thread_local! {

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::formats::archive::{ArchiveLimits, unpack};
+use segue_formats::archive::{ArchiveLimits, unpack};
 
 fuzz_target!(|bytes: &[u8]| {
     let limits = ArchiveLimits { max_bytes: 1 << 20, ..ArchiveLimits::default() };

@@ -1,7 +1,7 @@
 //! Keeps the page's address in step with the state.
 
 use crate::platform;
-use segue::session::{Key, Session};
+use segue_session::{Key, Session};
 
 /// Browsers refuse an address that changes more often than about three times a second.
 const LEAST_GAP_MS: f64 = 350.0;

@@ -6,17 +6,17 @@ use super::link_query;
 use crate::platform::{self, FileBytes};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
-use segue::math::Planar;
-use segue::metrics::{Better, Metric};
 use segue::scene::pose_at;
-use segue::session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
-use segue::session::outside;
-use segue::session::reading::Content;
-use segue::session::{
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Better, Metric};
+use segue_motion::skeleton::Side;
+use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue_session::outside;
+use segue_session::reading::Content;
+use segue_session::{
     ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, check_graph_clips,
     frame_at, report,
 };
-use segue::skeleton::Side;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;

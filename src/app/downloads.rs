@@ -1,7 +1,7 @@
 //! Files and lessons that come over the network. Files are handed on in the order in which they were asked for: the first one is A, the second B.
 
 use crate::platform::{self, Fetch, FileBytes, Inbox, fetch, file_name_of};
-use segue::session::lesson::Source;
+use segue_session::lesson::Source;
 use std::collections::VecDeque;
 
 /// Bytes, or why there are none.

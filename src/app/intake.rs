@@ -4,8 +4,8 @@ use super::downloads::lesson_file;
 use super::{Event, Segue};
 use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadNews};
 use crate::ui;
-use segue::session::reading::Content;
-use segue::session::{Command, Key, Level, Request, Value};
+use segue_session::reading::Content;
+use segue_session::{Command, Key, Level, Request, Value};
 
 impl Segue {
     pub(super) fn receive(&mut self, incoming: Incoming) {

@@ -1,7 +1,7 @@
 //! Keeps the work: brings it back at the start, stores a file as soon as it is read, and everything else soon after it has changed.
 
 use crate::platform::{Arrival, Storage, Stored, StoredFiles, Vault, Work};
-use segue::session::{Origin, Saved, SavedEntry, Session, Storing};
+use segue_session::{Origin, Saved, SavedEntry, Session, Storing};
 use std::collections::BTreeSet;
 
 /// The page does not wait longer than this for what is stored, milliseconds.
@@ -312,7 +312,7 @@ fn files_of(session: &Session, vault: &Vault) -> StoredFiles {
 mod tests {
     use super::*;
     use crate::platform::FileBytes;
-    use segue::session::{Command, Key, Slot, Value};
+    use segue_session::{Command, Key, Slot, Value};
     use std::sync::Arc;
 
     const STANDING: &str =

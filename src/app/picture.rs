@@ -6,7 +6,7 @@ use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
 use segue::scene::{Camera, Color, Colors, Director, Look, PathMarks, Viewport};
-use segue::session::Session;
+use segue_session::Session;
 
 /// The one stage of the page.
 const STAGE: u64 = 0;
@@ -65,7 +65,7 @@ impl Picture {
     }
 
     /// The frame that is shown as a ghost beside the driven character, in what is drawn from now on.
-    pub(crate) fn show_candidate(&mut self, place: Option<segue::matching::Place>) {
+    pub(crate) fn show_candidate(&mut self, place: Option<segue_motion::matching::Place>) {
         self.director.show_candidate(place);
     }
 
@@ -75,7 +75,7 @@ impl Picture {
     }
 
     /// The transition whose windows are shown in place of the result from now on.
-    pub(crate) fn show_jump(&mut self, ends: Option<[segue::graph::Place; 2]>) {
+    pub(crate) fn show_jump(&mut self, ends: Option<[segue_motion::graph::Place; 2]>) {
         self.director.show_jump(ends);
     }
 

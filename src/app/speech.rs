@@ -3,7 +3,7 @@
 use crate::platform::{self, Inbox};
 use crate::ui::{Language, Tongue, speak_english};
 use eframe::egui::Context;
-use segue::session::Session;
+use segue_session::Session;
 use std::sync::Arc;
 
 /// The language of a window: a new one begins in English, without the letters of any other.

@@ -3,7 +3,7 @@
 #[cfg(target_arch = "wasm32")]
 mod worker {
     use js_sys::{Function, Uint8Array};
-    use segue::session::reading::{Parcel, ReadSetup, read};
+    use segue_session::reading::{Parcel, ReadSetup, read};
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 

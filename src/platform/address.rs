@@ -2,7 +2,7 @@
 
 use super::last_part;
 use percent_encoding::percent_decode_str;
-use segue::session::outside;
+use segue_session::outside;
 
 /// The key with which a page is told which graphics to use. It belongs to the page, not to the state.
 const BACKEND: &str = "backend";

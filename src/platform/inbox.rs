@@ -1,7 +1,7 @@
 use super::{FileBytes, LargeFile, ReadNews, Stored};
 use eframe::egui;
-use segue::session::lesson::Source;
-use segue::session::{Sample, SavedEntry};
+use segue_session::lesson::Source;
+use segue_session::{Sample, SavedEntry};
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};

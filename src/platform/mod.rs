@@ -25,8 +25,8 @@ pub(crate) use web::*;
 pub(crate) use inbox::{Inbox, Incoming};
 pub(crate) use vault::Vault;
 
-use segue::session::reading::ReadReport;
-use segue::session::{Saved, SavedEntry};
+use segue_session::reading::ReadReport;
+use segue_session::{Saved, SavedEntry};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
 const MOTION_ENDINGS: [&str; 7] = ["bvh", "asf", "amc", "glb", "gltf", "zip", "gz"];
 
 /// More files of one folder are not read, as of an archive.
-const MOST_FILES_OF_FOLDER: usize = segue::formats::archive::MOST_FILES;
+const MOST_FILES_OF_FOLDER: usize = segue_formats::archive::MOST_FILES;
 
 /// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like the files it adds it for.
 fn is_motion_file(name: &str) -> bool {
@@ -182,7 +182,7 @@ fn last_part(path: &str) -> &str {
 fn clip_of(id: &str) -> SavedEntry {
     let sha256 = id.split_once('~').map(|(_, sha256)| sha256);
     let file = sha256
-        .map(|sha256| serde_json::json!({ "name": id, "sha256": sha256, "index": 0, "options": segue::formats::ImportOptions::default() }));
+        .map(|sha256| serde_json::json!({ "name": id, "sha256": sha256, "index": 0, "options": segue_formats::ImportOptions::default() }));
     serde_json::from_value(serde_json::json!({ "id": id, "name": id, "file": file, "roles": null })).unwrap()
 }
 

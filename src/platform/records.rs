@@ -5,7 +5,7 @@
 //! that no record names is one that came since, or one whose record cannot be read any more: it is found by its row. A window that goes has no time
 //! to ask what others have stored: it leaves a record of its own, which is joined to the others' when the work is read or stored next.
 
-use segue::session::{Saved, SavedEntry};
+use segue_session::{Saved, SavedEntry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
 use super::{FileBytes, LargeFile, StoredFiles};
-use segue::session::reading::Content;
+use segue_session::reading::Content;
 use std::collections::BTreeMap;
 
 /// The large files that the document only knows by a key.

@@ -4,7 +4,7 @@ use super::light::{self, LightBox, MAP_SIZE};
 use super::renderer::Quality;
 use glam::Vec4;
 use segue::scene::{Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport};
-use segue::skin::SkinnedMesh;
+use segue_motion::skin::SkinnedMesh;
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use super::frame::{JointTexels, Mesh};
 use super::pipelines::Pipelines;
 use super::renderer::filled_buffer;
 use eframe::wgpu;
-use segue::skin::SkinnedMesh;
+use segue_motion::skin::SkinnedMesh;
 use std::sync::{Arc, Weak};
 
 /// Joints in a row of their texture, as skin.wgsl has it.

@@ -1,5 +1,5 @@
-use crate::skeleton::WorldPose;
 use glam::Vec3;
+use segue_motion::skeleton::WorldPose;
 
 /// An axis-aligned box in the world, metres. Empty until a point is included.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,13 +2,13 @@ use super::dress::{Wardrobe, size_beside, worn_character};
 use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
 use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha};
-use crate::clip::Interpolation;
-use crate::graph::Place;
-use crate::matching;
-use crate::math::Planar;
-use crate::session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Value, Walk, joint_of};
-use crate::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
 use glam::{Quat, Vec3};
+use segue_motion::clip::Interpolation;
+use segue_motion::graph::Place;
+use segue_motion::matching;
+use segue_motion::math::Planar;
+use segue_motion::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
+use segue_session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Value, Walk, joint_of};
 use std::sync::Arc;
 
 /// The colours of what is made from A, from B, and from both, in the theme of the page.
@@ -119,7 +119,8 @@ impl Director {
             pane.clear();
             pane.viewport = viewport;
             pane.skinning = skinning_of(session, index);
-            if let Some(session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now)) {
+            if let Some(segue_session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now))
+            {
                 let Some(world) = pose_at(&outcome.motion, now, &place) else {
                     continue;
                 };
@@ -491,7 +492,7 @@ impl Director {
     }
 
     /// The clips that a result could not be made of, in its place.
-    fn draw_stand_ins(&mut self, refused: &session::Pane, now: f64, colors: &Colors, pane: &mut Pane) {
+    fn draw_stand_ins(&mut self, refused: &segue_session::Pane, now: f64, colors: &Colors, pane: &mut Pane) {
         for source in &refused.sources {
             let color = match source.slot {
                 Slot::A => colors.a,
@@ -780,7 +781,7 @@ fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 /// A ring under each planted foot of the figure, red where it slides.
 fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
     let (motion, now) = (&shown.outcome.motion, shown.now);
-    let frame = session::frame_at(motion, now);
+    let frame = segue_session::frame_at(motion, now);
     let dt = motion.clip.dt_secs();
     if !Side::BOTH.iter().any(|&side| motion.contacts.planted(side, frame)) {
         return;

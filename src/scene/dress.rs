@@ -1,10 +1,10 @@
 //! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a while: until it is there, limbs are worn.
 
 use super::Body;
-use crate::clip::reference_pose;
-use crate::session::{Key, Motion, Params, Session};
-use crate::skeleton::{Roles, Skeleton, WorldPose};
-use crate::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
+use segue_motion::clip::reference_pose;
+use segue_motion::skeleton::{Roles, Skeleton, WorldPose};
+use segue_motion::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
+use segue_session::{Key, Motion, Params, Session};
 use std::sync::{Arc, Weak};
 
 /// So many skeletons' skins are kept, whether they are worn or not.
@@ -175,7 +175,7 @@ impl Wardrobe {
 #[cfg(test)]
 mod tests {
     use crate::scene::{Colors, Director, Look, Viewport};
-    use crate::session::{Command, Key, Session, Value};
+    use segue_session::{Command, Key, Session, Value};
 
     /// Half the width of the waist of the skin that is worn; none where limbs are.
     fn width(director: &mut Director, session: &Session) -> Option<f32> {

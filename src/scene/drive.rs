@@ -1,8 +1,8 @@
 //! The Match lab on the ground: where the character was asked to be, where it is asked to go, and where the frame that plays would lead.
 
 use super::{Color, Colors, Layer, Pane, Ring, with_alpha};
-use crate::math::Planar;
-use crate::session::{DriveMoment, Driven};
+use segue_motion::math::Planar;
+use segue_session::{DriveMoment, Driven};
 
 /// Pieces of a trajectory.
 const STEPS: usize = 20;

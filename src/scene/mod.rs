@@ -3,7 +3,7 @@
 //! # The idea
 //!
 //! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a [`Camera`] and lists what it shows; the
-//! [`Director`] makes the list from a [`crate::session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths alone, a
+//! [`Director`] makes the list from a [`segue_session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths alone, a
 //! rounded cone along each bone, so that whatever loads can be seen at once.
 //!
 //! The camera goes round its target on a globe: yaw along the equator, pitch up to the pole.
@@ -23,7 +23,7 @@
 //! ```
 //! use glam::{Vec2, Vec3};
 //! use segue::scene::{Body, Bounds, Pane, Viewport, rgb};
-//! use segue::synth::{Action, Params, synthesize};
+//! use segue_motion::synth::{Action, Params, synthesize};
 //!
 //! let walk = synthesize(&Params::new(Action::Walk))?.clip;
 //! let (body, pose) = (Body::new(walk.skeleton(), None), walk.world_pose(0));

@@ -1,9 +1,9 @@
 //! The Path lab on the stage: the way as it was, the path that was fitted to it, the path as it is now, and its control points.
 
 use super::{Color, Colors, Layer, Look, Pane, with_alpha};
-use crate::path::{Road, Waypoint};
-use crate::session::OnPath;
 use glam::{DVec2, Vec3};
+use segue_motion::path::{Road, Waypoint};
+use segue_session::OnPath;
 
 /// What the hand does with the path.
 #[derive(Clone, Debug, Default, PartialEq)]

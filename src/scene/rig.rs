@@ -1,6 +1,6 @@
 use super::Camera;
-use crate::math::spring;
 use glam::Vec3;
+use segue_motion::math::spring;
 use std::f32::consts::PI;
 
 /// A camera that comes smoothly to where it should be.

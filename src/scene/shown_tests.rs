@@ -1,14 +1,14 @@
 //! Whatever is drawn belongs to the figure that is shown.
 
 use super::{Colors, Director, Layer, Look, Pane, Viewport, pose_at, shown_size};
-use crate::clip::{Clip, Interpolation};
-use crate::formats::gltf::{GlbOptions, write_glb};
-use crate::formats::{ImportOptions, import};
-use crate::session::export::{ExportBody, ExportFormat, ExportOptions, export};
-use crate::session::{Command, Key, Session, Value};
-use crate::skeleton::{Role, Roles, Side, Skeleton, fixtures, world_pose};
-use crate::skin::{Character, SkinnedMesh};
 use glam::{Vec3, Vec3Swizzles};
+use segue_formats::gltf::{GlbOptions, write_glb};
+use segue_formats::{ImportOptions, import};
+use segue_motion::clip::{Clip, Interpolation};
+use segue_motion::skeleton::{Role, Roles, Side, Skeleton, fixtures, world_pose};
+use segue_motion::skin::{Character, SkinnedMesh};
+use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export};
+use segue_session::{Command, Key, Session, Value};
 use std::sync::Arc;
 
 /// A file of another program: a character on a rig of its own with legs of so many metres.

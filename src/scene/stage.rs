@@ -1,7 +1,7 @@
 use super::{Body, Camera};
-use crate::skeleton::WorldPose;
-use crate::skin::{RigidTransform, SkinnedMesh};
 use glam::Vec3;
+use segue_motion::skeleton::WorldPose;
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use super::param_row::{Detail, param_row_ui};
 use super::text;
 use super::theme::{Type, palette_of, theme_of};
 use eframe::egui::{RichText, Ui};
-use segue::session::{Compare, Key, Session, Value, mistake_shows};
+use segue_session::{Compare, Key, Session, Value, mistake_shows};
 
 /// The choice, a sentence for every mistake that is on the stage, and the right way beside it.
 pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -8,10 +8,10 @@ use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
-use segue::clip::{UpAxis, ground_speed};
-use segue::formats::ImportOptions;
-use segue::session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, sentence, word_of_joint};
-use segue::skeleton::{Channel, Role, Skeleton};
+use segue_formats::ImportOptions;
+use segue_motion::clip::{UpAxis, ground_speed};
+use segue_motion::skeleton::{Channel, Role, Skeleton};
+use segue_session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, sentence, word_of_joint};
 
 /// The tree of joints scrolls above this height, points.
 const TREE_HEIGHT: f32 = 264.0;
@@ -76,7 +76,7 @@ const UNITS: [(f64, &str); 6] = [
     (0.001, "mm"),
     (0.0254, "inch"),
     (0.3048, "foot"),
-    (segue::formats::CMU_METRES_PER_UNIT, "CMU, 5.64 cm"),
+    (segue_formats::CMU_METRES_PER_UNIT, "CMU, 5.64 cm"),
 ];
 
 /// Frame rates that files come in.
@@ -270,7 +270,7 @@ fn channels_in_words(skeleton: &Skeleton) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::skeleton::Joint;
+    use segue_motion::skeleton::Joint;
 
     #[test]
     fn channels_are_told_in_words() {

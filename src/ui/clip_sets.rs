@@ -5,7 +5,7 @@ use super::out::Out;
 use super::text;
 use super::theme::space;
 use eframe::egui::{Ui, vec2};
-use segue::session::{ClipSet, Command, Session};
+use segue_session::{ClipSet, Command, Session};
 
 /// One button for each set of clips that there is, the one in use marked.
 pub(super) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {

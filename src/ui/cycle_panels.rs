@@ -9,7 +9,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{palette_of, space};
 use eframe::egui::Ui;
-use segue::session::{Cycle, CycleMade, Key, Session, Slot, Value};
+use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
 
 /// The upper end of the slider before the clips are known, metres per second.
 const SLIDER_MPS: f64 = 6.0;

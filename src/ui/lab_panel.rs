@@ -18,9 +18,9 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::{made_number, toggle_compare};
 use eframe::egui::{self, Ui};
-use segue::math::spring;
-use segue::session::{Command, Group, Key, NoResult, PARAMS, Session, Slot, Value, split_reference};
-use segue::transition::has_legs;
+use segue_motion::math::spring;
+use segue_motion::transition::has_legs;
+use segue_session::{Command, Group, Key, NoResult, PARAMS, Session, Slot, Value, split_reference};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

@@ -9,7 +9,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
-use segue::session::{Key, Session};
+use segue_session::{Key, Session};
 
 /// All rows of the lab.
 pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

@@ -10,8 +10,8 @@ use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, ScrollArea, Ui};
 use prose::{blocks_ui, spans_ui};
-use segue::session::lesson::{Block, CONTENTS, Page, Try};
-use segue::session::{Command, Key, Lesson, LessonPage, Session, Value};
+use segue_session::lesson::{Block, CONTENTS, Page, Try};
+use segue_session::{Command, Key, Lesson, LessonPage, Session, Value};
 
 /// Whether there is a lesson to show.
 pub(super) fn is_open(session: &Session) -> bool {

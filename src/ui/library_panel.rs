@@ -9,8 +9,8 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use super::top_bar::compare_clips;
 use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
-use segue::session::export::{ExportFormat, ExportOptions};
-use segue::session::{Command, Entry, Key, Origin, Session, Slot};
+use segue_session::export::{ExportFormat, ExportOptions};
+use segue_session::{Command, Entry, Key, Origin, Session, Slot};
 
 /// The share of the memory from which on it is shown how much is in use.
 const MEMORY_SHOWN_FROM: f32 = 0.25;
@@ -132,7 +132,7 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::XS);
     ui.label(
-        RichText::new(tr(segue::session::SAMPLES_CREDIT, ui))
+        RichText::new(tr(segue_session::SAMPLES_CREDIT, ui))
             .font(theme.font(Type::Small))
             .color(palette.muted),
     );

@@ -42,7 +42,7 @@ pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
 use segue::scene::Look;
-use segue::session::{Key, Session};
+use segue_session::{Key, Session};
 use state::Layout;
 use theme::{Theme, palette_of, space, theme_of};
 

@@ -1,7 +1,7 @@
 //! What the panels ask for. They change nothing themselves.
 
-use segue::session::export::ExportOptions;
-use segue::session::{Command, Key, Value};
+use segue_session::export::ExportOptions;
+use segue_session::{Command, Key, Value};
 
 /// What only the platform can do.
 #[derive(Clone, Debug, PartialEq)]

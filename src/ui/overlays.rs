@@ -7,7 +7,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
-use segue::session::{Command, Level, Session};
+use segue_session::{Command, Level, Session};
 
 /// All of them.
 pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

@@ -6,8 +6,8 @@ use super::out::Out;
 use super::text;
 use super::theme::palette_of;
 use eframe::egui::Ui;
-use segue::session::{Command, Compare, Key, Kind, Session, Value, decimals_of};
-use segue::skeleton::Role;
+use segue_motion::skeleton::Role;
+use segue_session::{Command, Compare, Key, Kind, Session, Value, decimals_of};
 
 /// What a panel knows about a parameter beyond the table.
 #[derive(Clone, Debug, Default)]

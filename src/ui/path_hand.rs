@@ -3,8 +3,8 @@
 use super::out::Out;
 use super::text;
 use glam::DVec2;
-use segue::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
-use segue::session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
+use segue_motion::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
+use segue_session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
 
 /// The hand on the path, remembered between frames.
 #[derive(Clone, Debug, Default)]

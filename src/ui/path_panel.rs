@@ -11,8 +11,8 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
-use segue::path::PathEdit;
-use segue::session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};
+use segue_motion::path::PathEdit;
+use segue_session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};
 
 /// A turn of the whole path, degrees.
 const TURN_DEG: f64 = 15.0;

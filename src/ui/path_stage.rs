@@ -9,8 +9,8 @@ use super::text;
 use super::theme::space;
 use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 use glam::DVec2;
-use segue::path::{GroundSpline, PathEdit, SplineEnds};
-use segue::session::{Command, Group, Key, OnPath, Session};
+use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
+use segue_session::{Command, Group, Key, OnPath, Session};
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
 const GRIP: f32 = 30.0;

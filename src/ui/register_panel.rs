@@ -10,8 +10,8 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
-use segue::session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
-use segue::skeleton::Side;
+use segue_motion::skeleton::Side;
+use segue_session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
 use std::sync::Arc;
 
 /// How much of a clip there is that has just joined a blend.

@@ -7,8 +7,8 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
 use eframe::egui::{Rect, Ui};
-use segue::formats::bvh::RotationOrder;
-use segue::session::export::{ExportBody, ExportFormat};
+use segue_formats::bvh::RotationOrder;
+use segue_session::export::{ExportBody, ExportFormat};
 
 /// What files are saved in, with its name.
 const UNITS: [(Option<f64>, &str); 3] = [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];

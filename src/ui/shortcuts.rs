@@ -6,7 +6,7 @@ use super::stage_panel::frame_everything;
 use super::state::UiState;
 use super::top_bar::toggle_compare;
 use eframe::egui::{Context, Event, Id, Key as Keyboard, Modifiers, Popup};
-use segue::session::{Command, Key, Kind, Session, Value};
+use segue_session::{Command, Key, Kind, Session, Value};
 
 /// The labs, from left to right: the row of digits and what stands behind them.
 pub(super) const LAB_KEYS: [Keyboard; 11] = [

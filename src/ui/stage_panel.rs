@@ -11,9 +11,9 @@ use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
-use segue::metrics::Better;
 use segue::scene::{camera_of, resting_point, shown_size};
-use segue::session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
+use segue_motion::metrics::Better;
+use segue_session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
@@ -42,7 +42,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
             state.path.take_drawn(&points, session, out);
         } else if points.len() > 1 {
             out.set_once(Key::WalkPath, Value::Text(write_path(&points)));
-            out.commands.push(segue::session::Command::Seek(0.0));
+            out.commands.push(segue_session::Command::Seek(0.0));
         }
     }
     camera_input(session, &response, takes_drag, out, ui);
@@ -128,7 +128,7 @@ struct Verdicts {
 }
 
 /// A number of a pane's result. One of an earlier result is compared with nothing.
-fn metric_of<'a>(pane: &'a Pane, id: &str) -> Option<&'a segue::metrics::Metric> {
+fn metric_of<'a>(pane: &'a Pane, id: &str) -> Option<&'a segue_motion::metrics::Metric> {
     let made = pane.result().ok()?;
     made.outcome.metrics.iter().find(|metric| metric.id == id)
 }
@@ -295,7 +295,7 @@ fn is_beyond(pane: &Pane) -> bool {
 }
 
 /// A metric's number as it is read at a glance.
-fn written(metric: &segue::metrics::Metric) -> String {
+fn written(metric: &segue_motion::metrics::Metric) -> String {
     let Some(value) = metric.value else { return "–".to_owned() };
     let decimals = match metric.unit {
         "s" | "m" | "m/s" | "ms" => 2,
@@ -536,7 +536,7 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
         values.push((Key::CameraDistance, Value::Number(distance)));
     }
     if !values.is_empty() {
-        out.commands.push(segue::session::Command::Set(values));
+        out.commands.push(segue_session::Command::Set(values));
     }
 }
 
@@ -614,7 +614,7 @@ fn glam_vec2(v: Vec2) -> glam::Vec2 {
 
 /// Stops following and shows the whole way of every pane.
 pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out) {
-    out.commands.extend(framing(session, state, None).map(segue::session::Command::Set));
+    out.commands.extend(framing(session, state, None).map(segue_session::Command::Set));
 }
 
 /// The camera that shows the whole way of everybody; from this height, degrees, or from where it is.
@@ -625,7 +625,7 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
         frames.iter().map(move |frame| shown.place.after(frame).origin())
     });
     let company = session.company().iter().filter_map(|companion| companion.motion.as_ref().ok());
-    let company = company.flat_map(|motion| motion.ground_frames.iter().map(segue::math::Planar::origin));
+    let company = company.flat_map(|motion| motion.ground_frames.iter().map(segue_motion::math::Planar::origin));
     let paths = session.panes().iter().filter_map(|pane| path_of(session, pane));
     let points = paths.flat_map(|path| path.road.spline().points());
     let points = points.map(|point| glam::Vec3::new(point.x as f32, 0.0, point.y as f32));
@@ -667,7 +667,7 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::Command;
+    use segue_session::Command;
 
     #[test]
     fn columns_fill_the_stage_without_gaps() {

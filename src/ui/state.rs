@@ -5,10 +5,10 @@ use super::language::Language;
 use super::path_hand::PathHand;
 use eframe::egui::Rect;
 use glam::DVec2;
-use segue::graph::Place;
 use segue::scene::{Camera, PathMarks};
-use segue::session::export::ExportOptions;
-use segue::session::{Key, Session, Storing};
+use segue_motion::graph::Place;
+use segue_session::export::ExportOptions;
+use segue_session::{Key, Session, Storing};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

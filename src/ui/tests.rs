@@ -7,11 +7,11 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use segue::formats::{FileKind, ImportOptions};
 use segue::scene::{Colors, Director, Look, Viewport};
-use segue::session::export::{ExportFormat, ExportOptions, export};
-use segue::session::reading::Content;
-use segue::session::{Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value};
+use segue_formats::{FileKind, ImportOptions};
+use segue_session::export::{ExportFormat, ExportOptions, export};
+use segue_session::reading::Content;
+use segue_session::{Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -287,7 +287,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
         }
     };
     assert_eq!(choose("Unit", "inch").metres_per_unit, Some(0.0254));
-    assert_eq!(choose("Up axis", "Z").up, Some(segue::clip::UpAxis::Z));
+    assert_eq!(choose("Up axis", "Z").up, Some(segue_motion::clip::UpAxis::Z));
     assert_eq!(choose("Frame rate", "25").fps, Some(25.0));
     press("Leave out the T-pose", &mut harness);
     let command = harness.state_mut().out.commands.pop();
@@ -422,7 +422,7 @@ fn a_motion_is_saved_as_it_is_wanted() {
         panic!("{actions:?}")
     };
     assert_eq!((which.as_str(), how.format), ("result:1", ExportFormat::Bvh));
-    assert_eq!(how.rotation_order, Some(segue::formats::bvh::RotationOrder::Xyz));
+    assert_eq!(how.rotation_order, Some(segue_formats::bvh::RotationOrder::Xyz));
     assert_eq!(glb.format, ExportFormat::Glb);
     assert!(rest.contains(&Action::Record) && rest.contains(&Action::SavePicture));
 }
@@ -809,7 +809,7 @@ fn notice_offers_to_mend_a_clip() {
         .motion
         .clone()
         .expect("it is looked at");
-    let text = segue::formats::bvh::write(&walk.clip, &segue::formats::bvh::WriteOptions::default());
+    let text = segue_formats::bvh::write(&walk.clip, &segue_formats::bvh::WriteOptions::default());
     let rows: Vec<&str> = text.lines().collect();
     let row = rows.len() - 20;
     let (_, rest) = rows[row].split_once(' ').expect("a row of numbers");

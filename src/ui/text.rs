@@ -1,10 +1,10 @@
 //! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
 
-use segue::gait::GaitFacts;
-use segue::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
-use segue::path::HardTurn;
-use segue::session::export::ExportFormat;
-use segue::session::{
+use segue_motion::gait::GaitFacts;
+use segue_motion::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
+use segue_motion::path::HardTurn;
+use segue_session::export::ExportFormat;
+use segue_session::{
     Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, MemoryUse, OnPath, Origin, Retargeted, Storing, Trace, Transition,
     format_number,
 };

@@ -8,11 +8,11 @@ use super::text;
 use super::theme::palette_of;
 use super::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, RectAlign, Ui};
-use segue::clip::joint_curve;
-use segue::session::{
+use segue_motion::clip::joint_curve;
+use segue_motion::skeleton::{Role, Side};
+use segue_session::{
     Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
 };
-use segue::skeleton::{Role, Side};
 use std::sync::Arc;
 
 /// The curves of the chosen joint, of every pane over each other, kept until a result or the choice changes.

@@ -13,7 +13,7 @@ use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
-use segue::session::{Command, Compare, Key, Kind, Session, Value};
+use segue_session::{Command, Compare, Key, Kind, Session, Value};
 
 /// The whole bar.
 pub(crate) fn top_bar_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

@@ -4,7 +4,7 @@ use super::kit::{self, Transport, TransportEvent};
 use super::out::Out;
 use super::state::Layout;
 use eframe::egui::{Response, Ui};
-use segue::session::{Command, Key, Session, Value};
+use segue_session::{Command, Key, Session, Value};
 
 /// Where the playhead is.
 #[derive(Clone, Copy, Debug)]

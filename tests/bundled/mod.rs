@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "every test binary uses a part of it")]
 #![allow(unreachable_pub, reason = "a module of several test binaries")]
 
-use segue::session::{Request, Session};
+use segue_session::{Request, Session};
 use std::path::{Path, PathBuf};
 
 /// Where they lie.

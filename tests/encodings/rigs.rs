@@ -3,10 +3,10 @@
 #![allow(unreachable_pub, reason = "a module of a test binary")]
 
 use glam::{Quat, Vec3};
-use segue::clip::{Clip, JointTranslations};
-use segue::formats::bvh::{RotationOrder, WriteOptions, write};
-use segue::math::Planar;
-use segue::skeleton::{Channel, Joint, Role, Roles, Side, Skeleton, WorldPose};
+use segue_formats::bvh::{RotationOrder, WriteOptions, write};
+use segue_motion::clip::{Clip, JointTranslations};
+use segue_motion::math::Planar;
+use segue_motion::skeleton::{Channel, Joint, Role, Roles, Side, Skeleton, WorldPose};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 

@@ -25,7 +25,7 @@ cargo xtask serve --dist
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles app web browser; all of them unless some are named.
     lint        rustfmt, clippy for the core alone, for the whole app and for the web
-    core        the tests of the motion core and its documentation examples, built without any UI
+    core        the tests of the libraries and their documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     app         the tests of the app, pictures of the UI among them
     web         the release build that `serve` makes
@@ -89,7 +89,14 @@ fn main() -> ExitCode {
 
 /// The table is written by the test that holds it to the program: it knows the library, which these commands do not.
 fn docs() -> Result<()> {
-    let mut test = shell::cargo(&["test", "--quiet", "--locked", "--no-default-features", "--test=readme"]);
+    let mut test = shell::cargo(&[
+        "test",
+        "--quiet",
+        "--locked",
+        "--package=segue",
+        "--no-default-features",
+        "--test=readme",
+    ]);
     test.env("SEGUE_WRITE_DOCS", "1");
     shell::run(&mut test)
 }

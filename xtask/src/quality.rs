@@ -9,7 +9,7 @@ use crate::shell::{Result, cargo, fail, root, run};
 const PATHS: [&str; 2] = ["--data", "--json"];
 
 pub fn try_labs(args: &[&str]) -> Result<()> {
-    let mut example = example("quality", "quality");
+    let mut example = example("segue", "quality", "quality");
     example.arg("--");
     let mut words = args.iter();
     while let Some(word) = words.next() {
@@ -38,20 +38,26 @@ fn run_made(name: &str, args: &[&str]) -> Result<()> {
     if !args.is_empty() {
         return fail("this command takes no arguments: it drives with the synthesiser's motions");
     }
-    run(&mut example(name, "release"))
+    run(&mut example("segue-motion", name, "release"))
 }
 
-fn example(name: &str, profile: &str) -> Command {
-    cargo(&[
+fn example(package: &str, name: &str, profile: &str) -> Command {
+    let mut command = cargo(&[
         "run",
         "--quiet",
+        "--locked",
         "--profile",
         profile,
-        "--locked",
-        "--no-default-features",
+        "--package",
+        package,
         "--example",
         name,
-    ])
+    ]);
+    // The app's libraries alone: the measurements need no UI.
+    if package == "segue" {
+        command.arg("--no-default-features");
+    }
+    command
 }
 
 /// Where the tests look for captured motion, too.

@@ -1,11 +1,11 @@
 //! The motions that are put to the test: those of a folder, or synthesised ones.
 
 use super::guard::{guarded, shared_out};
-use segue::formats::archive::{self, ArchiveLimits};
-use segue::formats::{FileKind, ImportOptions, kind_of};
-use segue::session::reading::{Companion, ReadReport, ReadSetup, read};
-use segue::session::{Command, Request, Session};
-use segue::skeleton::Skeleton;
+use segue_formats::archive::{self, ArchiveLimits};
+use segue_formats::{FileKind, ImportOptions, kind_of};
+use segue_motion::skeleton::Skeleton;
+use segue_session::reading::{Companion, ReadReport, ReadSetup, read};
+use segue_session::{Command, Request, Session};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

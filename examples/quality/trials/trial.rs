@@ -2,11 +2,11 @@
 
 use super::folder::{Chance, Motions, encoded};
 use super::guard::{guarded, shared_out};
-use segue::clip::{Clip, mirror};
-use segue::math::stats;
-use segue::metrics::{Artefacts, MotionTrace};
-use segue::path::GroundSpline;
-use segue::session::{Command, CycleMade, Motion, Outcome, Session, write_ids};
+use segue_motion::clip::{Clip, mirror};
+use segue_motion::math::stats;
+use segue_motion::metrics::{Artefacts, MotionTrace};
+use segue_motion::path::GroundSpline;
+use segue_session::{Command, CycleMade, Motion, Outcome, Session, write_ids};
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -5,7 +5,7 @@ use crate::platform::{
     Inbox, Incoming, MAX_FILE_BYTES, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in, too_large, too_many_in,
 };
 use eframe::egui::DroppedFileHandle;
-use segue::session::reading::LARGE_BYTES;
+use segue_session::reading::LARGE_BYTES;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -16,8 +16,8 @@ pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};
 use eframe::egui;
-use segue::session::Sample;
-use segue::session::lesson::Source;
+use segue_session::Sample;
+use segue_session::lesson::Source;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! Large files are read on threads of their own.
 
 use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
-use segue::session::Session;
-use segue::session::reading::{ReadTask, read};
+use segue_session::Session;
+use segue_session::reading::{ReadTask, read};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -88,7 +88,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::reading::Content;
+    use segue_session::reading::Content;
     use std::time::Duration;
 
     #[test]
@@ -100,7 +100,7 @@ mod tests {
         let mut session = Session::new();
         let id = session.begin_reading("small.bvh", Content::Outside("file 1".into()), text.len() as u64);
         let task = session.take_requests().into_iter().find_map(|request| match request {
-            segue::session::Request::Read(task) => Some(task),
+            segue_session::Request::Read(task) => Some(task),
             _ => None,
         });
         reader.start(task.unwrap(), FileBytes::Large(LargeFile::new(text)));

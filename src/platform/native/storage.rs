@@ -3,8 +3,8 @@
 use super::LargeFile;
 use crate::platform::records::{LATEST, Records};
 use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
-use segue::session::reading::LARGE_BYTES;
-use segue::session::{Saved, SavedEntry, Session, Storing};
+use segue_session::reading::LARGE_BYTES;
+use segue_session::{Saved, SavedEntry, Session, Storing};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -6,7 +6,7 @@ use super::words_of;
 use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, too_large};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
-use segue::session::reading::LARGE_BYTES;
+use segue_session::reading::LARGE_BYTES;
 use std::path::Path;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};

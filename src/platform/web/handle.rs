@@ -10,7 +10,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
 use js_sys::{Error, Function, Object, Reflect, Uint8Array};
-use segue::session::reading::LARGE_BYTES;
+use segue_session::reading::LARGE_BYTES;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use std::cell::{Cell, RefCell};
@@ -33,11 +33,12 @@ pub struct SegueHandle {
     inbox: Inbox,
     canvas: Rc<RefCell<HtmlCanvasElement>>,
     listener: Rc<RefCell<Option<Function>>>,
-    /// When a WebGPU device was lost last, milliseconds.
-    lost_ms: Rc<Cell<Option<f64>>>,
+    /// When a WebGPU device that replaced a lost one began to draw, milliseconds.
+    replaced_ms: Rc<Cell<Option<f64>>>,
 }
 
-/// When a second WebGPU device is lost so soon after the first, WebGL 2 is taken, milliseconds.
+/// WebGL 2 is taken when a WebGPU device that replaced a lost one is lost itself within this time of its start, milliseconds. How long the
+/// start took does not count: that says how slow the machine is, not how long a device lives.
 const SOON_MS: f64 = 10_000.0;
 
 fn error(text: impl AsRef<str>) -> JsValue {
@@ -60,7 +61,7 @@ impl SegueHandle {
             inbox,
             canvas: Rc::new(RefCell::new(canvas.clone())),
             listener: Rc::default(),
-            lost_ms: Rc::default(),
+            replaced_ms: Rc::default(),
         };
         handle.run(canvas).await?;
         watch_folders(&handle.inbox);
@@ -91,16 +92,13 @@ impl SegueHandle {
         if backend == "webgl2" {
             return self.run_on(canvas, Backends::GL).await;
         }
-        let now_ms = now_ms();
-        let is_soon = self
-            .lost_ms
-            .replace(Some(now_ms))
-            .is_some_and(|before_ms| now_ms - before_ms < SOON_MS);
-        if !is_soon || wanted_backend().as_deref() == Some("webgpu") {
-            return self.run(canvas).await;
-        }
         // Where WebGL 2 fails, too, the next attempt is like the first.
-        self.lost_ms.set(None);
+        let is_soon = self.replaced_ms.take().is_some_and(|since_ms| now_ms() - since_ms < SOON_MS);
+        if !is_soon || wanted_backend().as_deref() == Some("webgpu") {
+            self.run(canvas).await?;
+            self.replaced_ms.set(Some(now_ms()));
+            return Ok(());
+        }
         self.run_on(canvas, Backends::GL).await?;
         self.change(|segue| {
             segue.complain("The graphics device was lost twice within 10 seconds, so Segue draws with WebGL 2 now. Reload the page to try WebGPU again.");

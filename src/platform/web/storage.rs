@@ -8,7 +8,7 @@ use crate::platform::records::{LATEST, Left, Records, Row, is_left, is_unread, l
 use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work, in_short};
 use idb::{Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode, TransactionResult};
 use js_sys::{Date, Math, Uint8Array};
-use segue::session::{SavedEntry, Storing};
+use segue_session::{SavedEntry, Storing};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;

@@ -2,9 +2,9 @@
 
 use super::{actors, blend_pane, gpu, stage};
 use glam::Vec3;
-use segue::math::Planar;
 use segue::scene::{Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
-use segue::skeleton::{Joint, Roles, Skeleton, world_pose};
+use segue_motion::math::Planar;
+use segue_motion::skeleton::{Joint, Roles, Skeleton, world_pose};
 
 #[test]
 fn three_panes_in_both_themes_and_on_a_phone() {
@@ -143,7 +143,7 @@ fn from_above_close_up_and_other_bodies() {
         let dog = dog();
         let mut pose = world_pose(
             &dog,
-            &segue::skeleton::Pose {
+            &segue_motion::skeleton::Pose {
                 root_translation: dog.joints()[0].offset,
                 ..Default::default()
             },

@@ -1,9 +1,9 @@
 //! What a session puts on the stage, to be looked at.
 
 use super::{colors, gpu, staged};
-use segue::path::{PathEdit, Pins};
 use segue::scene::{Colors, Director, Look, PathMarks, Viewport};
-use segue::session::{Command, Key, Session, Value};
+use segue_motion::path::{PathEdit, Pins};
+use segue_session::{Command, Key, Session, Value};
 use std::sync::Arc;
 
 #[test]

@@ -1,12 +1,12 @@
-//! A body of tapered limbs, one per shape of [`crate::skin::shapes`]: posed in microseconds, whatever the skeleton.
+//! A body of tapered limbs, one per shape of [`segue_motion::skin::shapes`]: posed in microseconds, whatever the skeleton.
 
 #[cfg(test)]
 mod tests;
 
 use super::{Color, Limb};
-use crate::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
-use crate::skin::shapes::{Placed, Shape, shapes};
-use crate::skin::{Character, Drive, SkinnedMesh};
+use segue_motion::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
+use segue_motion::skin::shapes::{PlacedShape, Shape, limb_shapes};
+use segue_motion::skin::{Character, Drive, SkinnedMesh};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -54,13 +54,13 @@ impl Body {
         Self::standing(skeleton, roles, &skeleton.rest_pose())
     }
 
-    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones lie to each other ([`crate::clip::reference_pose`]).
+    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones lie to each other ([`segue_motion::clip::reference_pose`]).
     #[must_use]
     pub fn standing(skeleton: &Skeleton, roles: Option<&Roles>, reference: &WorldPose) -> Self {
         let stance = roles.map_or_else(|| skeleton.rest_pose(), |roles| canonical_stance(skeleton, roles, reference));
         let skeleton = &skeleton.resting_in(&stance);
         let rest = skeleton.rest_positions();
-        let mut shapes = shapes(skeleton, &rest, roles);
+        let mut shapes = limb_shapes(skeleton, &rest, roles);
         shapes.retain(|shape| !shape.soft);
         set_balls_apart(&mut shapes);
         // The renderer lets only the first few of a body shade the others: the big ones come first.
@@ -188,7 +188,7 @@ impl Body {
     pub fn colored_limbs(&self, pose: &WorldPose, color_of: impl Fn(usize) -> Color, out: &mut Vec<Limb>) {
         out.reserve(self.shapes.len());
         for shape in &self.shapes {
-            let Some(Placed {
+            let Some(PlacedShape {
                 a,
                 b,
                 radius_a,

@@ -1,9 +1,9 @@
 use super::*;
 use crate::scene::{Pane, rgb};
-use crate::skeleton::{Joint, Pose, Role, world_pose};
-use crate::skin::RigidTransform;
-use crate::synth::{Action, Params, synthesize};
 use glam::{Quat, Vec3};
+use segue_motion::skeleton::{Joint, Pose, Role, world_pose};
+use segue_motion::skin::RigidTransform;
+use segue_motion::synth::{Action, Params, synthesize};
 
 fn skeleton(joints: &[(&str, Option<usize>, [f32; 3])]) -> Skeleton {
     let joints = joints

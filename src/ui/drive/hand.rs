@@ -8,8 +8,8 @@ use crate::ui::text;
 use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Context, Key as Keyboard, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use glam::DVec2;
-use segue::matching::{Control, Place};
-use segue::session::{Command, Key, Session, Value};
+use segue_motion::matching::{Control, Place};
+use segue_session::{Command, Key, Session, Value};
 
 /// What a gamepad asks for: sticks from -1 to 1, to the right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -11,8 +11,8 @@ pub(super) use hand::{steer, stick_on_stage_ui};
 pub(super) use rows::{compare_hysteresis, drive_ui};
 pub(super) use strip::drive_panel_ui;
 
-use segue::session::Session;
-use segue::session::{DriveMoment, Driven, Key};
+use segue_session::Session;
+use segue_session::{DriveMoment, Driven, Key};
 use std::sync::Arc;
 
 /// Whether the lab is open.

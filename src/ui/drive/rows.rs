@@ -12,8 +12,8 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
-use segue::matching::RATE;
-use segue::session::{Command, Key, Session, Value, sentence, write_ids};
+use segue_motion::matching::RATE;
+use segue_session::{Command, Key, Session, Value, sentence, write_ids};
 
 /// All rows of the lab.
 pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

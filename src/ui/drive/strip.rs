@@ -8,8 +8,8 @@ use crate::ui::text;
 use crate::ui::theme::{Palette, palette_of, space, theme_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, Ui};
-use segue::matching::{Database, Place, RATE, Tag};
-use segue::session::{Command, Driven, Key, Outcome, Session, Value};
+use segue_motion::matching::{Database, Place, RATE, Tag};
+use segue_session::{Command, Driven, Key, Outcome, Session, Value};
 
 /// A jump is seen for so long, seconds.
 const JUMP_SECS: f64 = 0.8;

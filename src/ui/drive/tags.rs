@@ -8,8 +8,8 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Ui, vec2};
-use segue::matching::{Database, Motion, RATE, Tag};
-use segue::session::{HandTag, Key, Session, Value, own_words, write_tags};
+use segue_motion::matching::{Database, Motion, RATE, Tag};
+use segue_session::{HandTag, Key, Session, Value, own_words, write_tags};
 
 /// What "what plays now" reaches to either side, frames.
 const AROUND: usize = 15;

@@ -9,8 +9,8 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, RichText, Ui};
-use segue::matching::{Block, Candidate, Database};
-use segue::session::{Key, Session};
+use segue_motion::matching::{Block, Candidate, Database};
+use segue_session::{Key, Session};
 
 /// The colours of the blocks, in their order.
 pub(super) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {

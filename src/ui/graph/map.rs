@@ -7,8 +7,8 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
-use segue::graph::{Choices, DistanceDetail, Place};
-use segue::session::{Built, Distances, Field, Key, Session, Walk};
+use segue_motion::graph::{Choices, DistanceDetail, Place};
+use segue_session::{Built, Distances, Field, Key, Session, Walk};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -12,8 +12,8 @@ pub(super) use strip::walk_panel_ui;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
-use segue::graph::Place;
-use segue::session::{Built, Command, Key, Session, Value, Walk, write_jump};
+use segue_motion::graph::Place;
+use segue_session::{Built, Command, Key, Session, Value, Walk, write_jump};
 
 /// Whether the lab shows one transition in place of the walk.
 fn shows_jump(session: &Session) -> bool {

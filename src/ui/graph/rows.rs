@@ -12,7 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Id, Layout as Flow, RichText, Ui};
 use petgraph::graph::NodeIndex;
-use segue::session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
+use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
 use std::sync::Arc;
 
 /// All rows of the lab.

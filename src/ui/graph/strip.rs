@@ -9,8 +9,8 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
-use segue::graph::Place;
-use segue::session::{Command, Key, Session, Value, Walk, frame_at};
+use segue_motion::graph::Place;
+use segue_session::{Command, Key, Session, Value, Walk, frame_at};
 use std::sync::Arc;
 
 /// More seams than these are no marks any more.

@@ -6,7 +6,7 @@ use crate::ui::out::{Action, Out};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Grid, RichText, Ui};
-use segue::session::{NumberTable, Session, digits};
+use segue_session::{NumberTable, Session, digits};
 
 /// The table, and two buttons that copy it.
 pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {

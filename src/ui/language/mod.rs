@@ -14,7 +14,7 @@ mod tongue;
 
 pub(crate) use tongue::{Tongue, speak_english, tr};
 
-use segue::session::{Key, Session};
+use segue_session::{Key, Session};
 
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::session::{Command, Saved, Value};
+    use segue_session::{Command, Saved, Value};
 
     #[test]
     fn the_first_language_that_there_is_is_taken() {

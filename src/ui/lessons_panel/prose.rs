@@ -4,8 +4,8 @@ use crate::ui::out::{Action, Out};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{Align, CursorIcon, Frame, Label, Margin, Sense, Stroke, Ui};
-use segue::session::Command;
-use segue::session::lesson::{Block, Span, Target, host_of};
+use segue_session::Command;
+use segue_session::lesson::{Block, Span, Target, host_of};
 
 /// Blocks of a text, one below the other.
 pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui) {

@@ -2,8 +2,8 @@
 
 use super::*;
 use eframe::egui::{Event, Modifiers};
-use segue::matching::Control;
-use segue::session::Driven;
+use segue_motion::matching::Control;
+use segue_session::Driven;
 
 /// A database that is built in a moment.
 const SMALL: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";

@@ -1,7 +1,7 @@
 //! The Graph lab with the pointer.
 
 use super::*;
-use segue::session::Distances;
+use segue_session::Distances;
 
 #[test]
 fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
@@ -60,7 +60,7 @@ fn the_graph_lab_does_what_is_pressed() {
     harness.drag_at(ring);
     harness.drop_at(ring);
     done(&mut harness);
-    assert_eq!(text_of(&harness, Key::Jump), segue::session::write_jump(ends[0], ends[1]));
+    assert_eq!(text_of(&harness, Key::Jump), segue_session::write_jump(ends[0], ends[1]));
     assert!(outcome(harness.state()).transition.is_some());
     let plays = harness.state().session.params().is_on(Key::Play);
     assert!(plays, "a transition that is asked for is seen, also where all stood still");
@@ -216,7 +216,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     harness.drop_at(ring);
     harness.run();
     let jump = harness.state().session.params().text(Key::Jump).to_owned();
-    assert_eq!(jump, segue::session::write_jump(pointed[0], pointed[1]));
+    assert_eq!(jump, segue_session::write_jump(pointed[0], pointed[1]));
     // What plays is looked at itself, though the pointer still rests on its ring.
     while harness.state_mut().session.work() {}
     harness.run_steps(3);

@@ -3,13 +3,13 @@
 use super::*;
 use crate::ui::Tongue;
 use eframe::egui::accesskit::Toggled;
-use segue::session::Lesson;
-use segue::session::lesson::Source;
+use segue_session::Lesson;
+use segue_session::lesson::Source;
 
 /// Brings the texts that are asked for, from the project's folder.
 fn deliver(session: &mut Session) {
     for request in session.take_requests() {
-        if let segue::session::Request::Lesson(source) = request {
+        if let segue_session::Request::Lesson(source) = request {
             let text = match &source {
                 Source::BuiltIn(file) => {
                     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lessons").join(file);
@@ -156,7 +156,7 @@ fn lessons_look_well_everywhere() {
 
 /// What a link says beside its lesson.
 fn rest_of(link: &str) -> Vec<(Key, Value)> {
-    let values = segue::session::link::read(link).values;
+    let values = segue_session::link::read(link).values;
     values.into_iter().filter(|(key, _)| *key != Key::Lesson).collect()
 }
 
@@ -180,8 +180,8 @@ fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, 
 #[test]
 fn every_letter_of_the_lessons_is_in_the_font() {
     let harness = harness(PHONE, DARK, page("lab=make&play=off"));
-    for name in segue::session::lesson::LESSONS {
-        let file = segue::session::lesson::file_name(name).expect("a lesson of the list");
+    for name in segue_session::lesson::LESSONS {
+        let file = segue_session::lesson::file_name(name).expect("a lesson of the list");
         let path = format!("{}/assets/lessons/en/{file}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).expect("a lesson of the list");
         let font = DARK.font(theme::Type::Reading);

@@ -3,7 +3,7 @@
 use super::*;
 use eframe::egui::{Event, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use glam::DVec2;
-use segue::session::OnPath;
+use segue_session::OnPath;
 
 fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
     outcome(harness.state()).path.clone().expect("a path")

@@ -1,7 +1,7 @@
 //! Bundled takes and sets of clips with the pointer.
 
 use super::*;
-use segue::session::{ClipSet, Request};
+use segue_session::{ClipSet, Request};
 
 /// Hands over the takes that are asked for, as the app does, and does all work.
 fn serve(harness: &mut Harness<'_, Page>) {

@@ -1,0 +1,115 @@
+use super::amc::{Stop, frames};
+use super::convert::Converter;
+use super::skeleton::AcclaimSkeleton;
+use crate::assemble::assemble;
+use crate::error::{Fault, ImportError};
+use crate::raw::RawMotion;
+use crate::text::decode;
+use crate::warning::{Tally, WarningKind};
+use crate::{ImportOptions, Imported, check_size};
+use segue_motion::clip::Clip;
+use segue_motion::skeleton::{Role, Roles, WorldPose};
+
+/// Frames per second of the CMU database, taken where nobody says otherwise: no AMC file tells.
+pub const DEFAULT_FPS: f64 = 120.0;
+
+/// Reads an AMC file, the motion of a skeleton: one clip in metres and Y up, with the skeleton's warnings before its own.
+///
+/// `name` is the file's name; it is used in errors and, without its ending, as the name of the clip. The frame rate is that of the options, or
+/// [`DEFAULT_FPS`]. The unit is that of the options; or 0.0254 m divided by the `length` of the skeleton's `:units`, the convention of the
+/// CMU database, where the character is then 0.9 to 2.5 m tall at rest; or else what makes it the size of a person.
+///
+/// # Errors
+/// [`ImportError`] with the place of what cannot be read, and where no bone is one of the skeleton.
+pub fn read_motion(name: &str, bytes: &[u8], skeleton: &AcclaimSkeleton, options: &ImportOptions) -> Result<Imported, ImportError> {
+    // Never cancelled, so never `None`.
+    Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?.unwrap_or_default())
+}
+
+/// [`read_motion`] that reports the bytes read so far about every 256 KB, and stops with `None` when `progress` returns `false`.
+///
+/// # Errors
+/// As [`read_motion`].
+pub fn read_motion_with_progress(
+    name: &str,
+    bytes: &[u8],
+    skeleton: &AcclaimSkeleton,
+    options: &ImportOptions,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<Option<Imported>, ImportError> {
+    check_size(name, bytes, options)?;
+    let text = decode(bytes);
+    let mut tally = Tally::default();
+    let mut converter = Converter::new(skeleton, text.len());
+    let first_at = match frames(&text, skeleton, &mut converter, &mut tally, progress) {
+        Ok(first_at) => first_at,
+        Err(Stop::Cancelled) => return Ok(None),
+        Err(Stop::Fault(fault)) => return Err(fault.locate(name, &text)),
+    };
+    if given_fps(options).is_none() {
+        tally.add(WarningKind::AssumedFrameRate { fps: DEFAULT_FPS }, None);
+    }
+    finish(name, converter.finish(), skeleton, options, tally, first_at, &text)
+        .map(Some)
+        .map_err(|fault| fault.locate(name, &text))
+}
+
+/// The skeleton alone, as a clip without frames.
+///
+/// # Errors
+/// None that the reader of the skeleton would not have told.
+pub fn skeleton_clip(skeleton: &AcclaimSkeleton, options: &ImportOptions) -> Result<Imported, ImportError> {
+    let raw = Converter::new(skeleton, 0).finish();
+    let mut tally = Tally::default();
+    tally.add(WarningKind::NoFrames, None);
+    finish(&skeleton.file, raw, skeleton, options, tally, 0, b"").map_err(|fault| fault.locate(&skeleton.file, b""))
+}
+
+fn given_fps(options: &ImportOptions) -> Option<f64> {
+    options.fps.filter(|fps| fps.is_finite() && *fps > 0.0)
+}
+
+fn finish(
+    name: &str,
+    raw: RawMotion,
+    skeleton: &AcclaimSkeleton,
+    options: &ImportOptions,
+    mut tally: Tally,
+    first_row_at: usize,
+    text: &[u8],
+) -> Result<Imported, Fault> {
+    let fps = given_fps(options).unwrap_or(DEFAULT_FPS);
+    let clips = assemble(name, vec![raw], fps, options, skeleton.unit_of_file, &mut tally, first_row_at)?;
+    if let Some(metres) = clips.first().and_then(|found| off_ground(&found.clip)) {
+        tally.add(WarningKind::OffGround { metres }, None);
+    }
+    let mut warnings = skeleton.warnings.clone();
+    warnings.extend(tally.into_warnings(text));
+    Ok(Imported { clips, warnings })
+}
+
+/// How high over the ground (y = 0) the feet of a motion are at their lowest, metres, where that is no place for feet: the values of a motion
+/// are those of one body, and on longer or shorter legs it sinks in or floats. `None` where all is well or there are no feet.
+fn off_ground(clip: &Clip) -> Option<f32> {
+    /// Frames that are looked at, spread over the clip.
+    const SAMPLES: usize = 240;
+    /// Feet below or above this share of a body's height are in the ground or in the air: marker noise and soles stay within.
+    const SUNK: f32 = -0.06;
+    const AFLOAT: f32 = 0.1;
+    let roles = Roles::detect(clip.skeleton());
+    let feet = [Role::LeftFoot, Role::LeftToe, Role::RightFoot, Role::RightToe].map(|role| roles.get(role));
+    let [Some(_), _, Some(_), _] = feet else { return None };
+    let samples = clip.frames().min(SAMPLES);
+    let mut world = WorldPose::default();
+    let mut lows: Vec<f32> = Vec::with_capacity(samples);
+    for sample in 0..samples {
+        clip.world_pose_into(sample * clip.frames() / samples, &mut world);
+        let heights = feet.iter().flatten().filter_map(|&joint| world.positions.get(joint).map(|p| p.y));
+        lows.push(heights.fold(f32::MAX, f32::min));
+    }
+    lows.sort_by(f32::total_cmp);
+    // One frame in twenty may be a slip of the capture.
+    let low = *lows.get(lows.len() / 20)?;
+    let share = low / roles.body_height(clip.skeleton());
+    (!(SUNK..AFLOAT).contains(&share)).then_some(low)
+}

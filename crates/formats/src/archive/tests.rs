@@ -1,0 +1,191 @@
+use super::*;
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
+use proptest::prelude::*;
+use rawzip::ZipArchiveWriter;
+use std::io::Write as _;
+
+/// Written by another program: see `make.py` beside it.
+const TAKES: &[u8] = include_bytes!("../../tests/cases/archive/takes.zip");
+
+fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut archive = ZipArchiveWriter::new(Vec::new());
+    for (path, content) in files {
+        let file = archive.new_file(rawzip::path::EntryPath::verbatim(path.as_bytes()));
+        let (mut entry, config) = file.compression_method(CompressionMethod::DEFLATE).start().unwrap();
+        let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::best()));
+        writer.write_all(content).unwrap();
+        let (encoder, descriptor) = writer.finish().unwrap();
+        encoder.finish().unwrap();
+        entry.finish(descriptor).unwrap();
+    }
+    archive.finish().unwrap()
+}
+
+fn paths(unpacked: &Unpacked) -> Vec<&str> {
+    unpacked.files.iter().map(|file| file.path.as_str()).collect()
+}
+
+fn sentences(unpacked: &Unpacked) -> Vec<String> {
+    unpacked.warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn motion_comes_out_sorted_and_the_rest_is_told() {
+    let unpacked = unpack("takes.zip", TAKES, &ArchiveLimits::default()).unwrap();
+    let expected = [
+        "a.zip/inner/jump.amc",
+        "back/slash.asf",
+        "etc/out.bvh",
+        "takes/höhe 目.bvh",
+        "takes/packed.bvh",
+        "takes/run.BVH",
+        "takes/walk.bvh",
+    ];
+    assert_eq!(paths(&unpacked), expected);
+    assert_eq!(unpacked.files[4].bytes, b"HIERARCHY packed");
+    assert_eq!(unpacked.files[5].bytes, b"HIERARCHY run");
+    assert_eq!(unpacked.files[6].bytes, "HIERARCHY walk ".repeat(20).as_bytes());
+    assert_eq!(
+        sentences(&unpacked),
+        [
+            "`a.zip/deeper.zip` in the archive left out: an archive inside an archive inside this one",
+            "1 file of the archive without motion left out",
+            "2 hidden files of the archive left out",
+            "2 files of the archive with a path out of it; the rest of the path was taken",
+        ]
+    );
+}
+
+#[test]
+fn a_damaged_file_is_left_out_and_the_others_are_read() {
+    let whole = zip(&[("good.bvh", b"HIERARCHY good"), ("torn.bvh", &[b'x'; 400])]);
+    let at = |pattern: &[u8], from: usize| from + whole[from..].windows(pattern.len()).position(|w| w == pattern).unwrap();
+    let directory = at(b"PK\x01\x02", 0);
+    let torn = at(b"torn.bvh", directory) - 46;
+    // The flags, the method, the check sum and the size of the second file, as the list of files gives them.
+    for (offset, value, why) in [
+        (8, 0x01, "it is encrypted"),
+        (10, 99, "it is packed with AES"),
+        (16, 0x55, "it is damaged (Invalid checksum"),
+        (24, 0x55, "it is damaged (Invalid size"),
+        (20, 0x02, "it is damaged ("),
+        (42, 0xff, "it is damaged ("),
+    ] {
+        let mut bytes = whole.clone();
+        bytes[torn + offset] = value;
+        let unpacked = unpack("a.zip", &bytes, &ArchiveLimits::default()).unwrap();
+        assert_eq!(paths(&unpacked), ["good.bvh"], "{why}");
+        assert!(
+            sentences(&unpacked)[0].starts_with(&format!("`torn.bvh` in the archive left out: {why}")),
+            "{:?}",
+            sentences(&unpacked)
+        );
+    }
+}
+
+#[test]
+fn what_is_no_archive_of_motion_is_refused() {
+    let say = |bytes: &[u8]| unpack("a.zip", bytes, &ArchiveLimits::default()).unwrap_err().to_string();
+    assert_eq!(say(b"HIERARCHY"), "a.zip:1:1: found no zip archive, expected a zip archive");
+    assert!(say(&TAKES[..TAKES.len() / 2]).contains("found a zip archive without an end: it was cut off"));
+    assert!(say(&zip(&[])).contains("found an archive without motion files"));
+    assert!(say(&zip(&[("a.png", b"x")])).contains("expected motion files (.bvh"));
+    let mut encrypted = zip(&[("a.bvh", b"x")]);
+    let directory = encrypted.windows(4).position(|w| w == b"PK\x01\x02").unwrap();
+    encrypted[directory + 8] |= 1;
+    assert!(say(&encrypted).contains("found `a.bvh` in the archive left out: it is encrypted"));
+    assert!(is_zip(TAKES) && is_zip(&zip(&[])) && !is_zip(b"HIERARCHY"));
+}
+
+#[test]
+fn a_bomb_is_refused_before_it_fills_the_memory() {
+    let limits = ArchiveLimits {
+        max_bytes: 3 << 20,
+        ..ArchiveLimits::default()
+    };
+    let megabyte = vec![b' '; 1 << 20];
+    let three = zip(&[
+        ("1.bvh", &megabyte),
+        ("2.bvh", &megabyte),
+        ("3.bvh", &megabyte),
+        ("4.txt", &megabyte),
+    ]);
+    assert!(three.len() < 1 << 14);
+    assert_eq!(unpack("a.zip", &three, &limits).unwrap().files.len(), 3);
+    let four = zip(&[("1.bvh", &megabyte), ("2.bvh", &megabyte), ("3.bvh", &megabyte), ("4.bvh", b" ")]);
+    let error = unpack("a.zip", &four, &limits).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a.zip:1:1: found more than 3 MB after unpacking, expected at most 3 MB"
+    );
+    let nested = zip(&[("in.zip", &four)]);
+    assert!(unpack("a.zip", &nested, &limits).is_err());
+}
+
+#[test]
+fn more_files_than_are_read_are_told_by_one_line() {
+    let files: Vec<(String, &[u8])> = (0..MOST_FILES + 50).map(|n| (format!("{n}.bvh"), &b""[..])).collect();
+    let files: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), *bytes)).collect();
+    let unpacked = unpack("a.zip", &zip(&files), &ArchiveLimits::default()).unwrap();
+    assert_eq!(unpacked.files.len(), MOST_FILES);
+    let said: Vec<String> = unpacked.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(said, ["50 motion files of the archive left out: the first 2000 are read"]);
+}
+
+#[test]
+fn paths_stay_inside() {
+    for (path, expected, leads_out) in [
+        ("a/b.bvh", "a/b.bvh", false),
+        ("./a//b.bvh", "a/b.bvh", false),
+        ("a\\b.bvh", "a/b.bvh", false),
+        ("/a.bvh", "a.bvh", true),
+        ("\\\\host\\a.bvh", "host/a.bvh", true),
+        ("a/../../b.bvh", "a/b.bvh", true),
+        ("c:\\a.bvh", "a.bvh", true),
+        ("..", "", true),
+    ] {
+        assert_eq!(tidy(path), (expected.to_owned(), leads_out), "{path}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn spoilt_archives_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12), cut in any::<prop::sample::Index>()) {
+        let mut bytes = TAKES.to_vec();
+        for (at, value) in &edits {
+            let at = at.index(bytes.len());
+            bytes[at] = *value;
+        }
+        bytes.truncate(bytes.len() - cut.index(bytes.len()) / 8 * usize::from(edits.len() % 3 == 0));
+        let limits = ArchiveLimits { max_bytes: 1 << 20, ..ArchiveLimits::default() };
+        if let Ok(unpacked) = unpack("spoilt.zip", &bytes, &limits) {
+            prop_assert!(!unpacked.files.is_empty());
+            prop_assert!(unpacked.files.iter().map(|file| file.bytes.len()).sum::<usize>() <= limits.max_bytes);
+            prop_assert!(unpacked.files.is_sorted_by(|a, b| a.path <= b.path));
+            prop_assert!(unpacked.files.iter().all(|file| file.path.split('/').all(|part| !part.is_empty() && part != "..")));
+        }
+    }
+}
+
+#[test]
+fn an_archive_that_memory_cannot_hold_is_refused_and_not_called_damaged() {
+    let mut unpacking = Unpacking {
+        name: "all.zip",
+        left: 1,
+        limits: ArchiveLimits::default(),
+        files: Vec::new(),
+        tally: Tally::default(),
+    };
+    let damaged = io::Error::new(io::ErrorKind::InvalidData, "a bad block");
+    assert_eq!(unpacking.miss("a.bvh", damaged.into()), Ok(()));
+    let refused = unpacking
+        .miss("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into())
+        .unwrap_err();
+    assert_eq!(refused.file, "all.zip");
+    assert!(refused.found.contains("memory"), "{refused}");
+    let left_out = unpacking.tally.into_warnings(b"");
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+}

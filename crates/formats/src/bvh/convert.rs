@@ -1,0 +1,223 @@
+//! From rows of channels to rotations and translations, one row at a time.
+
+use super::hierarchy::{Column, Hierarchy};
+use super::motion::RowSink;
+use super::turns::Turns;
+use crate::error::Fault;
+use crate::raw::RawMotion;
+use glam::{Quat, Vec3};
+use segue_motion::skeleton::{Channel, Joint};
+use std::ops::Range;
+
+/// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single digits takes 8; only files in which most joints
+/// have no channel at all, and those made to fill the memory, come near.
+pub(crate) const MEMORY_PER_BYTE: u64 = 16;
+
+/// Rows that there is room for before their length is known.
+pub(crate) const FIRST_ROWS: usize = 64;
+
+/// Motions below this are always taken.
+pub(crate) const MEMORY_FLOOR: u64 = 64 << 20;
+
+/// Whether a channel turns, and about or along which axis (0 to 2).
+pub(super) fn kind(channel: Channel) -> (bool, usize) {
+    match channel {
+        Channel::XPosition => (false, 0),
+        Channel::YPosition => (false, 1),
+        Channel::ZPosition => (false, 2),
+        Channel::XRotation => (true, 0),
+        Channel::YRotation => (true, 1),
+        Channel::ZRotation => (true, 2),
+    }
+}
+
+/// Where a coordinate comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    Column(usize),
+    Offset(f64),
+}
+
+/// One character of the file, in file units and file axes.
+struct Character {
+    turns: Turns,
+    /// Where the root is, and after it each joint that has a track, in the order of the tracks.
+    places: Vec<[Source; 3]>,
+    raw: RawMotion,
+}
+
+/// Collects rows as rotations.
+pub(super) struct Converter {
+    characters: Vec<Character>,
+    /// What the header says of the number of rows.
+    declared: f64,
+    /// Where the first row starts and the last one ends.
+    bytes: Range<usize>,
+    rows: usize,
+    /// For how many rows there is room.
+    room: usize,
+    bytes_per_row: u64,
+    limit: u64,
+}
+
+impl Converter {
+    /// `declared` is the number of rows that the header speaks of, `bytes` where the rows are in the file; these bound what is allocated.
+    pub(super) fn new(tree: &Hierarchy, declared: f64, bytes: Range<usize>) -> Self {
+        let mut positions: Vec<[Source; 3]> = tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();
+        let mut moves = vec![false; tree.joints.len()];
+        let mut turns: Vec<Vec<(usize, usize)>> = vec![Vec::new(); tree.joints.len()];
+        let mut channels: Vec<Vec<Channel>> = vec![Vec::new(); tree.joints.len()];
+        for (index, &Column { joint, channel }) in tree.columns.iter().enumerate() {
+            let Some(channel) = channel else { continue };
+            channels[joint].push(channel);
+            match kind(channel) {
+                (true, axis) => turns[joint].push((axis, index)),
+                (false, axis) => {
+                    positions[joint][axis] = Source::Column(index);
+                    moves[joint] = true;
+                }
+            }
+        }
+
+        let starts: Vec<usize> = (0..tree.joints.len())
+            .filter(|&joint| tree.joints[joint].parent.is_none())
+            .collect();
+        let ends = starts.iter().skip(1).copied().chain([tree.joints.len()]);
+        let mut characters = Vec::new();
+        for (start, end) in starts.iter().copied().zip(ends) {
+            let mut character = Character {
+                turns: Turns::new(&turns[start..end]),
+                places: Vec::new(),
+                raw: RawMotion::default(),
+            };
+            for index in start..end {
+                let joint = &tree.joints[index];
+                if index == start {
+                    character.places.push(positions[index]);
+                } else if moves[index] {
+                    character.places.push(positions[index]);
+                    character.raw.tracks.push((index - start, Vec::new()));
+                }
+                character.raw.joints.push(Joint {
+                    name: joint.name.clone(),
+                    parent: joint.parent.map(|parent| parent - start),
+                    offset: vec3(joint.offset),
+                    end_site: joint.end_site.map(vec3),
+                    channels: std::mem::take(&mut channels[index]),
+                });
+            }
+            characters.push(character);
+        }
+        let tracks: usize = characters.iter().map(|c| c.places.len()).sum();
+        let bytes_per_row = (tree.joints.len() * size_of::<Quat>() + tracks * size_of::<Vec3>()) as u64;
+        Self {
+            characters,
+            declared,
+            rows: 0,
+            room: 0,
+            bytes_per_row,
+            limit: MEMORY_FLOOR.saturating_add(MEMORY_PER_BYTE.saturating_mul(bytes.len() as u64)),
+            bytes,
+        }
+    }
+
+    /// Makes room for the rows to come, as many as the bytes from `end` on hold if they are as long as those before. Growing by halves, as
+    /// vectors do, would at the end need room for the motion twice.
+    fn make_room(&mut self, end: usize) -> Result<(), Fault> {
+        let left = self.bytes.end.saturating_sub(end) as f64;
+        let as_before = left * self.rows as f64 / end.saturating_sub(self.bytes.start).max(1) as f64;
+        // The header is believed as far as the bytes agree.
+        let expected = (self.declared - self.rows as f64).clamp(0.9 * as_before, 1.1 * as_before);
+        let fits = self.limit / self.bytes_per_row.max(1) / 4;
+        let rows = (expected as u64).min(fits) as usize;
+        let rows = rows.max(self.rows / 8).max(FIRST_ROWS.min(fits as usize)).max(1);
+        for character in &mut self.characters {
+            character.raw.reserve(rows)?;
+        }
+        self.room += rows;
+        Ok(())
+    }
+
+    /// What channels are before any good value: positions stand at their OFFSET, rotations at 0.
+    pub(super) fn first_row(tree: &Hierarchy) -> Vec<f64> {
+        let value = |column: &Column| match column.channel.map(kind) {
+            Some((false, axis)) => tree.joints.get(column.joint).map_or(0.0, |joint| joint.offset[axis]),
+            _ => 0.0,
+        };
+        tree.columns.iter().map(value).collect()
+    }
+
+    /// One motion for each ROOT, in file units and file axes.
+    pub(super) fn finish(mut self) -> Vec<RawMotion> {
+        for character in &mut self.characters {
+            character.raw.rotations.shrink_to_fit();
+            character.raw.translations_mut().for_each(Vec::shrink_to_fit);
+        }
+        self.characters.into_iter().map(|character| character.raw).collect()
+    }
+}
+
+impl RowSink for Converter {
+    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault> {
+        if (self.rows as u64 + 1).saturating_mul(self.bytes_per_row) > self.limit {
+            let found = format!(
+                "a motion of more than {} MB, most of it in joints without channels",
+                self.limit >> 20
+            );
+            return Err(Fault::new(0, found, "a motion that fits into memory").with_hint("export fewer frames or fewer joints"));
+        }
+        if self.rows == self.room {
+            self.make_room(end)?;
+        }
+        self.rows += 1;
+        let value = |column: usize| values.get(column).copied().unwrap_or_default();
+        for character in &mut self.characters {
+            let raw = &mut character.raw;
+            character.turns.rotations_into(values, &mut raw.rotations);
+            for (track, place) in raw.translations_mut().zip(&character.places) {
+                track.push(vec3(place.map(|source| match source {
+                    Source::Column(column) => value(column),
+                    Source::Offset(value) => value,
+                })));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn vec3(v: [f64; 3]) -> Vec3 {
+    Vec3::new(v[0] as f32, v[1] as f32, v[2] as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::hierarchy::FileJoint;
+
+    fn bare(parent: Option<usize>) -> FileJoint {
+        FileJoint {
+            name: String::new(),
+            parent,
+            offset: [0.0; 3],
+            end_site: None,
+        }
+    }
+
+    #[test]
+    fn joints_without_channels_cannot_fill_the_memory() {
+        let mut joints = vec![bare(None)];
+        joints.extend((0..100_000).map(|_| bare(Some(0))));
+        let tree = Hierarchy {
+            joints,
+            columns: vec![Column {
+                joint: 0,
+                channel: Some(Channel::XRotation),
+            }],
+        };
+        let mut converter = Converter::new(&tree, 4e9, 0..2_000_000);
+        let refused = (0..1000).find_map(|row| converter.row(&[0.0], 2 * row).err());
+        let held = converter.characters[0].raw.rotations.capacity() * size_of::<Quat>();
+        assert!((held as u64) < converter.limit + converter.limit / 4, "{held}");
+        assert!(refused.is_some_and(|fault| fault.found.contains("without channels")));
+    }
+}

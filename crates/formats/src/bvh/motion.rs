@@ -1,0 +1,412 @@
+//! The rows of the MOTION section: one pass over the bytes, one row in memory.
+
+use super::decimal::{LARGEST, Lines};
+use super::lexer::{Lexer, Stop};
+use super::number::{Scan, scan};
+use crate::error::Fault;
+use crate::text::is_space;
+use crate::warning::WarningKind;
+
+/// Bytes between two reports of progress.
+const PROGRESS_STEP: usize = 1 << 18;
+
+/// Where complete rows go.
+pub(super) trait RowSink {
+    /// Takes one row, which ends at `end`; an error says why no more can be taken.
+    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
+}
+
+/// Called now and then with the bytes read so far; `false` stops.
+pub(super) type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;
+
+/// How a line of numbers ended.
+enum End {
+    /// At a line end or the end of the file.
+    Line,
+    /// In the middle of a number, at the end of the file.
+    Cut,
+}
+
+/// Reads all rows into `sink` and returns how many there are. `first_row` holds what channels have before any good value.
+///
+/// A line that holds exactly one row makes lines count: then a shorter last row is dropped and any other wrong row is refused. Where no line
+/// holds exactly one row, numbers are taken one after the other.
+pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
+    let mut reader = Rows {
+        not_finite: 0,
+        first_not_finite: 0,
+        values: 0,
+        row: first_row,
+        reported: lexer.at,
+        lines: Lines::default(),
+        lexer,
+    };
+    reader.lexer.skip_blank();
+    if reader.lexer.at >= reader.lexer.text.len() {
+        return Ok(0);
+    }
+    if reader.row.is_empty() {
+        return Err(reader.lexer.unexpected("the end of the file, since no joint has channels").into());
+    }
+    let by_line = reader.a_line_is_one_row();
+    let count = if by_line {
+        reader.by_line(sink, progress)?
+    } else {
+        reader.across_lines(sink, progress)?
+    };
+    reader.check_share_of_bad_values()?;
+    Ok(count)
+}
+
+struct Rows<'l, 'a> {
+    lexer: &'l mut Lexer<'a>,
+    /// The row being read. It keeps the values of the row before, so that a value that is none repeats the last good one.
+    row: Vec<f64>,
+    values: u64,
+    not_finite: u64,
+    first_not_finite: usize,
+    reported: usize,
+    lines: Lines,
+}
+
+impl Rows<'_, '_> {
+    /// Whether any line holds as many numbers as a row has. Usually the first one does.
+    fn a_line_is_one_row(&self) -> bool {
+        let rest = self.lexer.text.get(self.lexer.at..).unwrap_or_default();
+        rest.split(|b| matches!(b, b'\n' | b'\r'))
+            .any(|line| count_numbers(line) == self.row.len())
+    }
+
+    fn by_line(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
+        let width = self.row.len();
+        let mut count = 0;
+        loop {
+            self.lexer.skip_blank();
+            let start = self.lexer.at;
+            if start >= self.lexer.text.len() {
+                return Ok(count);
+            }
+            self.report(progress)?;
+            let mut column = 0;
+            let end = if self.plain_line() {
+                column = width;
+                End::Line
+            } else {
+                self.numbers(&mut column, width, false)?
+            };
+            if let (true, End::Line) = (column == width, &end) {
+                sink.row(&self.row, self.lexer.at).map_err(|fault| Fault { at: start, ..fault })?;
+                count += 1;
+                continue;
+            }
+            self.lexer.skip_blank();
+            let is_last = self.lexer.at >= self.lexer.text.len();
+            if is_last && column < width {
+                self.truncated(start, column);
+                return Ok(count);
+            }
+            let found = if column >= width {
+                format!("a row of more than {width} numbers")
+            } else {
+                format!("a row of {column} numbers")
+            };
+            return Err(Fault::new(start, found, format!("{width} numbers, one for each channel"))
+                .with_hint("complete the row or delete it, then drop the file again")
+                .into());
+        }
+    }
+
+    fn across_lines(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
+        let (width, start) = (self.row.len(), self.lexer.at);
+        let mut count = 0;
+        loop {
+            self.lexer.skip_blank();
+            let row_start = self.lexer.at;
+            self.report(progress)?;
+            let mut column = 0;
+            let end = self.numbers(&mut column, width, true)?;
+            if column == width && matches!(end, End::Line) {
+                sink.row(&self.row, self.lexer.at).map_err(|fault| Fault { at: start, ..fault })?;
+                count += 1;
+                continue;
+            }
+            if count > 0 {
+                self.lexer.tally.add(WarningKind::RowsAcrossLines, Some(start));
+            }
+            if column > 0 || matches!(end, End::Cut) {
+                self.truncated(row_start, column);
+            }
+            return Ok(count);
+        }
+    }
+
+    fn truncated(&mut self, at: usize, found: usize) {
+        self.lexer.tally.add(
+            WarningKind::TruncatedRow {
+                found,
+                expected: self.row.len(),
+            },
+            Some(at),
+        );
+    }
+
+    fn report(&mut self, progress: Progress<'_>) -> Result<(), Stop> {
+        if self.lexer.at - self.reported >= PROGRESS_STEP {
+            self.reported = self.lexer.at;
+            if !progress(self.lexer.at) {
+                return Err(Stop::Cancelled);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
+    // Not inlined: browsers only optimise a function from one call to its next, and a file would be over before its reader is fast.
+    #[inline(never)]
+    fn plain_line(&mut self) -> bool {
+        // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
+        if self.lexer.commas {
+            return false;
+        }
+        let end = self.lines.line(self.lexer.text, self.lexer.at, &mut self.row);
+        if let Some(end) = end {
+            self.lexer.at = end;
+            self.values += self.row.len() as u64;
+        }
+        end.is_some()
+    }
+
+    /// Reads numbers into the row: up to the end of the line, or, `across_lines`, until the row is full. A line is read no further than one
+    /// number too many.
+    #[inline]
+    fn numbers(&mut self, column: &mut usize, width: usize, across_lines: bool) -> Result<End, Stop> {
+        let text = self.lexer.text;
+        let mut at = self.lexer.at;
+        while let Some(&b) = text.get(at) {
+            match b {
+                b'\n' | b'\r' if !across_lines => {
+                    self.lexer.at = at;
+                    return Ok(End::Line);
+                }
+                _ if is_space(b) => at += 1,
+                _ => {
+                    // The common case: a plain number with white space after it.
+                    let rest = text.get(at..).unwrap_or_default();
+                    match fast_float2::parse_partial::<f64, _>(rest) {
+                        Ok((value, length))
+                            if !self.lexer.commas && value.abs() <= LARGEST && rest.get(length).is_none_or(|&next| is_space(next)) =>
+                        {
+                            at += length;
+                            if let Some(slot) = self.row.get_mut(*column) {
+                                *slot = value;
+                            }
+                        }
+                        _ => {
+                            self.lexer.at = at;
+                            match self.odd_number(*column)? {
+                                Odd::Number(end) => at = end,
+                                Odd::Comment(end) => {
+                                    at = end;
+                                    continue;
+                                }
+                                Odd::Cut => {
+                                    self.lexer.at = text.len();
+                                    return Ok(End::Cut);
+                                }
+                            }
+                        }
+                    }
+                    self.values += 1;
+                    *column += 1;
+                    if *column > width || (across_lines && *column == width) {
+                        self.lexer.at = at;
+                        return Ok(End::Line);
+                    }
+                }
+            }
+        }
+        self.lexer.at = text.len();
+        Ok(End::Line)
+    }
+
+    /// Anything but a plain number.
+    #[cold]
+    fn odd_number(&mut self, column: usize) -> Result<Odd, Stop> {
+        if self.lexer.at_comment() {
+            return Ok(Odd::Comment(self.lexer.line_end()));
+        }
+        let start = self.lexer.at;
+        let (end, glued) = match scan(self.lexer.text, start, self.lexer.commas) {
+            Scan::Value { value, end, glued } => {
+                if let Some(slot) = self.row.get_mut(column) {
+                    *slot = value;
+                }
+                (end, glued)
+            }
+            Scan::NotFinite { end, glued } => {
+                if self.not_finite == 0 {
+                    self.first_not_finite = start;
+                }
+                self.not_finite += 1;
+                self.lexer.tally.add(WarningKind::NotFinite, Some(start));
+                (end, glued)
+            }
+            Scan::OtherDecimalSign => return Err(self.lexer.other_decimal_sign()),
+            Scan::Cut => return Ok(Odd::Cut),
+            Scan::Bad => return Err(self.lexer.unexpected("a number").into()),
+        };
+        if glued {
+            self.lexer.tally.add(WarningKind::MissingSpaces, Some(end));
+        }
+        Ok(Odd::Number(end))
+    }
+
+    /// More than one in a hundred values that are no numbers: the rest is not to be trusted either.
+    fn check_share_of_bad_values(&self) -> Result<(), Stop> {
+        if self.not_finite * 100 > self.values {
+            let found = format!("no number in {} of {} values", self.not_finite, self.values);
+            let fault = Fault::new(self.first_not_finite, found, "at most 1 % of them");
+            return Err(fault
+                .with_hint("export the motion again: too much of it is lost to be filled in")
+                .into());
+        }
+        Ok(())
+    }
+}
+
+enum Odd {
+    /// Read, up to this offset.
+    Number(usize),
+    /// A comment, up to this offset.
+    Comment(usize),
+    /// The file ends inside a number.
+    Cut,
+}
+
+/// How many numbers a line seems to hold: white space and signs inside a token count, what they are does not.
+fn count_numbers(line: &[u8]) -> usize {
+    let mut count = 0;
+    let mut before = b' ';
+    for (index, &b) in line.iter().enumerate() {
+        if is_space(before) && (b == b'#' || line.get(index..).is_some_and(|rest| rest.starts_with(b"//"))) {
+            break;
+        }
+        let sign = matches!(b, b'+' | b'-') && !matches!(before, b'e' | b'E' | b'+' | b'-');
+        if !is_space(b) && (is_space(before) || sign) {
+            count += 1;
+        }
+        before = b;
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Default)]
+    struct Kept(Vec<Vec<f64>>);
+
+    impl RowSink for Kept {
+        fn row(&mut self, values: &[f64], _end: usize) -> Result<(), Fault> {
+            self.0.push(values.to_vec());
+            Ok(())
+        }
+    }
+
+    fn read(text: &str, width: usize) -> Result<(Vec<Vec<f64>>, Vec<String>), Stop> {
+        let mut lexer = Lexer::new(text.as_bytes(), false);
+        let mut kept = Kept::default();
+        let count = rows(&mut lexer, vec![0.0; width], &mut kept, &mut |_| true)?;
+        assert_eq!(count, kept.0.len());
+        let warnings = lexer.tally.into_warnings(text.as_bytes()).iter().map(ToString::to_string).collect();
+        Ok((kept.0, warnings))
+    }
+
+    fn fault(text: &str, width: usize) -> Fault {
+        match read(text, width) {
+            Err(Stop::Fault(fault)) => fault,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn lines_count_where_one_holds_a_row() {
+        let expected = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
+        assert_eq!(read("1 2\n3 4\n", 2).unwrap(), (expected.clone(), vec![]));
+        assert_eq!(read("\r\n 1\t2 \r\r\n\n# x\n3 4 // y", 2).unwrap(), (expected.clone(), vec![]));
+        let (rows, warnings) = read("1 2\n3 4\n5\n\n", 2).unwrap();
+        assert_eq!((rows, warnings.len()), (expected.clone(), 1));
+        assert_eq!(warnings[0], "the last row holds 1 number instead of 2 (line 3); dropped");
+        assert_eq!(
+            read("1 2\n3 4\n5 -", 2).unwrap(),
+            (expected, vec!["the last row holds 1 number instead of 2 (line 3); dropped".into()])
+        );
+        assert_eq!((fault("1 2\n3\n5 6", 2).at, fault("1\n3 4", 2).at), (4, 0));
+        assert_eq!(fault("1 2\n3 4 5\n", 2).found, "a row of more than 2 numbers");
+    }
+
+    #[test]
+    fn lines_do_not_count_where_none_holds_a_row() {
+        let expected = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
+        let note = "no line holds exactly one frame (line 1); the numbers were read one after the other";
+        for text in ["1 2 3 4", "1\n2\n3\n4\n", "1\n2 3 4"] {
+            assert_eq!(read(text, 2).unwrap(), (expected.clone(), vec![note.to_owned()]), "{text}");
+        }
+        let (rows, warnings) = read("1 2 3 4 5", 2).unwrap();
+        assert_eq!((rows, warnings.len()), (expected, 2));
+        let (rows, warnings) = read("1", 2).unwrap();
+        assert_eq!(
+            (rows.len(), warnings),
+            (0, vec!["the last row holds 1 number instead of 2 (line 1); dropped".to_owned()])
+        );
+    }
+
+    #[test]
+    fn the_last_good_value_is_held() {
+        let many = "1 2\n".repeat(100);
+        let (rows, warnings) = read(&format!("{many}nan 5\n6 1.#IND\n"), 2).unwrap();
+        assert_eq!(rows[100..], [[1.0, 5.0], [6.0, 5.0]]);
+        assert_eq!(
+            warnings,
+            ["2 values without a number (first: line 101); the last good value was held"]
+        );
+        let refused = fault("1 2\nnan 3\n", 2);
+        assert_eq!((refused.at, refused.found.as_str()), (4, "no number in 1 of 4 values"));
+    }
+
+    #[test]
+    fn words_are_no_rows() {
+        assert_eq!(fault("1 2\nabc 4\n", 2).found, "`abc`");
+        assert_eq!(fault("1 2\n3 4\nHIERARCHY", 2).found, "`HIERARCHY`");
+        assert_eq!(fault("1", 0).expected, "the end of the file, since no joint has channels");
+    }
+
+    #[test]
+    fn missing_spaces_are_split() {
+        let (rows, warnings) = read("1-2\n3e-1+4\n", 2).unwrap();
+        assert_eq!(rows, [[1.0, -2.0], [0.3, 4.0]]);
+        assert_eq!(
+            warnings,
+            ["2 missing spaces between numbers (first: line 1); split before the sign"]
+        );
+    }
+
+    #[test]
+    fn reading_can_be_watched_and_stopped() {
+        let text = "1 2\n".repeat(200_000);
+        let mut lexer = Lexer::new(text.as_bytes(), false);
+        let mut seen = vec![];
+        rows(&mut lexer, vec![0.0; 2], &mut Kept::default(), &mut |done| {
+            seen.push(done);
+            true
+        })
+        .unwrap();
+        assert_eq!(seen.len(), 3);
+        let mut lexer = Lexer::new(text.as_bytes(), false);
+        assert_eq!(
+            rows(&mut lexer, vec![0.0; 2], &mut Kept::default(), &mut |_| false),
+            Err(Stop::Cancelled)
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! A body of simple bones around a skeleton at rest: what programs show of an armature is mostly the skin on it.
+
+use glam::{Quat, Vec3};
+use segue_motion::skeleton::Skeleton;
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
+
+/// Bones shorter than this have no direction, metres.
+const SHORTEST: f32 = 1e-4;
+/// How far from its start a bone is thickest, and how far it then reaches to each side, as shares of its length.
+const WAIST: f32 = 0.2;
+const GIRTH: f32 = 0.1;
+/// The size of the mark for a joint from which no bone starts, metres.
+const MARK: f32 = 0.015;
+
+/// Triangles, three vertices each; every vertex follows one joint.
+#[derive(Default)]
+pub(super) struct Bones {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) normals: Vec<Vec3>,
+    pub(super) joints: Vec<usize>,
+}
+
+impl Bones {
+    /// One octahedron from each joint to each joint below it and to its end, and a small one where there is neither.
+    pub(super) fn around(skeleton: &Skeleton, positions: &[Vec3]) -> Self {
+        let mut bones = Self::default();
+        let mut has_bone = vec![false; skeleton.len()];
+        for (index, joint) in skeleton.joints().iter().enumerate() {
+            if let Some(parent) = joint.parent {
+                has_bone[parent] |= bones.bone(parent, positions[parent], positions[index]);
+            }
+            if let Some(end) = joint.end_site {
+                has_bone[index] |= bones.bone(index, positions[index], positions[index] + end);
+            }
+        }
+        for (joint, _) in has_bone.iter().enumerate().filter(|(_, has_bone)| !**has_bone) {
+            let up = Vec3::Y * MARK;
+            bones.octahedron(
+                joint,
+                positions[joint] - up,
+                positions[joint] + up,
+                0.5,
+                [Vec3::Z * MARK, Vec3::X * MARK],
+            );
+        }
+        bones
+    }
+
+    /// The bones as a mesh that is bound where the joints are at `positions`, of a skeleton of at most 65,536 joints.
+    pub(super) fn into_mesh(self, positions: &[Vec3]) -> SkinnedMesh {
+        let bind = |&position: &Vec3| RigidTransform {
+            rotation: Quat::IDENTITY,
+            translation: -position,
+        };
+        SkinnedMesh {
+            joints: self.joints.iter().map(|&joint| [joint as u16, 0, 0, 0]).collect(),
+            weights: vec![[1.0, 0.0, 0.0, 0.0]; self.joints.len()],
+            triangles: (0..self.joints.len() as u32 / 3)
+                .map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2])
+                .collect(),
+            bind: positions.iter().map(bind).collect(),
+            positions: self.positions,
+            normals: self.normals,
+            colors: Vec::new(),
+        }
+    }
+
+    fn bone(&mut self, joint: usize, start: Vec3, end: Vec3) -> bool {
+        let along = end - start;
+        let length = along.length();
+        let Some(direction) = along.try_normalize().filter(|_| length > SHORTEST) else {
+            return false;
+        };
+        let (side, other) = direction.any_orthonormal_pair();
+        self.octahedron(joint, start, end, WAIST, [side * (GIRTH * length), other * (GIRTH * length)]);
+        true
+    }
+
+    /// `side`, `other` and the way from `start` to `end` are right-handed.
+    fn octahedron(&mut self, joint: usize, start: Vec3, end: Vec3, waist: f32, [side, other]: [Vec3; 2]) {
+        let middle = start.lerp(end, waist);
+        let ring = [middle + side, middle + other, middle - side, middle - other];
+        for quarter in 0..4 {
+            let (a, b) = (ring[quarter], ring[(quarter + 1) % 4]);
+            self.triangle(joint, [a, b, end]);
+            self.triangle(joint, [b, a, start]);
+        }
+    }
+
+    /// A triangle that is seen from outside: its corners run anticlockwise there.
+    fn triangle(&mut self, joint: usize, [a, b, c]: [Vec3; 3]) {
+        let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        self.positions.extend([a, b, c]);
+        self.normals.extend([normal; 3]);
+        self.joints.extend([joint; 3]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segue_motion::skeleton::fixtures;
+
+    #[test]
+    fn every_joint_has_a_closed_body_that_is_seen_from_outside() {
+        let skeleton = fixtures::cmu_bvh();
+        let positions = skeleton.rest_positions();
+        let bones = Bones::around(&skeleton, &positions);
+        assert!((0..skeleton.len()).all(|joint| bones.joints.contains(&joint)));
+        assert_eq!(bones.positions.len() % 24, 0);
+        for (corners, normals) in bones.positions.chunks(24).zip(bones.normals.chunks(24)) {
+            let middle = corners.iter().sum::<Vec3>() / 24.0;
+            let outwards = corners
+                .iter()
+                .zip(normals)
+                .all(|(corner, normal)| (corner - middle).dot(*normal) > 0.0);
+            assert!(outwards && normals.iter().all(|normal| normal.is_normalized()));
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Which nodes are the joints of a character.
+
+use super::document::Document;
+use super::node::{Nodes, World};
+use crate::ImportError;
+use glam::DVec3;
+use segue_motion::skeleton::Joint;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A character: some nodes of the file as joints, parents first.
+pub(super) struct Character {
+    /// The node of each joint.
+    pub(super) nodes: Vec<usize>,
+    /// At rest, in the file's unit, and with axes that have no rotation at rest.
+    pub(super) joints: Vec<Joint>,
+    /// What the root hangs on; it never moves.
+    pub(super) above: World,
+    /// Nodes whose scale differs from axis to axis, and so bends what is below them when they turn.
+    pub(super) uneven: usize,
+}
+
+/// The characters of a file, in the order of its nodes. `moves` tells which nodes are moved or turned by an animation.
+///
+/// With skins, a character is a tree of skins: those of which one hangs below the other, or that share joints. Its joints are those of the skins and
+/// the nodes between them, up to the last node above them that moves. Without skins, each tree of nodes is a character: what moves, what is between,
+/// and what hangs on it and shows nothing.
+pub(super) fn characters(document: &Document<'_>, nodes: &Nodes, moves: &[bool]) -> Result<Vec<Character>, ImportError> {
+    let mut search = Search::new(nodes, moves);
+    for skin in &document.root.skins {
+        let joints: Vec<usize> = skin.joints.iter().map(gltf::json::Index::value).collect();
+        if let Some(missing) = joints.iter().find(|&&joint| joint >= nodes.all.len()) {
+            return Err(document.error(format!("node {missing} in a skin, which is not there"), "a valid glTF 2.0 file"));
+        }
+        search.add(&joints);
+    }
+    search.has_skins = !search.tops.is_empty();
+    if !search.has_skins {
+        let moving: Vec<usize> = nodes.order.iter().copied().filter(|&node| moves[node]).collect();
+        search.add(&moving);
+    }
+    let mut tops = std::mem::take(&mut search.tops);
+    tops.sort_by_key(|&top| search.below[top].start);
+    // What hangs below another character belongs to it.
+    let mut end = 0;
+    tops.retain(|&top| {
+        let is_first = search.below[top].start >= end;
+        end = end.max(search.below[top].end);
+        is_first
+    });
+    Ok(tops.into_iter().map(|top| search.character(top)).collect())
+}
+
+struct Search<'a> {
+    nodes: &'a Nodes,
+    moves: &'a [bool],
+    /// For every node, what it is the top of: a range of [`Nodes::order`] that starts with itself.
+    below: Vec<Range<usize>>,
+    /// For every node, the root of its tree.
+    roots: Vec<usize>,
+    /// Whether a node is a joint of a skin, or moves where there are no skins.
+    is_joint: Vec<bool>,
+    has_skins: bool,
+    /// The top of each set of joints.
+    tops: Vec<usize>,
+    /// Nodes of the character that is being put together.
+    taken: Vec<bool>,
+    /// The index of each of them.
+    indices: Vec<usize>,
+    /// Where their bones end.
+    ends: Vec<Option<DVec3>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(nodes: &'a Nodes, moves: &'a [bool]) -> Self {
+        let count = nodes.all.len();
+        let mut below = vec![0..0; count];
+        let mut roots: Vec<usize> = (0..count).collect();
+        for (place, &node) in nodes.order.iter().enumerate() {
+            below[node] = place..place + 1;
+            if let Some(parent) = nodes.all[node].parent {
+                roots[node] = roots[parent];
+            }
+        }
+        for &node in nodes.order.iter().rev() {
+            if let Some(parent) = nodes.all[node].parent {
+                below[parent].end = below[parent].end.max(below[node].end);
+            }
+        }
+        Self {
+            nodes,
+            moves,
+            below,
+            roots,
+            is_joint: vec![false; count],
+            has_skins: false,
+            tops: Vec::new(),
+            taken: vec![false; count],
+            indices: vec![0; count],
+            ends: vec![None; count],
+        }
+    }
+
+    /// A set of joints that belong together, as far as they are in one tree: their top is the lowest node that all of them are, or hang on.
+    fn add(&mut self, joints: &[usize]) {
+        let mut tops: BTreeMap<usize, usize> = BTreeMap::new();
+        for &joint in joints {
+            self.is_joint[joint] = true;
+            let top = tops.entry(self.roots[joint]).or_insert(joint);
+            let place = self.below[joint].start;
+            while let (false, Some(parent)) = (self.below[*top].contains(&place), self.nodes.all[*top].parent) {
+                *top = parent;
+            }
+        }
+        self.tops.extend(tops.into_values());
+    }
+
+    fn character(&mut self, top: usize) -> Character {
+        let nodes = self.nodes;
+        let start = self.below[top].start;
+        self.taken[top] = true;
+        for &node in &nodes.order[self.below[top].clone()] {
+            let this = &nodes.all[node];
+            let hangs_on = !self.has_skins && this.is_bare && this.parent.is_some_and(|parent| self.taken[parent]);
+            if self.is_joint[node] || hangs_on || (self.moves[node] && this.is_bare) {
+                let path = nodes.upwards(node).take_while(|&node| self.below[node].start > start);
+                for node in path {
+                    if std::mem::replace(&mut self.taken[node], true) {
+                        break;
+                    }
+                }
+            }
+        }
+        let root = nodes.upwards(top).filter(|&node| self.moves[node]).last().unwrap_or(top);
+        for node in nodes.upwards(top) {
+            self.taken[node] = true;
+            if node == root {
+                break;
+            }
+        }
+        let below = &nodes.order[self.below[root].clone()];
+        for &node in below {
+            self.take_as_end(node);
+        }
+        let above = nodes.all[root].parent.map_or(World::IDENTITY, |parent| nodes.all[parent].world);
+        let joint_nodes: Vec<usize> = below.iter().copied().filter(|&node| self.taken[node]).collect();
+        let joints = joint_nodes
+            .iter()
+            .enumerate()
+            .map(|(index, &node)| self.joint(index, node, root))
+            .collect();
+        let uneven = |node: &&usize| is_uneven(nodes.all[**node].scale) && !nodes.all[**node].children.is_empty();
+        let uneven = joint_nodes.iter().filter(uneven).count();
+        for &node in below {
+            self.taken[node] = false;
+            self.ends[node] = None;
+        }
+        Character {
+            nodes: joint_nodes,
+            joints,
+            above,
+            uneven,
+        }
+    }
+
+    /// A leaf that only says where the bone of its parent ends is an end site and no joint.
+    fn take_as_end(&mut self, node: usize) {
+        let leaf = &self.nodes.all[node];
+        let Some(parent) = leaf.parent.filter(|&parent| self.taken[parent]) else {
+            return;
+        };
+        let (above, is_joint) = (&self.nodes.all[parent], self.is_joint[node] || self.moves[node]);
+        let says_so = above.children.len() == 1 || leaf.name.strip_prefix(above.name.as_str()) == Some("_end");
+        if !is_joint && leaf.is_bare && leaf.children.is_empty() && says_so {
+            self.taken[node] = false;
+            self.ends[parent] = self.ends[parent].or(Some(leaf.world.position));
+        }
+    }
+
+    fn joint(&mut self, index: usize, node: usize, root: usize) -> Joint {
+        self.indices[node] = index;
+        let this = &self.nodes.all[node];
+        let position = this.world.position;
+        let parent = this.parent.filter(|_| node != root);
+        let offset = position - parent.map_or(DVec3::ZERO, |parent| self.nodes.all[parent].world.position);
+        Joint {
+            name: this.name.clone(),
+            parent: parent.map(|parent| self.indices[parent]),
+            offset: offset.as_vec3(),
+            end_site: self.ends[node].map(|end| (end - position).as_vec3()),
+            channels: Vec::new(),
+        }
+    }
+}
+
+fn is_uneven(scale: DVec3) -> bool {
+    let size = scale.abs();
+    size.max_element() - size.min_element() > 1e-3 * size.max_element()
+}

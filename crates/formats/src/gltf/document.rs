@@ -1,0 +1,190 @@
+//! The JSON of a file and the binary buffers that it names.
+
+use crate::ImportError;
+use crate::text::{decode, short};
+use base64::Engine as _;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use gltf::json::{Root, Value};
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Gives the bytes of a file beside the one that is read, by the name that stands in it; `None` where it is not there.
+pub(super) type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
+
+/// A file, taken apart. Nothing in `root` has been checked.
+pub(super) struct Document<'a> {
+    name: &'a str,
+    pub(super) root: Root,
+    buffers: Vec<Buffer<'a>>,
+    /// Bytes that may still be made from this file.
+    left: Cell<usize>,
+}
+
+enum Buffer<'a> {
+    Slice(&'a [u8]),
+    Shared(Arc<[u8]>),
+    /// Why it is not there. Only a buffer that is needed is missed.
+    Missing(String),
+}
+
+impl<'a> Document<'a> {
+    /// `most` bounds the bytes that are made from the file: a few bytes of JSON may ask for any number of values.
+    pub(super) fn open(name: &'a str, bytes: &'a [u8], resolve: Resolve<'_>, most: usize) -> Result<Self, ImportError> {
+        let (json, binary) = if bytes.starts_with(b"glTF") {
+            chunks(bytes).map_err(|found| ImportError::whole_file(name, found, "a whole glTF 2.0 file (.glb)"))?
+        } else {
+            (bytes, None)
+        };
+        let root = parse(name, &decode(json))?;
+        let buffers = root.buffers.iter().enumerate();
+        let buffers = buffers.map(|(index, buffer)| match (&buffer.uri, binary) {
+            (None, Some(binary)) if index == 0 => Buffer::Slice(binary),
+            (None, _) => Buffer::Missing(format!("buffer {index} without data")),
+            (Some(uri), _) => match uri.strip_prefix("data:") {
+                Some(data) => embedded(data).map_or_else(
+                    || Buffer::Missing(format!("buffer {index} with data that is no Base64")),
+                    |bytes| Buffer::Shared(bytes.into()),
+                ),
+                None => external(uri, resolve).map_or_else(
+                    || Buffer::Missing(format!("no file `{}` beside it", short(uri.as_bytes()))),
+                    Buffer::Shared,
+                ),
+            },
+        });
+        Ok(Self {
+            name,
+            buffers: buffers.collect(),
+            root,
+            left: Cell::new(most),
+        })
+    }
+
+    pub(super) fn name(&self) -> &str {
+        self.name
+    }
+
+    pub(super) fn error(&self, found: impl Into<String>, expected: &str) -> ImportError {
+        ImportError::whole_file(self.name, found, expected)
+    }
+
+    /// The bytes of a buffer.
+    pub(super) fn buffer(&self, index: usize) -> Result<&[u8], ImportError> {
+        match self.buffers.get(index) {
+            Some(Buffer::Slice(bytes)) => Ok(bytes),
+            Some(Buffer::Shared(bytes)) => Ok(bytes),
+            Some(Buffer::Missing(why)) => Err(self
+                .error(why.clone(), "the binary data of the animation")
+                .with_hint("open it together with its .bin file")),
+            None => Err(self.error(format!("a view of buffer {index}, which is not there"), "a valid glTF 2.0 file")),
+        }
+    }
+
+    /// The bytes of all buffers.
+    pub(super) fn total_bytes(&self) -> usize {
+        (0..self.buffers.len())
+            .filter_map(|index| self.buffer(index).ok())
+            .fold(0, |sum, bytes| sum.saturating_add(bytes.len()))
+    }
+
+    /// Asks for memory before it is taken.
+    pub(super) fn spend(&self, count: usize, bytes_each: usize) -> Result<(), ImportError> {
+        let left = count.checked_mul(bytes_each).and_then(|bytes| self.left.get().checked_sub(bytes));
+        let Some(left) = left else {
+            return Err(self
+                .error(
+                    "more motion than fits into the memory that a file may take",
+                    "a shorter or a sparser animation",
+                )
+                .with_hint("export a part of the animation, or at a lower frame rate"));
+        };
+        self.left.set(left);
+        Ok(())
+    }
+}
+
+/// The JSON and the binary chunk of a `.glb` file.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    /// Magic, version and length of the file.
+    const HEADER: usize = 12;
+    let word = |at: usize| bytes.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes);
+    match word(4) {
+        Some(2) => {}
+        Some(version) => return Err(format!("glTF version {version}")),
+        None => return Err("a file that was cut off".to_owned()),
+    }
+    let (mut json, mut binary) = (None, None);
+    let mut at = HEADER;
+    while let (Some(length), Some(kind)) = (word(at), bytes.get(at + 4..at + 8)) {
+        let chunk = bytes.get(at + 8..).and_then(|rest| rest.get(..length as usize));
+        let Some(chunk) = chunk else {
+            let there = bytes.len() - at - 8;
+            return Err(format!("{there} bytes of a part that should have {length}: the file was cut off"));
+        };
+        // The first of each kind counts, and other kinds are for others (section 4.4.3).
+        match kind {
+            b"JSON" => json = json.or(Some(chunk)),
+            b"BIN\0" => binary = binary.or(Some(chunk)),
+            _ => {}
+        }
+        // Chunks end at multiples of four; not every writer knows.
+        at += 8 + chunk.len();
+    }
+    json.map(|json| (json, binary)).ok_or_else(|| "a file without JSON".to_owned())
+}
+
+fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
+    let error = match Root::from_slice(json) {
+        Ok(root) if root.asset.version.starts_with("2.") => return Ok(root),
+        Ok(root) => return Err(version(name, &root.asset.version)),
+        Err(error) => error,
+    };
+    let refused = |error: &gltf::json::Error| ImportError {
+        line: error.line().max(1),
+        column: error.column().max(1),
+        ..ImportError::whole_file(name, format!("JSON that is no glTF ({error})"), "a glTF 2.0 file")
+    };
+    let Ok(mut value) = serde_json::from_slice::<Value>(json) else {
+        return Err(refused(&error));
+    };
+    match value.pointer("/asset/version").and_then(Value::as_str) {
+        Some(found) if !found.starts_with("2.") => return Err(version(name, found)),
+        _ => {}
+    }
+    // Channels that move something else than a node (KHR_animation_pointer) are valid, but the library does not know them.
+    let animations = value.get_mut("animations").and_then(Value::as_array_mut);
+    for channels in animations
+        .into_iter()
+        .flatten()
+        .filter_map(|animation| animation.get_mut("channels")?.as_array_mut())
+    {
+        channels.retain(|channel| channel.pointer("/target/node").is_some());
+    }
+    serde_json::from_value(value).map_err(|_| refused(&error))
+}
+
+fn version(name: &str, found: &str) -> ImportError {
+    ImportError::whole_file(name, format!("glTF version {}", short(found.as_bytes())), "glTF 2.0")
+}
+
+/// The content of a data URI after `data:`. Padding and white space are optional, percent signs are undone.
+fn embedded(data: &str) -> Option<Vec<u8>> {
+    const READER: GeneralPurpose = GeneralPurpose::new(
+        &STANDARD,
+        GeneralPurposeConfig::new()
+            .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+            .with_decode_allow_trailing_bits(true),
+    );
+    let (kind, content) = data.split_once(',')?;
+    let content = percent_encoding::percent_decode_str(content);
+    if !kind.ends_with(";base64") {
+        return Some(content.collect());
+    }
+    let content: Vec<u8> = content.filter(|b| !b.is_ascii_whitespace()).collect();
+    READER.decode(content).ok()
+}
+
+/// A file beside this one: by its name as written, else by what the percent signs in it stand for.
+fn external(uri: &str, resolve: Resolve<'_>) -> Option<Arc<[u8]>> {
+    resolve(uri).or_else(|| resolve(&percent_encoding::percent_decode_str(uri).decode_utf8().ok()?))
+}

@@ -1,0 +1,350 @@
+use super::characters::{Character, characters};
+use super::curve::{Curve, Kind, SAME_FRAME, rotation};
+use super::document::Document;
+use super::node::Nodes;
+use super::rate::{Rate, rate};
+use super::skin::mesh;
+use super::write::{GENERATOR, MADE_BODY};
+use crate::measure::measure;
+use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
+use crate::t_pose::first_frame_is_t_pose;
+use crate::warning::{Tally, WarningKind};
+use crate::{ImportError, ImportOptions, Imported, ImportedClip, check_size, stem};
+use glam::{DMat3, DVec3, Quat, Vec3};
+use gltf::json::Index;
+use gltf::json::accessor::{Accessor, Type};
+use gltf::json::animation::{Animation, Property, Sampler};
+use gltf::json::validation::Checked;
+use segue_motion::clip::UpAxis;
+use segue_motion::math::quat;
+use segue_motion::skin::SkinnedMesh;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Reads a glTF 2.0 file, `.glb` or `.gltf`: one clip for each animation of each character, in metres and Y up. A character without animation is a
+/// clip of one frame, its rest pose.
+///
+/// `name` is the file's name: for errors, and for clips whose animation has no name. `resolve` gives the bytes of files that lie beside it, by the
+/// name that stands in it (the `.bin` of a `.gltf`).
+///
+/// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second where there is none; `options.fps` overrides that and
+/// does not change how long an animation takes. Lengths are metres unless that makes giants of more than ten metres: centimetres then, or
+/// millimetres.
+///
+/// # Errors
+/// [`ImportError`] when the file is no glTF 2.0, is cut off, holds nothing that moves, or asks for more memory than `options.max_bytes`.
+pub fn read(
+    name: &str,
+    bytes: &[u8],
+    resolve: &dyn Fn(&str) -> Option<Arc<[u8]>>,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
+    check_size(name, bytes, options)?;
+    let document = Document::open(name, bytes, resolve, options.max_bytes)?;
+    let nodes = Nodes::of(&document)?;
+    let mut tally = Tally::default();
+    let mut motions = Vec::with_capacity(document.root.animations.len());
+    let mut moves = vec![false; nodes.all.len()];
+    for (index, animation) in document.root.animations.iter().enumerate() {
+        let own = animation.name.clone().filter(|name| !name.is_empty());
+        let motion = Motion {
+            name: own.unwrap_or_else(|| match document.root.animations.len() {
+                1 => stem(name).to_owned(),
+                _ => format!("{} {}", stem(name), index + 1),
+            }),
+            ..Motion::read(&document, &nodes, animation, options, &mut tally)?
+        };
+        for &node in motion.turns.keys().chain(motion.places.keys()) {
+            moves[node] = true;
+        }
+        motions.push(motion);
+    }
+    let characters = characters(&document, &nodes, &moves)?;
+    if characters.is_empty() {
+        return Err(document
+            .error("a file without skeleton and without animation", "a character or an animation")
+            .with_hint("export the skeleton and its animations, too"));
+    }
+    let mut imported = Imported::default();
+    for character in &characters {
+        let context = Context {
+            document: &document,
+            nodes: &nodes,
+            options,
+            several: characters.len() > 1,
+        };
+        context.clips(character, &motions, &mut imported.clips, &mut tally)?;
+    }
+    imported.warnings = tally.into_warnings(b"");
+    Ok(imported)
+}
+
+/// An animation.
+struct Motion {
+    name: String,
+    /// By node.
+    turns: BTreeMap<usize, Curve>,
+    places: BTreeMap<usize, Curve>,
+    rate: Rate,
+}
+
+impl Motion {
+    fn read(
+        document: &Document<'_>,
+        nodes: &Nodes,
+        animation: &Animation,
+        options: &ImportOptions,
+        tally: &mut Tally,
+    ) -> Result<Self, ImportError> {
+        let (mut turns, mut places) = (BTreeMap::new(), BTreeMap::new());
+        // Most channels share their times.
+        let mut all_times: BTreeMap<usize, Arc<[f32]>> = BTreeMap::new();
+        let mut held = 0;
+        for channel in &animation.channels {
+            let (node, Checked::Valid(path)) = (channel.target.node.value(), channel.target.path) else {
+                continue;
+            };
+            let Some(moved) = nodes.all.get(node) else {
+                return Err(document.error(format!("an animation of node {node}, which is not there"), "a valid glTF 2.0 file"));
+            };
+            let Some(sampler): Option<&Sampler> = animation.samplers.get(channel.sampler.value()) else {
+                return Err(document.error("an animation without its keys", "a valid glTF 2.0 file"));
+            };
+            let kind = match path {
+                Property::Rotation => Kind::Rotation,
+                Property::Translation | Property::Scale => Kind::Vector,
+                Property::MorphTargetWeights => continue,
+            };
+            let times = match all_times.get(&sampler.input.value()) {
+                Some(times) => Arc::clone(times),
+                None => key_times(document, sampler.input)?,
+            };
+            let Some(curve) = Curve::read(document, sampler, Arc::clone(&times), kind, &mut held)? else {
+                continue;
+            };
+            match path {
+                Property::Scale if curve.differs_from(moved.scale.as_vec3().extend(0.0)) => tally.add(WarningKind::ScaleAnimation, None),
+                Property::Rotation => drop(turns.insert(node, curve)),
+                Property::Translation => drop(places.insert(node, curve)),
+                _ => continue,
+            }
+            all_times.insert(sampler.input.value(), times);
+        }
+        for _ in 0..held {
+            tally.add(WarningKind::NotFinite, None);
+        }
+        let keys = all_times.values().flat_map(|times| times.iter().map(|&time| f64::from(time)));
+        let rate = rate(keys.collect(), given_fps(options));
+        if !rate.holds_keys && given_fps(options).is_none() {
+            tally.add(WarningKind::Resampled { fps: rate.fps }, None);
+        }
+        Ok(Self {
+            name: String::new(),
+            turns,
+            places,
+            rate,
+        })
+    }
+}
+
+fn given_fps(options: &ImportOptions) -> Option<f64> {
+    options.fps.filter(|fps| fps.is_finite() && *fps > 0.0)
+}
+
+fn key_times(document: &Document<'_>, input: Index<Accessor>) -> Result<Arc<[f32]>, ImportError> {
+    let times = document.floats(input, Type::Scalar)?;
+    // For the list of all keys, in double precision.
+    document.spend(times.len(), size_of::<f64>())?;
+    if times.iter().all(|time| time.is_finite()) && times.is_sorted() {
+        Ok(times.into())
+    } else {
+        Err(document.error(
+            format!("times of keys that do not rise (accessor {})", input.value()),
+            "rising times",
+        ))
+    }
+}
+
+struct Context<'a> {
+    document: &'a Document<'a>,
+    nodes: &'a Nodes,
+    options: &'a ImportOptions,
+    /// Whether the file holds more than one character.
+    several: bool,
+}
+
+impl Context<'_> {
+    fn clips(
+        &self,
+        character: &Character,
+        motions: &[Motion],
+        clips: &mut Vec<ImportedClip>,
+        tally: &mut Tally,
+    ) -> Result<(), ImportError> {
+        let mut skin = if self.is_own() {
+            None
+        } else {
+            mesh(self.document, self.nodes, character, tally)
+        };
+        for _ in 0..character.uneven {
+            tally.add(WarningKind::UnevenScale, None);
+        }
+        let rest = RawMotion {
+            joints: character.joints.clone(),
+            rotations: vec![Quat::IDENTITY; character.joints.len()],
+            root_translations: character.joints.first().map(|root| root.offset).into_iter().collect(),
+            tracks: Vec::new(),
+        };
+        let metres_per_unit = self.unit(&rest, tally);
+        if let Some(mesh) = &mut skin {
+            mesh.scale(metres_per_unit as f32);
+            if self.options.up == Some(UpAxis::Z) {
+                mesh.turn(Y_UP_FROM_Z_UP);
+            }
+        }
+        let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest)));
+        let is_moved = |motion: &&Motion| {
+            let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
+            character.nodes.iter().any(moves)
+        };
+        let before = clips.len();
+        for motion in motions.iter().filter(is_moved) {
+            let raw = self.sampled(character, motion)?;
+            clips.push(
+                self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?
+                    .with_mesh(skin.as_ref()),
+            );
+        }
+        if clips.len() == before {
+            tally.add(WarningKind::NoFrames, None);
+            let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
+            clips.push(
+                self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?
+                    .with_mesh(skin.as_ref()),
+            );
+        }
+        Ok(())
+    }
+
+    /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above the carrier follows the carrier.
+    fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
+        let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
+        if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
+            && let Some(above) = clip.skeleton().above()
+        {
+            let bind = above.file_index().iter().filter_map(|&file| mesh.bind.get(file).copied()).collect();
+            mesh.rebind(&above.from_file(), bind);
+        }
+        mesh
+    }
+
+    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.
+    fn is_own(&self) -> bool {
+        let root = &self.document.root;
+        let is_made = |mesh: &gltf::json::Mesh| mesh.name.as_deref() == Some(MADE_BODY);
+        let generator = root.asset.generator.as_deref();
+        generator.is_some_and(|generator| generator.starts_with(GENERATOR)) && root.meshes.iter().all(is_made)
+    }
+
+    /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.
+    fn unit(&self, rest: &RawMotion, tally: &mut Tally) -> f64 {
+        /// Nothing that moves on joints is higher, in each unit.
+        const HIGHEST: [(f64, f64); 2] = [(10.0, 1.0), (1000.0, 0.01)];
+        let found = measure(rest, self.options.metres_per_unit, Some(UpAxis::Y));
+        if !found.unit_detected {
+            return found.provenance.metres_per_unit;
+        }
+        let unit = HIGHEST.iter().find(|(highest, _)| found.height_units <= *highest);
+        let metres_per_unit = unit.map_or(0.001, |(_, unit)| *unit);
+        if metres_per_unit != 1.0 {
+            tally.add(WarningKind::NotMetres { metres_per_unit }, None);
+        }
+        metres_per_unit
+    }
+
+    /// Reads an animation frame by frame. With `G` for rotations in the world at rest, a joint turns by `G(parent) · local · G(joint)⁻¹`, and a
+    /// translation is taken to the parent's new axes by the parent's rotation and scale at rest.
+    fn sampled(&self, character: &Character, motion: &Motion) -> Result<RawMotion, ImportError> {
+        let Rate {
+            fps, start_secs, frames, ..
+        } = motion.rate;
+        let joints = character.joints.len();
+        // Too many frames for a number of bytes are too many for `spend`, which takes what saturates for too much.
+        let frames = frames as usize;
+        self.document
+            .spend(frames.saturating_mul(joints), size_of::<Quat>() + size_of::<Vec3>())?;
+        let mut raw = RawMotion {
+            joints: character.joints.clone(),
+            rotations: vec![Quat::IDENTITY; frames * joints],
+            root_translations: vec![character.joints.first().map_or(Vec3::ZERO, |root| root.offset); frames],
+            tracks: Vec::new(),
+        };
+        let (secs, same_secs) = (|frame: usize| start_secs + frame as f64 / fps, SAME_FRAME / fps);
+        for (joint, &node) in character.nodes.iter().enumerate() {
+            let above = match character.joints[joint].parent {
+                None => character.above,
+                Some(_) => self.nodes.all[node]
+                    .parent
+                    .map_or(character.above, |parent| self.nodes.all[parent].world),
+            };
+            if let Some(curve) = motion.turns.get(&node) {
+                let (parent, own) = (above.rotation.as_quat(), self.nodes.all[node].world.rotation.as_quat().conjugate());
+                let mut key = 0;
+                for (frame, turn) in raw.rotations.iter_mut().skip(joint).step_by(joints).enumerate() {
+                    let local = rotation(curve.at(secs(frame), same_secs, &mut key));
+                    *turn = quat::renormalize(parent * local * own);
+                }
+            }
+            if let Some(curve) = motion.places.get(&node) {
+                let mut key = 0;
+                let (at, axes): (DVec3, DMat3) = match joint {
+                    0 => (above.position, above.linear),
+                    _ => (DVec3::ZERO, above.linear),
+                };
+                let mut good = character.joints[joint].offset;
+                let values = (0..frames).map(|frame| {
+                    let local = curve.at(secs(frame), same_secs, &mut key).truncate();
+                    let place = (at + axes * local.as_dvec3()).as_vec3();
+                    // Between finite keys, a spline with steep slopes need not stay finite.
+                    if place.is_finite() {
+                        good = place;
+                    }
+                    good
+                });
+                match joint {
+                    0 => raw.root_translations = values.collect(),
+                    _ => raw.tracks.push((joint, values.collect())),
+                }
+            }
+        }
+        Ok(raw)
+    }
+
+    fn clip(&self, mut raw: RawMotion, name: &str, fps: f64, metres_per_unit: f64, tally: &mut Tally) -> Result<ImportedClip, ImportError> {
+        let t_pose_first_row = first_frame_is_t_pose(&raw);
+        let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
+        if t_pose_first_row {
+            tally.add(WarningKind::TPose { dropped: t_pose_dropped }, None);
+        }
+        if t_pose_dropped {
+            raw.drop_first_frame();
+        }
+        let measure = measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
+        let mendable = raw.tell_unlikely(&measure, self.options, tally);
+        let name = match raw.joints.first() {
+            Some(root) if self.several => format!("{name} ({})", root.name),
+            _ => name.to_owned(),
+        };
+        let clip = raw
+            .into_clip(name, fps, &measure)
+            .map_err(|error| self.document.error(error.to_string(), "a skeleton with a motion"))?;
+        Ok(ImportedClip {
+            clip,
+            t_pose_first_row,
+            t_pose_dropped,
+            measure,
+            mendable,
+            mesh: None,
+        })
+    }
+}

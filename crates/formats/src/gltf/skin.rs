@@ -1,0 +1,315 @@
+//! The mesh of a character: all primitives whose skin lies on its joints, bound to them as they rest in the file.
+
+use super::characters::Character;
+use super::document::Document;
+use super::node::Nodes;
+use crate::ImportError;
+use crate::warning::{Tally, WarningKind};
+use glam::{DMat3, DMat4, DVec3, Quat, Vec3};
+use gltf::json::accessor::Type;
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Material};
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
+
+/// More vertices, or triangles, are no character that anybody could show.
+const MOST: u64 = 1 << 21;
+/// Sets of joints and weights that are read; the four greatest weights of all count.
+const SETS: u32 = 2;
+
+/// The mesh of a character at rest, in the file's unit; `None` where it has none. What cannot be read is left out and told.
+///
+/// The inverse bind matrices may scale, and lie in any pose: vertices are taken where the skin puts them at rest (section 3.7.3.3 of the
+/// specification), and are bound there anew, so that rigid motions of the joints move them from then on.
+pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character, tally: &mut Tally) -> Option<SkinnedMesh> {
+    let mut joint_of = vec![None; nodes.all.len()];
+    for (joint, &node) in character.nodes.iter().enumerate() {
+        joint_of[node] = u16::try_from(joint).ok();
+    }
+    let mut mesh = SkinnedMesh::default();
+    let mut is_colored = false;
+    for node in &document.root.nodes {
+        let (Some(shape), Some(skin)) = (node.mesh, node.skin) else {
+            continue;
+        };
+        let Some(skin) = document.root.get(skin) else { continue };
+        let joints: Vec<Option<u16>> = skin
+            .joints
+            .iter()
+            .map(|joint| joint_of.get(joint.value()).copied().flatten())
+            .collect();
+        if joints.iter().all(Option::is_none) {
+            continue;
+        }
+        let Some(shape) = document.root.get(shape) else { continue };
+        let skin = Binding::read(document, nodes, skin, joints);
+        for primitive in &shape.primitives {
+            let before = mesh.positions.len() as u64;
+            let read = skin
+                .as_ref()
+                .map_err(Clone::clone)
+                .and_then(|skin| Part::read(document, primitive, skin, before));
+            match read {
+                Ok(Some(part)) => {
+                    is_colored |= part.color != WHITE;
+                    part.join(&mut mesh);
+                }
+                Ok(None) => {}
+                Err(error) => tally.add(WarningKind::BrokenMesh { why: error.found }, None),
+            }
+            if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
+                tally.add(WarningKind::MorphTargets, None);
+            }
+            if material(document, primitive.material).is_some_and(|material| material.pbr_metallic_roughness.base_color_texture.is_some()) {
+                tally.add(WarningKind::Textures, None);
+            }
+        }
+    }
+    if mesh.triangles.is_empty() {
+        return None;
+    }
+    if !is_colored {
+        mesh.colors = Vec::new();
+    }
+    mesh.bind = character
+        .nodes
+        .iter()
+        .map(|&node| RigidTransform {
+            rotation: Quat::IDENTITY,
+            translation: -nodes.all[node].world.position.as_vec3(),
+        })
+        .collect();
+    Some(mesh)
+}
+
+const WHITE: [f32; 4] = [1.0; 4];
+
+fn material<'a>(document: &'a Document<'_>, index: Option<Index<Material>>) -> Option<&'a Material> {
+    document.root.get(index?)
+}
+
+/// What moves the vertices of a skin at rest.
+struct Binding {
+    /// The character's joint for each joint of the skin.
+    joints: Vec<Option<u16>>,
+    /// Takes points of the mesh to where the joint puts them at rest.
+    rest: Vec<DMat4>,
+}
+
+impl Binding {
+    fn read(document: &Document<'_>, nodes: &Nodes, skin: &gltf::json::Skin, joints: Vec<Option<u16>>) -> Result<Self, ImportError> {
+        let inverse_bind = match skin.inverse_bind_matrices {
+            Some(matrices) => document.floats(matrices, Type::Mat4)?,
+            None => Vec::new(),
+        };
+        let (matrices, _) = inverse_bind.as_chunks::<16>();
+        if skin.inverse_bind_matrices.is_some() && matrices.len() < joints.len() {
+            return Err(document.error(
+                format!("{} bind matrices for {} joints", matrices.len(), joints.len()),
+                "one for each",
+            ));
+        }
+        if !inverse_bind.iter().all(|entry| entry.is_finite()) {
+            return Err(document.error("bind matrices that are no numbers", "numbers"));
+        }
+        let rest = skin.joints.iter().enumerate().map(|(place, node)| {
+            let world = nodes.all.get(node.value()).map(|node| node.world).unwrap_or_default();
+            let joint = DMat4::from_mat3_translation(world.linear, world.position);
+            joint
+                * matrices
+                    .get(place)
+                    .map_or(DMat4::IDENTITY, |matrix| DMat4::from_cols_array(&matrix.map(f64::from)))
+        });
+        Ok(Self {
+            rest: rest.collect(),
+            joints,
+        })
+    }
+}
+
+/// One primitive: its vertices at rest.
+struct Part {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    joints: Vec<[u16; 4]>,
+    weights: Vec<[f32; 4]>,
+    triangles: Vec<[u32; 3]>,
+    color: [f32; 4],
+}
+
+impl Part {
+    /// `None` for what is no surface, or has no skin. `before` vertices were read already.
+    fn read(document: &Document<'_>, primitive: &Primitive, binding: &Binding, before: u64) -> Result<Option<Self>, ImportError> {
+        let Checked::Valid(mode) = primitive.mode else { return Ok(None) };
+        let attribute = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+        let Some(positions) =
+            attribute(Semantic::Positions).filter(|_| matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan))
+        else {
+            return Ok(None);
+        };
+        let claimed = document.claimed(positions);
+        if before.saturating_add(claimed) > MOST || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MOST) {
+            return Err(document.error(format!("{claimed} vertices"), "at most two millions"));
+        }
+        let positions = vectors(&document.lengths(positions, Type::Vec3)?);
+        let count = positions.len();
+        let normals = match attribute(Semantic::Normals) {
+            Some(normals) => vectors(&document.floats(normals, Type::Vec3)?),
+            None => Vec::new(),
+        };
+        let mut influences: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
+        for set in 0..SETS {
+            let (Some(joints), Some(weights)) = (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set))) else {
+                break;
+            };
+            let (joints, weights) = (document.integers(joints, Type::Vec4)?, document.floats(weights, Type::Vec4)?);
+            if joints.len() != 4 * count || weights.len() != 4 * count {
+                return Err(document.error("joints or weights that are not one for each vertex", "one for each"));
+            }
+            document.spend(count, 4 * size_of::<(usize, f32)>())?;
+            for (influences, (joints, weights)) in influences
+                .iter_mut()
+                .zip(joints.as_chunks::<4>().0.iter().zip(weights.as_chunks::<4>().0))
+            {
+                for (&joint, &weight) in joints.iter().zip(weights) {
+                    if weight > 0.0 && weight.is_finite() {
+                        influences.push((joint as usize, weight));
+                    }
+                }
+            }
+        }
+        if influences.iter().all(Vec::is_empty) {
+            return Ok(None);
+        }
+        let indices = match primitive.indices {
+            Some(indices) => document.integers(indices, Type::Scalar)?,
+            None => (0..count as u32).collect(),
+        };
+        if let Some(index) = indices.iter().find(|index| **index as usize >= count) {
+            return Err(document.error(format!("a triangle with vertex {index} of {count}"), "a vertex that is there"));
+        }
+        let mut part = Self {
+            triangles: triangles(&indices, mode),
+            color: material(document, primitive.material).map_or(WHITE, |material| {
+                let [r, g, b, a] = material.pbr_metallic_roughness.base_color_factor.0;
+                [
+                    encoded(r),
+                    encoded(g),
+                    encoded(b),
+                    if a.is_finite() { a.clamp(0.0, 1.0) } else { 1.0 },
+                ]
+            }),
+            positions,
+            normals,
+            joints: Vec::with_capacity(count),
+            weights: Vec::with_capacity(count),
+        };
+        part.rest(binding, &influences)
+            .map_err(|found| document.error(found, "joints of the skin"))?;
+        Ok(Some(part))
+    }
+
+    /// Puts the vertices where the skin has them at rest, and names the joints that move them from there.
+    fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), String> {
+        let has_normals = self.normals.len() == self.positions.len();
+        let mut mirrored = 0usize;
+        for (vertex, influences) in influences.iter().enumerate() {
+            let mut sorted = influences.clone();
+            sorted.sort_by(|x, y| y.1.total_cmp(&x.1));
+            sorted.truncate(4);
+            let mut total: f32 = sorted.iter().map(|(_, weight)| weight).sum();
+            if sorted.is_empty() {
+                // A vertex that nothing moves follows the first joint.
+                (sorted, total) = (vec![(0, 1.0)], 1.0);
+            }
+            let (mut matrix, mut joints, mut weights) = (DMat4::ZERO, [0; 4], [0.0; 4]);
+            for (place, &(joint, weight)) in sorted.iter().enumerate() {
+                let (Some(rest), Some(&own)) = (binding.rest.get(joint), binding.joints.get(joint)) else {
+                    return Err(format!("a vertex with joint {joint} of {}", binding.rest.len()));
+                };
+                matrix += *rest * f64::from(weight / total);
+                joints[place] = own.unwrap_or_default();
+                weights[place] = weight / total;
+            }
+            self.joints.push(joints);
+            self.weights.push(weights);
+            let linear = DMat3::from_mat4(matrix);
+            let (position, normal) = (self.positions[vertex], self.normals.get(vertex).copied().unwrap_or_default());
+            self.positions[vertex] = matrix.transform_point3(position.as_dvec3()).as_vec3();
+            mirrored += usize::from(linear.determinant() < 0.0);
+            if has_normals {
+                self.normals[vertex] = (cofactors(linear) * normal.as_dvec3()).as_vec3();
+            }
+        }
+        let positions = &self.positions;
+        self.triangles
+            .retain(|triangle| triangle.iter().all(|&corner| positions[corner as usize].abs().max_element() < 1e18));
+        for position in &mut self.positions {
+            if position.abs().max_element().is_nan() || position.abs().max_element() >= 1e18 {
+                *position = Vec3::ZERO;
+            }
+        }
+        if 2 * mirrored > self.positions.len() {
+            self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let computed = segue_motion::skin::normals(&self.positions, &self.triangles);
+        if has_normals {
+            for (normal, computed) in self.normals.iter_mut().zip(computed) {
+                *normal = normal.try_normalize().unwrap_or(computed);
+            }
+        } else {
+            self.normals = computed;
+        }
+        Ok(())
+    }
+
+    fn join(self, mesh: &mut SkinnedMesh) {
+        let before = mesh.positions.len() as u32;
+        mesh.colors.extend(std::iter::repeat_n(self.color, self.positions.len()));
+        mesh.positions.extend(self.positions);
+        mesh.normals.extend(self.normals);
+        mesh.joints.extend(self.joints);
+        mesh.weights.extend(self.weights);
+        mesh.triangles
+            .extend(self.triangles.iter().map(|triangle| triangle.map(|corner| corner + before)));
+    }
+}
+
+/// Takes normals along with a surface: the inverse transpose times the determinant, which is there for flattened surfaces, too.
+fn cofactors(m: DMat3) -> DMat3 {
+    let [x, y, z]: [DVec3; 3] = [m.x_axis, m.y_axis, m.z_axis];
+    let sign = m.determinant().signum();
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
+}
+
+fn vectors(values: &[f32]) -> Vec<Vec3> {
+    values.as_chunks::<3>().0.iter().copied().map(Vec3::from_array).collect()
+}
+
+/// The triangles of indices that are a list, a strip or a fan (section 3.7.2.1).
+fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+    let own = |[a, b, c]: [u32; 3]| (a != b && b != c && c != a).then_some([a, b, c]);
+    match mode {
+        Mode::TriangleStrip => indices
+            .windows(3)
+            .enumerate()
+            .filter_map(|(place, w)| own(if place % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }))
+            .collect(),
+        Mode::TriangleFan => (indices.get(1..).unwrap_or_default().windows(2))
+            .filter_map(|w| own([indices[0], w[0], w[1]]))
+            .collect(),
+        _ => indices.as_chunks::<3>().0.iter().copied().filter_map(own).collect(),
+    }
+}
+
+/// A part of a linear colour as written in a palette (IEC 61966-2-1).
+fn encoded(linear: f32) -> f32 {
+    if !linear.is_finite() || linear >= 1.0 {
+        1.0
+    } else if linear <= 0.003_130_8 {
+        let linear = linear.max(0.0);
+        linear * 12.92
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}

@@ -1,0 +1,589 @@
+//! Files are made here, as JSON with their numbers embedded, and read against matrices multiplied node by node.
+
+use super::*;
+use crate::{ImportError, ImportOptions, Imported};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use glam::{DMat4, DQuat, DVec3, Quat, Vec3};
+use proptest::prelude::*;
+use segue_motion::clip::fixtures::wander;
+use segue_motion::clip::{Clip, JointTranslations};
+use segue_motion::math::quat;
+use segue_motion::skeleton::{Above, fixtures};
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+mod skin_tests;
+
+/// A file of ours, with the name of the program that wrote it changed.
+fn by_another_program(mut bytes: Vec<u8>) -> Vec<u8> {
+    let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    bytes[at..at + 5].copy_from_slice(b"Other");
+    bytes
+}
+
+/// A file that is being made.
+struct Made {
+    root: Value,
+    bytes: Vec<u8>,
+}
+
+impl Made {
+    /// Nodes, and the joints of a skin.
+    fn new(nodes: &Value, joints: &[usize]) -> Self {
+        let mut root = json!({ "asset": { "version": "2.0" }, "nodes": nodes, "accessors": [], "bufferViews": [] });
+        if !joints.is_empty() {
+            root["skins"] = json!([{ "joints": joints }]);
+        }
+        Self { root, bytes: Vec::new() }
+    }
+
+    fn list(&mut self, key: &str) -> &mut Vec<Value> {
+        if self.root[key].is_null() {
+            self.root[key] = json!([]);
+        }
+        self.root[key].as_array_mut().unwrap()
+    }
+
+    fn view(&mut self, bytes: &[u8]) -> usize {
+        let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        self.bytes.extend_from_slice(bytes);
+        self.list("bufferViews").push(view);
+        self.list("bufferViews").len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.list("accessors").push(accessor);
+        self.list("accessors").len() - 1
+    }
+
+    fn floats(&mut self, kind: &str, width: usize, values: &[f32]) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let view = self.view(&bytes);
+        self.accessor(json!({ "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind }))
+    }
+
+    /// One more channel of the first animation.
+    fn channel(&mut self, node: usize, path: &str, interpolation: &str, times: &[f32], values: &[f32]) {
+        let input = self.floats("SCALAR", 1, times);
+        let (kind, width) = if path == "rotation" { ("VEC4", 4) } else { ("VEC3", 3) };
+        let output = self.floats(kind, width, values);
+        self.sampler(
+            node,
+            path,
+            json!({ "input": input, "output": output, "interpolation": interpolation }),
+        );
+    }
+
+    fn sampler(&mut self, node: usize, path: &str, sampler: Value) {
+        if self.root["animations"].is_null() {
+            self.root["animations"] = json!([{ "samplers": [], "channels": [] }]);
+        }
+        let animation = &mut self.root["animations"][0];
+        let samplers = animation["samplers"].as_array_mut().unwrap();
+        samplers.push(sampler);
+        let index = samplers.len() - 1;
+        let channel = json!({ "sampler": index, "target": { "node": node, "path": path } });
+        animation["channels"].as_array_mut().unwrap().push(channel);
+    }
+
+    fn text(&self) -> Vec<u8> {
+        let mut root = self.root.clone();
+        let data = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&self.bytes));
+        root["buffers"] = json!([{ "byteLength": self.bytes.len(), "uri": data }]);
+        root.to_string().into_bytes()
+    }
+
+    fn read(&self) -> Imported {
+        open(&self.text()).unwrap_or_else(|error| panic!("{error}"))
+    }
+}
+
+fn open(bytes: &[u8]) -> Result<Imported, ImportError> {
+    let options = ImportOptions {
+        drop_t_pose: false,
+        metres_per_unit: Some(1.0),
+        ..ImportOptions::default()
+    };
+    read("dir/made.gltf", bytes, &|_| None, &options)
+}
+
+fn only(imported: &Imported) -> &Clip {
+    assert_eq!(imported.clips.len(), 1);
+    &imported.clips[0].clip
+}
+
+fn sentences(imported: &Imported) -> Vec<String> {
+    imported.warnings.iter().map(ToString::to_string).collect()
+}
+
+/// Two bones: `Hips` at 1 m with `Chest` 0.5 m above.
+fn two_bones() -> Value {
+    json!([{ "name": "Hips", "translation": [0, 1, 0], "children": [1] }, { "name": "Chest", "translation": [0, 0.5, 0], "children": [2] }, { "name": "Tip", "translation": [0, 0.3, 0] }])
+}
+
+fn about_z(angle: f32) -> [f32; 4] {
+    Quat::from_rotation_z(angle).to_array()
+}
+
+#[test]
+fn a_clip_comes_back_from_its_file() {
+    let clip = wander(&fixtures::cmu_bvh(), 40, 5).with_name("wander & more");
+    let values = (0..40).map(|i| Vec3::new(0.02, 0.3 + 0.001 * i as f32, 0.0)).collect();
+    let clip = clip.with_translations(vec![JointTranslations { joint: 7, values }]).unwrap();
+    let bytes = write_glb(&clip, &GlbOptions::default()).unwrap();
+    assert_eq!(bytes, write_glb(&clip, &GlbOptions::default()).unwrap());
+    assert!(is_gltf(&bytes) && bytes.len().is_multiple_of(4));
+    let imported = read("x.glb", &bytes, &|_| None, &ImportOptions::default()).unwrap();
+    assert_eq!(sentences(&imported), [""; 0]);
+    let back = only(&imported);
+    assert_eq!((back.name(), back.fps(), back.frames()), ("wander & more", 30.0, 40));
+    assert_eq!(back.provenance().metres_per_unit, 1.0);
+    // Nodes are read each followed by all below it.
+    let joints = clip.skeleton().joints();
+    let places: Vec<usize> = joints.iter().map(|joint| back.skeleton().find(&joint.name).unwrap()).collect();
+    for (b, &place) in joints.iter().zip(&places) {
+        let a = &back.skeleton().joints()[place];
+        assert_eq!(a.parent, b.parent.map(|parent| places[parent]));
+        assert!(a.offset.distance(b.offset) < 1e-6 && a.end_site.is_some() == b.end_site.is_some());
+        assert!(a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-6);
+    }
+    for frame in 0..40 {
+        let (found, expected) = (back.world_pose(frame), clip.world_pose(frame));
+        for (joint, &place) in places.iter().enumerate() {
+            assert!(found.positions[place].distance(expected.positions[joint]) < 1e-5, "frame {frame}");
+            assert!(quat::angle_between(back.rotations(frame)[place], clip.rotations(frame)[joint]) < 1e-5);
+        }
+    }
+    // At another rate, and without frames.
+    let half = write_glb(
+        &clip,
+        &GlbOptions {
+            fps: Some(60.0),
+            ..GlbOptions::default()
+        },
+    )
+    .unwrap();
+    assert_eq!(
+        only(&read("x.glb", &half, &|_| None, &ImportOptions::default()).unwrap()).frames(),
+        79
+    );
+    let still = write_glb(&clip.crop(0..0).unwrap(), &GlbOptions::default()).unwrap();
+    let imported = read("x.glb", &still, &|_| None, &ImportOptions::default()).unwrap();
+    assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
+    assert_eq!((only(&imported).frames(), only(&imported).name()), (1, "x"));
+}
+
+#[test]
+fn each_interpolation_is_what_the_format_says() {
+    let times = [0.0, 0.5, 1.0];
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    made.channel(0, "translation", "STEP", &times, &[0.0, 1.0, 0.0, 2.0, 1.0, 0.0, 3.0, 1.0, 0.0]);
+    let turns = [about_z(0.0), about_z(1.0), about_z(0.5)];
+    // The long way round: the shorter one is meant.
+    let turns = [turns[0], turns[1].map(|v| -v), turns[2]].concat();
+    made.channel(1, "rotation", "LINEAR", &times, &turns);
+    let imported = made.read();
+    let clip = only(&imported);
+    assert_eq!((clip.fps(), clip.frames()), (30.0, 31));
+    assert_eq!(
+        clip.skeleton().joints()[1].end_site,
+        Some(Vec3::Y * 0.3),
+        "a leaf that does not move is an end"
+    );
+    let x = |frame: usize| clip.root_translations()[frame].x;
+    assert_eq!((x(0), x(14), x(15), x(29), x(30)), (0.0, 0.0, 2.0, 2.0, 3.0));
+    for (frame, angle) in [(0, 0.0), (3, 0.2), (15, 1.0), (18, 0.9), (30, 0.5)] {
+        assert!(
+            quat::angle_between(clip.rotations(frame)[1], Quat::from_rotation_z(angle)) < 1e-5,
+            "frame {frame}"
+        );
+    }
+    // A cubic that a spline with the right slopes follows exactly.
+    let (value, slope) = (|t: f32| t * t * t - t + 1.0, |t: f32| 3.0 * t * t - 1.0);
+    let triples: Vec<f32> = times
+        .iter()
+        .flat_map(|&t| [0.0, slope(t), 0.0, 0.0, value(t), 0.0, 0.0, slope(t), 0.0])
+        .collect();
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    made.channel(0, "translation", "CUBICSPLINE", &times, &triples);
+    let imported = made.read();
+    for (frame, place) in only(&imported).root_translations().iter().enumerate() {
+        assert!((place.y - value(frame as f32 / 30.0)).abs() < 1e-6, "frame {frame}");
+    }
+}
+
+#[test]
+fn small_numbers_sparse_ones_and_strides_are_read() {
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    // Rotations as normalised shorts, interleaved with something else.
+    let turns: Vec<u8> = [0.0, 0.4, 0.8]
+        .into_iter()
+        .flat_map(|angle| {
+            let q = about_z(angle).map(|v| ((v * 32767.0).round() as i16).to_le_bytes());
+            [q.concat(), vec![0xee; 4]].concat()
+        })
+        .collect();
+    let view = made.view(&turns);
+    made.root["bufferViews"][view]["byteStride"] = json!(12);
+    let input = made.floats("SCALAR", 1, &[0.0, 0.1, 0.2]);
+    let output = made.accessor(json!({ "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4" }));
+    made.sampler(1, "rotation", json!({ "input": input, "output": output }));
+    // Translations that are zero but for the last one.
+    let (indices, values) = (made.view(&[2]), made.view(&[0, 0, 128, 63, 0, 0, 0, 64, 0, 0, 64, 64]));
+    let output = made.accessor(json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
+        "count": 1, "indices": { "bufferView": indices, "componentType": 5121 }, "values": { "bufferView": values } } }));
+    made.sampler(0, "translation", json!({ "input": input, "output": output }));
+    let imported = made.read();
+    let clip = only(&imported);
+    assert_eq!((clip.fps(), clip.frames()), (30.0, 7));
+    assert_eq!(
+        (clip.root_translations()[3], clip.root_translations()[6]),
+        (Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0))
+    );
+    assert!(quat::angle_between(clip.rotations(3)[1], Quat::from_rotation_z(0.4)) < 1e-4);
+    assert!(clip.rotations(5).iter().all(|q| q.is_normalized()));
+}
+
+#[test]
+fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
+    // World > Mover (moves) > Armature > {Hips > Chest > Head, Mesh}, and a lamp beside it. `Chest` is in no skin.
+    let nodes = json!([
+        { "name": "World", "children": [1, 7], "scale": [0.01, 0.01, 0.01] },
+        { "name": "Mover", "children": [2] },
+        { "name": "Armature", "children": [3, 6], "rotation": [-0.707_106_77, 0, 0, 0.707_106_77] },
+        { "name": "Hips", "children": [4], "translation": [0, 0, 90] },
+        { "name": "Chest", "children": [5], "translation": [0, 0, 40] },
+        { "name": "Head", "translation": [0, 0, 30] },
+        { "name": "Mesh", "mesh": 0, "skin": 0 },
+        { "name": "Lamp", "translation": [0, 300, 0] }
+    ]);
+    let mut made = Made::new(&nodes, &[5, 3]);
+    made.root["meshes"] = json!([{ "primitives": [{ "attributes": {} }] }]);
+    made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 100.0, 0.0, 0.0]);
+    made.channel(7, "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
+    let imported = made.read();
+    let clip = only(&imported);
+    let joints: Vec<_> = clip
+        .skeleton()
+        .joints()
+        .iter()
+        .map(|joint| (joint.name.as_str(), joint.parent))
+        .collect();
+    assert_eq!(
+        joints,
+        [
+            ("Mover", None),
+            ("Armature", Some(0)),
+            ("Hips", Some(1)),
+            ("Chest", Some(2)),
+            ("Head", Some(3))
+        ]
+    );
+    let top = |frame: usize| clip.world_pose(frame).positions[4];
+    assert!(top(0).distance(Vec3::new(0.0, 1.6, 0.0)) < 1e-6 && top(30).distance(Vec3::new(1.0, 1.6, 0.0)) < 1e-6);
+    // At rest nothing is turned, whatever the nodes are.
+    assert!(clip.rotations(0).iter().all(|q| quat::angle_between(*q, Quat::IDENTITY) < 1e-6));
+    assert!(clip.skeleton().rest_positions()[4].distance(Vec3::Y * 1.6) < 1e-6);
+}
+
+#[test]
+fn several_characters_and_animations_are_several_clips() {
+    let mut made = Made::new(
+        &json!([{ "name": "A", "children": [1] }, { "name": "A2", "translation": [0, 1, 0] }, { "name": "B", "children": [3] }, { "name": "B2", "translation": [0, 1, 0] }]),
+        &[],
+    );
+    made.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);
+    made.channel(0, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let first = made.root["animations"][0].clone();
+    made.root["animations"] = json!([first, first, { "name": "unused", "channels": [], "samplers": [] }]);
+    made.root["animations"][0]["name"] = json!("walk");
+    let imported = made.read();
+    let clips: Vec<_> = imported
+        .clips
+        .iter()
+        .map(|found| (found.clip.name(), found.clip.skeleton().len(), found.clip.frames()))
+        .collect();
+    assert_eq!(clips, [("walk (A)", 2, 31), ("made 2 (A)", 2, 31), ("made (B)", 2, 1)]);
+    assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
+}
+
+#[test]
+fn without_a_skin_the_moving_nodes_are_the_skeleton() {
+    let nodes = json!([
+        { "name": "Scene", "children": [1, 5], "translation": [0, 0, 1] },
+        { "name": "Hips", "children": [2, 3, 6], "translation": [0, 1, 0] },
+        { "name": "Leg", "translation": [0.1, -0.5, 0] },
+        { "name": "Spine", "children": [4], "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1] },
+        { "name": "Head", "translation": [0, 0.2, 0] },
+        { "name": "Camera", "camera": 0 },
+        { "name": "Skirt", "mesh": 0 }
+    ]);
+    let mut made = Made::new(&nodes, &[]);
+    made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 1.0, 0.0, 0.0, 1.0, 2.0]);
+    made.channel(3, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let imported = made.read();
+    let clip = only(&imported);
+    let joints: Vec<_> = clip.skeleton().joints().iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(joints, ["Hips", "Leg", "Spine"]);
+    assert_eq!(clip.skeleton().joints()[2].end_site, Some(Vec3::Y * 0.2));
+    assert_eq!(clip.root_translations()[30], Vec3::new(0.0, 1.0, 3.0));
+    let still = open(br#"{"asset":{"version":"2.0"},"nodes":[{}]}"#).unwrap_err();
+    assert!(
+        still.to_string().contains("found a file without skeleton and without animation"),
+        "{still}"
+    );
+}
+
+#[test]
+fn oddities_are_told() {
+    let nodes = json!([{ "name": "Hips", "children": [1], "scale": [1, 2, 1] }, { "name": "Chest", "children": [2], "translation": [0, 0.5, 0] }, { "translation": [0, 0.5, 0] }]);
+    let mut made = Made::new(&nodes, &[0, 1]);
+    let times = [0.0, 0.0123, 0.5171, 0.9];
+    made.channel(
+        0,
+        "translation",
+        "LINEAR",
+        &times,
+        &[0.0, 1.0, 0.0, f32::NAN, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0],
+    );
+    made.channel(
+        0,
+        "scale",
+        "LINEAR",
+        &times,
+        &[1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0],
+    );
+    made.channel(
+        1,
+        "scale",
+        "STEP",
+        &times,
+        &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0, 1.0, 1.0, 1.0],
+    );
+    let imported = made.read();
+    assert_eq!(
+        sentences(&imported),
+        [
+            "1 animated scale ignored",
+            "1 value without a number; the last good value was held",
+            "the keys have no common rate; sampled at 30 frames per second",
+            "1 node scaled by a different factor along each axis; joints below are exact at rest and near in motion",
+        ]
+    );
+    assert_eq!(
+        only(&imported).skeleton().rest_positions()[1],
+        Vec3::Y,
+        "as tall as the scale makes it"
+    );
+    // Not every exporter knows that lengths are metres.
+    let mut made = Made::new(
+        &json!([{ "name": "Hips", "children": [1], "translation": [0, 90, 0] }, { "name": "Head", "translation": [0, 85, 0] }, { "name": "Foot", "translation": [0, -88, 0] }]),
+        &[0, 1, 2],
+    );
+    made.root["nodes"][0]["children"] = json!([1, 2]);
+    let imported = read("tall.gltf", &made.text(), &|_| None, &ImportOptions::default()).unwrap();
+    assert_eq!(
+        sentences(&imported),
+        [
+            "the body is far too large for metres; units of 0.01 m are taken",
+            "the file holds a skeleton and no motion"
+        ]
+    );
+    assert_eq!(only(&imported).root_translations()[0], Vec3::Y * 0.9);
+}
+
+#[test]
+fn buffers_are_found_beside_the_file_or_missed_by_name() {
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let mut root = made.root.clone();
+    root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "my%20walk.bin" }]);
+    let text = root.to_string();
+    let bytes: Arc<[u8]> = made.bytes.clone().into();
+    let beside = |name: &str| (name == "my walk.bin").then(|| Arc::clone(&bytes));
+    let imported = read("a.gltf", text.as_bytes(), &beside, &ImportOptions::default()).unwrap();
+    assert_eq!(only(&imported).frames(), 31);
+    let error = read("a.gltf", text.as_bytes(), &|_| None, &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("found no file `my%20walk.bin` beside it"), "{error}");
+    assert!(error.hint.is_some());
+    let short: Arc<[u8]> = made.bytes[..30].into();
+    let error = read("a.gltf", text.as_bytes(), &|_| Some(Arc::clone(&short)), &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("expected all bytes of the animation"), "{error}");
+    // A buffer of images alone is not missed.
+    root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "walk.bin" }, { "byteLength": 9, "uri": "images.bin" }]);
+    let beside = |name: &str| (name == "walk.bin").then(|| Arc::clone(&bytes));
+    assert!(read("a.gltf", root.to_string().as_bytes(), &beside, &ImportOptions::default()).is_ok());
+}
+
+#[test]
+fn what_is_no_gltf_is_refused_with_its_place() {
+    let say = |text: &str| open(text.as_bytes()).unwrap_err().to_string();
+    assert!(
+        say("{\n \"asset\": {]").starts_with("dir/made.gltf:2:12: found JSON that is no glTF"),
+        "{}",
+        say("{\n \"asset\": {]")
+    );
+    assert!(say(r#"{"asset":{"version":"1.0"},"nodes":{}}"#).contains("found glTF version 1.0, expected glTF 2.0"));
+    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#).contains("below themselves"));
+    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[2]},{"children":[2]},{}]}"#).contains("two parents"));
+    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[9]}]}"#).contains("node 9, which is not there"));
+    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{}],"skins":[{"joints":[4]}]}"#).contains("node 4 in a skin"));
+    let huge = r#"{"asset":{"version":"2.0"},"nodes":[{"scale":[1e30,1e30,1e30],"children":[1]},{"translation":[1,0,0]}],"skins":[{"joints":[0]}]}"#;
+    assert!(say(huge).contains("farther away than can be told"));
+    let glb = write_glb(&wander(&fixtures::cmu_bvh(), 3, 1), &GlbOptions::default()).unwrap();
+    let cut = open(&glb[..glb.len() - 5]).unwrap_err().to_string();
+    assert!(cut.contains("the file was cut off, expected a whole glTF 2.0 file"), "{cut}");
+    assert!(open(b"glTF").is_err() && open(b"glTF\x01\0\0\0").unwrap_err().to_string().contains("glTF version 1"));
+}
+
+#[test]
+fn keys_that_cannot_be_are_refused() {
+    let say = |times: &[f32], values: usize, stride: Option<u32>| {
+        let mut made = Made::new(&two_bones(), &[0, 1]);
+        made.channel(1, "rotation", "LINEAR", times, &about_z(0.0).repeat(values));
+        if let Some(stride) = stride {
+            made.root["bufferViews"][1]["byteStride"] = json!(stride);
+        }
+        open(&made.text()).map_or_else(|error| error.to_string(), |_| "read".to_owned())
+    };
+    assert_eq!(say(&[0.0, 1.0], 2, None), "read");
+    assert!(say(&[1.0, 0.0], 2, None).contains("expected rising times"));
+    assert!(say(&[0.0, f32::NAN], 2, None).contains("expected rising times"));
+    assert!(say(&[0.0, 1.0], 3, None).contains("found 3 values for 2 keys, expected 1 for each key"));
+    assert!(say(&[0.0, 1.0], 2, Some(4)).contains("for 2 values of 16"));
+}
+
+#[test]
+fn channels_that_move_no_node_are_passed_over() {
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let pointer =
+        json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
+    made.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
+    made.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    assert_eq!(only(&made.read()).frames(), 31);
+}
+
+#[test]
+fn a_few_bytes_cannot_ask_for_all_memory() {
+    let refused = |made: &Made| open(&made.text()).unwrap_err().to_string();
+    let mut made = Made::new(&two_bones(), &[0, 1]);
+    made.channel(1, "rotation", "LINEAR", &[0.0, 4e9], &[about_z(0.0), about_z(1.0)].concat());
+    assert!(refused(&made).contains("more motion than fits"), "{}", refused(&made));
+    for accessor in [
+        json!({ "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
+        json!({ "bufferView": 0, "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
+        json!({ "bufferView": 0, "componentType": 5126, "count": u64::MAX, "type": "SCALAR" }),
+    ] {
+        let mut made = Made::new(&two_bones(), &[0, 1]);
+        let view = made.view(&[0; 64]);
+        let input = made.accessor(accessor);
+        made.sampler(1, "rotation", json!({ "input": input, "output": input }));
+        assert!(open(&made.text()).is_err());
+        // Without a step from one to the next, they would all fit.
+        made.root["bufferViews"][view]["byteStride"] = json!(0);
+        assert!(open(&made.text()).is_err());
+    }
+}
+
+/// A tree of nodes: for each its parent among those before it, its translation, rotation and scale.
+type Tree = Vec<(prop::sample::Index, [f32; 3], [f32; 3], f32)>;
+
+fn tree() -> impl Strategy<Value = Tree> {
+    let vector = || [-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0];
+    prop::collection::vec(
+        (
+            any::<prop::sample::Index>(),
+            vector(),
+            vector().prop_map(|v| v.map(|v| 3.0 * v)),
+            0.3f32..2.0,
+        ),
+        2..9,
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(120))]
+
+    #[test]
+    fn joints_are_where_the_matrices_of_the_nodes_put_them(tree in tree(), joints in prop::collection::btree_set(0usize..9, 1..6), keys in prop::collection::vec((0usize..9, [-2.0f32..2.0, -2.0f32..2.0, -2.0f32..2.0], any::<bool>()), 1..6)) {
+        let turn = |v: [f32; 3]| quat::exp(Vec3::from_array(v));
+        let parent = |node: usize| (node > 0).then(|| tree[node].0.index(node));
+        let nodes: Vec<Value> = tree.iter().enumerate().map(|(node, (_, place, angles, scale))| {
+            let children: Vec<usize> = (node + 1..tree.len()).filter(|&child| parent(child) == Some(node)).collect();
+            let mut made = json!({ "name": format!("n{node}"), "translation": place, "rotation": turn(*angles).to_array(), "scale": vec![scale; 3] });
+            if !children.is_empty() {
+                made["children"] = json!(children);
+            }
+            made
+        }).collect();
+        let joints: Vec<usize> = joints.into_iter().filter(|&joint| joint < tree.len()).collect();
+        prop_assume!(!joints.is_empty());
+        let mut made = Made::new(&json!(nodes), &joints);
+        // From rest to a key one frame later; the last channel of a property counts.
+        let mut moved: Vec<([f32; 3], Quat)> = tree.iter().map(|(_, place, angles, _)| (*place, turn(*angles))).collect();
+        let at_rest = moved.clone();
+        for &(node, to, turns) in keys.iter().filter(|key| key.0 < tree.len()) {
+            if turns {
+                moved[node].1 = turn(to);
+                made.channel(node, "rotation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].1.to_array(), turn(to).to_array()].concat());
+            } else {
+                moved[node].0 = to;
+                made.channel(node, "translation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].0, to].concat());
+            }
+        }
+        let world = |poses: &[([f32; 3], Quat)]| {
+            let mut all: Vec<DMat4> = Vec::new();
+            for (node, (place, turn)) in poses.iter().enumerate() {
+                let local = DMat4::from_scale_rotation_translation(DVec3::splat(f64::from(tree[node].3)), DQuat::from_array(turn.to_array().map(f64::from)), DVec3::from_array(place.map(f64::from)));
+                all.push(parent(node).map_or(DMat4::IDENTITY, |parent| all[parent]) * local);
+            }
+            all
+        };
+        let imported = made.read();
+        for found in &imported.clips {
+            let clip = &found.clip;
+            for (frame, matrices) in [world(&at_rest), world(&moved)].iter().enumerate().take(clip.frames()) {
+                let pose = clip.world_pose(frame);
+                for (joint, position) in clip.skeleton().joints().iter().zip(&pose.positions) {
+                    let node: usize = joint.name[1..].parse().unwrap();
+                    let expected = matrices[node].transform_point3(DVec3::ZERO).as_vec3();
+                    let size = 1.0 + expected.length();
+                    prop_assert!(position.distance(expected) < 2e-5 * size, "{} in frame {frame}: {position}, not {expected}", joint.name);
+                }
+            }
+        }
+        let skeletons = imported.clips.iter().map(|found| found.clip.skeleton());
+        let kept = skeletons.clone().flat_map(|skeleton| skeleton.joints());
+        let folded = skeletons.filter_map(|skeleton| skeleton.above()).flat_map(Above::joints);
+        let names: Vec<&str> = kept.chain(folded).map(|joint| joint.name.as_str()).collect();
+        prop_assert!(joints.iter().all(|joint| names.contains(&format!("n{joint}").as_str())), "{names:?}");
+    }
+
+    #[test]
+    fn spoilt_files_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10)) {
+        let clip = wander(&fixtures::cmu_bvh(), 4, 9);
+        let mut bytes = by_another_program(write_glb(&clip, &GlbOptions::default()).unwrap());
+        let json = 20 + bytes[20..].windows(4).position(|w| w == b"BIN\0").unwrap();
+        for (at, value, kind) in edits {
+            // Mostly in the JSON, and there mostly its digits.
+            let at = at.index(if kind == 0 { bytes.len() } else { json });
+            match kind {
+                1 | 2 if bytes[at].is_ascii_digit() => bytes[at] = b'0' + value % 10,
+                3 => bytes[at] = b"[]{},:\"-9e."[usize::from(value) % 11],
+                _ => bytes[at] = value,
+            }
+        }
+        let options = ImportOptions { max_bytes: 1 << 22, ..ImportOptions::default() };
+        if let Ok(imported) = read("spoilt.glb", &bytes, &|_| None, &options) {
+            for found in &imported.clips {
+                prop_assert!((0..found.clip.frames()).all(|frame| found.clip.rotations(frame).iter().all(|q| q.is_normalized())));
+                prop_assert!(found.clip.root_translations().iter().all(|place| place.is_finite()));
+                if let Some(mesh) = &found.mesh {
+                    skin_tests::check(mesh, found.clip.skeleton().len());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,389 @@
+use super::bones::Bones;
+use glam::{Mat4, Quat, Vec3};
+use segue_motion::clip::{Clip, Interpolation, resample};
+use segue_motion::skeleton::{Joint, Roles, Skeleton};
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use serde_json::{Value, json};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// How the name of the program that wrote a file begins, where that was Segue.
+pub(super) const GENERATOR: &str = "Segue ";
+/// What a body that Segue made around the bones is called in a file: whoever reads the file has it already.
+pub(super) const MADE_BODY: &str = "Body";
+/// What the mesh of a character is called.
+const CHARACTER: &str = "Character";
+/// What an index of 16 bits can tell apart.
+const MOST_JOINTS: usize = 1 << 16;
+/// The colour of a body that has none, linear.
+const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
+
+/// How to write a `.glb` file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GlbOptions {
+    /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
+    pub fps: Option<f64>,
+    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around_clip`] instead of simple bones: about half a megabyte.
+    #[serde(default)]
+    pub smooth: bool,
+}
+
+/// Why a clip is no `.glb` file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GlbError {
+    /// The format counts bytes with 32 bits.
+    #[error("{0} bytes are more than the 4 GiB that a .glb file can hold: cut the motion into parts")]
+    TooLarge(u64),
+    /// The format counts the joints of a skin with 16 bits.
+    #[error("{0} joints are more than the 65,536 that a .glb file can hold")]
+    TooManyJoints(usize),
+}
+
+/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body, and an
+/// animation with the rotations of all joints and the translations of the root and of joints that move. Joints that the clip's file has above
+/// the one that carries the body are there again ([`Clip::unfolded`]).
+///
+/// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
+/// (metres) and rotations (radians) are the same to 1e-5.
+///
+/// # Errors
+/// [`GlbError`] when the clip is too large for the format.
+pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+    // The body is made around the joints that carry it, not around what the file has above them.
+    let skeleton = clip.skeleton();
+    if skeleton.len() > MOST_JOINTS {
+        return Err(GlbError::TooManyJoints(skeleton.len()));
+    }
+    let mesh = if options.smooth {
+        SkinnedMesh::around_clip(clip, &Roles::detect(skeleton), 1.0)
+    } else {
+        let positions = standing_rest(skeleton);
+        Bones::around(skeleton, &positions).into_mesh(&positions)
+    };
+    write_with(clip, mesh, MADE_BODY, options)
+}
+
+/// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own mesh: `clip` is one of the skeleton that `mesh` is
+/// bound to. Each colour of the mesh is a material.
+///
+/// # Errors
+/// [`GlbError`] when the clip is too large for the format.
+pub fn write_character_glb(clip: &Clip, mesh: &SkinnedMesh, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+    write_with(clip, mesh.clone(), CHARACTER, options)
+}
+
+fn write_with(clip: &Clip, mut mesh: SkinnedMesh, name: &str, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+    let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
+    let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
+    let body = Arc::clone(clip.skeleton());
+    let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
+    let skeleton: &Skeleton = clip.skeleton();
+    if skeleton.len() > MOST_JOINTS {
+        return Err(GlbError::TooManyJoints(skeleton.len()));
+    }
+    let mut file = File::default();
+    let mut nodes = nodes(skeleton);
+    let body_node = nodes.len();
+    nodes.push(json!({ "name": name, "mesh": 0, "skin": 0 }));
+    if let Some(above) = body.above() {
+        let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
+            .map(|&position| RigidTransform {
+                rotation: Quat::IDENTITY,
+                translation: -position,
+            })
+            .collect();
+        for (&file, own) in above.file_index().iter().zip(&mesh.bind) {
+            if let Some(bind) = bind.get_mut(file) {
+                *bind = *own;
+            }
+        }
+        mesh.rebind(above.file_index(), bind);
+    }
+    let inverse_bind: Vec<f32> = (mesh.bind.iter())
+        .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
+        .collect();
+    let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
+    let (mut primitives, mut materials) = (Vec::new(), Vec::new());
+    for (part, color) in parts(&mesh) {
+        primitives.push(primitive(&mut file, &part, skeleton.len(), materials.len()));
+        materials.push(material(&color, name, materials.len()));
+    }
+    let mut root = json!({
+        "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
+        "scene": 0,
+        "scenes": [{ "nodes": [0, body_node] }],
+        "nodes": nodes,
+        "skins": [{ "joints": (0..skeleton.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
+        "meshes": [{ "name": name, "primitives": primitives }],
+        "materials": materials,
+    });
+    if clip.frames() > 0 {
+        root["animations"] = json!([animation(&mut file, &clip)]);
+    }
+    file.finish(root)
+}
+
+/// Where the joints are at rest, with the root at its offset, metres.
+fn standing_rest(skeleton: &Skeleton) -> Vec<Vec3> {
+    let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
+    skeleton.rest_positions().into_iter().map(|position| position + root).collect()
+}
+
+/// A node for each joint, at its index, then one for each end site.
+fn nodes(skeleton: &Skeleton) -> Vec<Value> {
+    let joints = skeleton.joints();
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
+    let mut ends = Vec::new();
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            children[parent].push(index);
+        }
+        if let Some(end) = joint.end_site {
+            children[index].push(joints.len() + ends.len());
+            ends.push(json!({ "name": format!("{}_end", joint.name), "translation": end.to_array() }));
+        }
+    }
+    let node = |(joint, children): (&Joint, Vec<usize>)| {
+        let mut node = json!({ "name": joint.name, "translation": joint.offset.to_array() });
+        // An empty list is not valid.
+        if !children.is_empty() {
+            node["children"] = json!(children);
+        }
+        node
+    };
+    joints.iter().zip(children).map(node).chain(ends).collect()
+}
+
+/// The parts of a mesh that have one colour (linear) each, in the order in which the colours come up. A triangle has the colour of its first corner.
+fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
+    let color_of = |triangle: &[u32; 3]| mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits));
+    let mut colors: Vec<Option<[u32; 4]>> = Vec::new();
+    let mut triangles: Vec<Vec<[u32; 3]>> = Vec::new();
+    let mut last = 0;
+    for triangle in &mesh.triangles {
+        let color = color_of(triangle);
+        if colors.get(last) != Some(&color) {
+            last = colors.iter().position(|known| *known == color).unwrap_or(colors.len());
+        }
+        if last == colors.len() {
+            colors.push(color);
+            triangles.push(Vec::new());
+        }
+        triangles[last].push(*triangle);
+    }
+    let linear = |color: Option<[u32; 4]>| {
+        color.map_or(CLAY, |color| {
+            let [r, g, b, a] = color.map(f32::from_bits);
+            [decoded(r), decoded(g), decoded(b), a]
+        })
+    };
+    if colors.len() <= 1 {
+        return vec![(Cow::Borrowed(mesh), linear(colors.first().copied().flatten()))];
+    }
+    let parts = triangles.into_iter().zip(colors);
+    parts
+        .map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color)))
+        .collect()
+}
+
+/// The vertices of some triangles, in their order.
+fn part(mesh: &SkinnedMesh, triangles: &[[u32; 3]]) -> SkinnedMesh {
+    let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let index = |vertex: u32| vertices.partition_point(|known| *known < vertex) as u32;
+    SkinnedMesh {
+        triangles: triangles.iter().map(|triangle| triangle.map(index)).collect(),
+        positions: picked(&mesh.positions, &vertices),
+        normals: picked(&mesh.normals, &vertices),
+        joints: picked(&mesh.joints, &vertices),
+        weights: picked(&mesh.weights, &vertices),
+        ..SkinnedMesh::default()
+    }
+}
+
+fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
+    let value = |&vertex: &u32| values.get(vertex as usize).copied().unwrap_or_default();
+    vertices.iter().map(value).collect()
+}
+
+/// A part of a colour as written in a palette, linear (IEC 61966-2-1).
+fn decoded(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Clay for a body that was made; for a character, whose surfaces may be open, the colour from both sides.
+fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
+    let surface = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
+    if name == MADE_BODY {
+        return json!({ "name": "Clay", "pbrMetallicRoughness": surface });
+    }
+    json!({ "name": format!("{name} {}", index + 1), "pbrMetallicRoughness": surface, "doubleSided": true })
+}
+
+fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize) -> Value {
+    let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
+    let low = mesh.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let high = mesh.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
+    let position = file.floats(&vectors(&mesh.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
+    let normal = file.floats(&vectors(&mesh.normals), "VEC3", None);
+    let count = mesh.positions.len();
+    let weights: Vec<[u8; 4]> = mesh.weights.iter().map(bytes_of).collect();
+    // Joints without weight are joint 0, as the format wants it.
+    let followed = mesh.joints.iter().zip(&weights).flat_map(|(joints, weights)| {
+        let pairs = joints.iter().zip(weights);
+        pairs.map(|(&joint, &weight)| if weight > 0 { joint } else { 0 })
+    });
+    let (component, followed): (u32, Vec<u8>) = if joints <= 1 << 8 {
+        (UNSIGNED_BYTE, followed.map(|joint| joint as u8).collect())
+    } else {
+        (UNSIGNED_SHORT, followed.flat_map(u16::to_le_bytes).collect())
+    };
+    let followed = file.accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
+    let weights = file.accessor(
+        weights.as_flattened(),
+        json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
+    );
+    let corners = mesh.triangles.as_flattened();
+    let (component, indices): (u32, Vec<u8>) = if u16::try_from(count).is_ok() {
+        (
+            UNSIGNED_SHORT,
+            corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect(),
+        )
+    } else {
+        (UNSIGNED_INT, corners.iter().flat_map(|corner| corner.to_le_bytes()).collect())
+    };
+    let indices = file.accessor(
+        &indices,
+        json!({ "componentType": component, "count": corners.len(), "type": "SCALAR" }),
+    );
+    for accessor in [position, normal, followed, weights] {
+        // ARRAY_BUFFER: vertices.
+        file.views[accessor]["target"] = json!(34962);
+    }
+    // ELEMENT_ARRAY_BUFFER.
+    file.views[indices]["target"] = json!(34963);
+    json!({
+        "attributes": { "POSITION": position, "NORMAL": normal, "JOINTS_0": followed, "WEIGHTS_0": weights },
+        "indices": indices,
+        "material": material,
+    })
+}
+
+/// Weights as parts of 255, of which there are 255 exactly.
+fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
+    let mut bytes = weights.map(|weight| (weight * 255.0).round() as u8);
+    let [first, rest @ ..] = &mut bytes;
+    *first = rest.iter().fold(255, |left, byte| left.saturating_sub(*byte));
+    bytes
+}
+
+fn animation(file: &mut File, clip: &Clip) -> Value {
+    let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
+    for frame in 0..clip.frames() {
+        let time = clip.time_of(frame) as f32;
+        // Times must rise, and late in a very long clip single precision does not tell frames apart.
+        times.push(times.last().map_or(time, |last| time.max(last.next_up())));
+    }
+    let ends = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let input = file.floats(&times, "SCALAR", Some((&[ends.0], &[ends.1])));
+    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+    let mut add = |node: usize, path: &str, output: usize| {
+        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
+        samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+    };
+    for joint in 0..clip.skeleton().len() {
+        let turns = (0..clip.frames()).flat_map(|frame| unit(clip.rotations(frame)[joint]).to_array());
+        add(joint, "rotation", file.floats(&turns.collect::<Vec<f32>>(), "VEC4", None));
+    }
+    let moving = clip.translations().iter().map(|track| (track.joint, track.values.as_slice()));
+    for (joint, values) in std::iter::once((0, clip.root_translations())).chain(moving) {
+        let values: Vec<f32> = values.iter().flat_map(Vec3::to_array).collect();
+        add(joint, "translation", file.floats(&values, "VEC3", None));
+    }
+    json!({ "name": clip.name(), "channels": channels, "samplers": samplers })
+}
+
+/// A quaternion as near to unit length as single precision allows.
+fn unit(q: Quat) -> Quat {
+    let q = q.as_dquat();
+    let length = q.length();
+    if length.is_finite() && length > 1e-6 {
+        (q * length.recip()).as_quat()
+    } else {
+        Quat::IDENTITY
+    }
+}
+
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+
+/// A file that grows: its binary part, and what describes that. Each accessor has a view of its own, of the same index.
+#[derive(Default)]
+struct File {
+    binary: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl File {
+    /// Adds numbers, and gives the index of their accessor.
+    fn floats(&mut self, values: &[f32], kind: &str, bounds: Option<(&[f32], &[f32])>) -> usize {
+        let width = match kind {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let mut accessor = json!({ "componentType": FLOAT, "count": values.len() / width, "type": kind });
+        if let Some((low, high)) = bounds {
+            accessor["min"] = json!(low);
+            accessor["max"] = json!(high);
+        }
+        self.accessor(&bytes, accessor)
+    }
+
+    /// Adds bytes; what comes next begins at a multiple of four.
+    fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
+        let index = self.accessors.len();
+        accessor["bufferView"] = json!(index);
+        self.accessors.push(accessor);
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }));
+        self.binary.extend_from_slice(bytes);
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
+        index
+    }
+
+    /// The whole file: header, JSON and binary part, each of a length that is a multiple of four.
+    fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
+        root["accessors"] = Value::Array(self.accessors);
+        root["bufferViews"] = Value::Array(self.views);
+        root["buffers"] = json!([{ "byteLength": self.binary.len() }]);
+        let mut json = root.to_string().into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let length = 12 + 8 + json.len() + 8 + self.binary.len();
+        let word = |length: usize| {
+            u32::try_from(length)
+                .map(u32::to_le_bytes)
+                .map_err(|_| GlbError::TooLarge(length as u64))
+        };
+        let mut bytes = Vec::with_capacity(length);
+        bytes.extend_from_slice(b"glTF");
+        bytes.extend_from_slice(&2_u32.to_le_bytes());
+        bytes.extend_from_slice(&word(length)?);
+        for (kind, chunk) in [(b"JSON", json), (b"BIN\0", self.binary)] {
+            bytes.extend_from_slice(&word(chunk.len())?);
+            bytes.extend_from_slice(kind);
+            bytes.extend_from_slice(&chunk);
+        }
+        Ok(bytes)
+    }
+}

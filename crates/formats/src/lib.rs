@@ -1,0 +1,358 @@
+//! Motion files: from bytes to clips and back.
+//!
+//! [`import`] reads whatever it is given, by content rather than by name. Everything with a sensible reading is read, and what was odd about
+//! it comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the
+//! bytes that are there, never a number in a header.
+//!
+//! # The idea
+//!
+//! A motion file is a skeleton and a table of numbers, but no format says all that a [`Clip`] needs. What is missing is found:
+//!
+//! ```text
+//! bytes → kind (first words) → skeleton and numbers, in the file's units and axes
+//!       → unit and up axis (the height and stance of the character, Measure)
+//!       → metres, Y up, parents first → Clip
+//! ```
+//!
+//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and how the body stands tells which way is up. Where
+//! that is wrong, [`ImportOptions`] say better.
+//!
+//! | | read | written |
+//! |---|---|---|
+//! | [`bvh`] | yes | [`bvh::write`] |
+//! | [`acclaim`] (ASF, AMC) | yes, a motion with its skeleton | |
+//! | [`gltf`] (GLB) | yes, motion only | [`gltf::write_glb`] |
+//! | [`csv`] | | [`csv::write_csv`] |
+//! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
+//!
+//! # Example
+//!
+//! ```
+//! use segue_motion::clip::Clip;
+//! use segue_formats::{ImportOptions, bvh, import};
+//! use segue_motion::synth::{Action, Params, synthesize};
+//!
+//! let walk = synthesize(&Params::new(Action::Walk))?.clip;
+//! let text = bvh::write(&walk, &bvh::WriteOptions::default());
+//! let read = |text: &str| import("walk.bvh", text.as_bytes(), &ImportOptions::default());
+//!
+//! // There and back: every joint is where it was, and the centimetres were found by the height.
+//! let file = read(&text)?;
+//! let back = &file.clips[0].clip;
+//! let everywhere = |clip: &Clip| clip.world_positions(0..clip.frames());
+//! let (there, here) = (everywhere(&walk), everywhere(back));
+//! assert_eq!(there.len(), here.len());
+//! assert!(there.iter().zip(&here).all(|(p, q)| p.distance(*q) < 1e-5));
+//! assert!(file.clips[0].measure.unit_detected && file.warnings.is_empty());
+//!
+//! // A row that is cut off is told and left out; a slip of the pen is told with its place.
+//! let shorter = read(&text[..text.len() - 40])?;
+//! assert!(shorter.clips[0].clip.frames() == walk.frames() - 1 && !shorter.warnings.is_empty());
+//! let error = read(&text.replacen("OFFSET", "OFSET", 1)).err().ok_or("it was read")?;
+//! assert_eq!((error.line, error.column, error.found.as_str()), (4, 2, "`OFSET`"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its channels and rotation orders. Reading a
+//! BVH file takes memory of at most three times its size, and time by its length. Any bytes are read or refused, none panic.
+//!
+//! # What it does not do
+//!
+//! No FBX, no meshes, no materials. [`import`] neither opens archives nor looks for a second file: whoever holds the files does, and hands
+//! an AMC file over with its skeleton ([`acclaim::read_motion`]).
+//!
+//! # Sources
+//!
+//! The formats' own documents are named in [`bvh`], [`acclaim`] and [`gltf`].
+
+pub mod acclaim;
+pub mod archive;
+mod assemble;
+pub mod bvh;
+pub mod csv;
+mod error;
+pub mod gltf;
+mod gzip;
+mod measure;
+mod raw;
+mod t_pose;
+mod text;
+mod unlikely;
+mod warning;
+
+pub use error::ImportError;
+pub use gzip::unpack_gzip;
+pub use measure::{CMU_METRES_PER_UNIT, Measure, UpKnown};
+pub use unlikely::Mendable;
+pub use warning::{ImportWarning, WarningKind};
+
+use segue_motion::clip::{Clip, UpAxis};
+use segue_motion::skin::SkinnedMesh;
+use std::sync::Arc;
+
+/// What a person may know better than the file.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ImportOptions {
+    /// Metres per unit of length; found by the height of the character where `None` or no length.
+    pub metres_per_unit: Option<f64>,
+    /// The up axis; found by the stance of the character where `None`.
+    pub up: Option<UpAxis>,
+    /// Frames per second; what the file says where `None` or no rate.
+    pub fps: Option<f64>,
+    /// Larger files are refused.
+    pub max_bytes: usize,
+    /// Whether a first row that is a T-pose is left out; otherwise it is only marked.
+    pub drop_t_pose: bool,
+    /// Whether rows in which the root is metres away, and back in the next, get a place between their neighbours.
+    #[serde(default)]
+    pub even_wild_rows: bool,
+}
+
+impl Default for ImportOptions {
+    /// Everything as found, up to 512 MB, without a T-pose in front.
+    fn default() -> Self {
+        Self {
+            metres_per_unit: None,
+            up: None,
+            fps: None,
+            max_bytes: 512 << 20,
+            drop_t_pose: true,
+            even_wild_rows: false,
+        }
+    }
+}
+
+/// One character of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportedClip {
+    /// The motion, in metres and Y up.
+    pub clip: Clip,
+    /// Whether the first row of the file is a T-pose that the motion does not start from. Frame 0 of `clip` is that row unless
+    /// [`t_pose_dropped`](Self::t_pose_dropped).
+    pub t_pose_first_row: bool,
+    /// Whether the first row was left out.
+    pub t_pose_dropped: bool,
+    /// The unit and up axis that were found or given; its text is a note for people.
+    pub measure: Measure,
+    /// What could be read better.
+    pub mendable: Mendable,
+    /// The character's own mesh, bound to the clip's skeleton; all clips of one character share it.
+    pub mesh: Option<Arc<SkinnedMesh>>,
+}
+
+impl ImportedClip {
+    fn with_mesh(self, mesh: Option<&Arc<SkinnedMesh>>) -> Self {
+        Self {
+            mesh: mesh.cloned(),
+            ..self
+        }
+    }
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// One clip for each character.
+    pub clips: Vec<ImportedClip>,
+    /// What was odd, one line per kind.
+    pub warnings: Vec<ImportWarning>,
+}
+
+/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which is nothing without one, see [`acclaim`]. `name` is the file's name: for errors, for the name of the clip, and for its ending where the content says nothing.
+///
+/// # Errors
+/// [`ImportError`] when the file is too large, of no known format, or broken.
+pub fn import(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+    Ok(import_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
+}
+
+/// [`import`] that reports the bytes read so far about every 256 KB, and stops with `None` when `progress` returns `false`.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_with_progress(
+    name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<Option<Imported>, ImportError> {
+    check_size(name, bytes, options)?;
+    match kind_of(name, bytes) {
+        FileKind::Bvh => bvh::read_with_progress(name, bytes, options, progress),
+        FileKind::Asf => acclaim::skeleton_clip(&acclaim::read_skeleton(name, bytes, options)?, options).map(Some),
+        FileKind::Amc => {
+            let error = ImportError::whole_file(
+                name,
+                "a motion without its skeleton (.amc)",
+                "the ASF file (.asf) that belongs to it",
+            );
+            Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
+        }
+        FileKind::Gltf => gltf::read(name, bytes, &|_| None, options).map(Some),
+        FileKind::Zip | FileKind::Gzip => Err(ImportError::whole_file(name, "an archive", "one of the files in it")),
+        FileKind::Unknown => {
+            let found = match name.rsplit_once('.') {
+                Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
+                _ => "a file of unknown format".to_owned(),
+            };
+            let error = ImportError::whole_file(name, found, "a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)");
+            Err(error.with_hint("convert it to BVH, or rename it if it is one"))
+        }
+    }
+}
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum FileKind {
+    /// Skeleton and motion, [`bvh`].
+    Bvh,
+    /// A skeleton whose motions are in AMC files, [`acclaim`].
+    Asf,
+    /// A motion whose skeleton is in an ASF file, [`acclaim`].
+    Amc,
+    /// A scene with animations, [`gltf`].
+    Gltf,
+    /// Several files in one, [`archive`].
+    Zip,
+    /// One file, packed with gzip.
+    Gzip,
+    /// Nothing that is known here.
+    Unknown,
+}
+
+impl FileKind {
+    /// What people call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bvh => "bvh",
+            Self::Asf => "asf",
+            Self::Amc => "amc",
+            Self::Gltf => "gltf",
+            Self::Zip => "zip",
+            Self::Gzip => "gz",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// What a file is: by its first words, and where they say nothing by the ending of its name.
+#[must_use]
+pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
+    /// Comments may come first; UTF-16 has two bytes for each.
+    const HEAD: usize = 16 << 10;
+    if archive::is_zip(bytes) {
+        return FileKind::Zip;
+    }
+    if gltf::is_gltf(bytes) {
+        return FileKind::Gltf;
+    }
+    if gzip::is_gzip(bytes) {
+        return FileKind::Gzip;
+    }
+    let head = text::decode(bytes.get(..HEAD).unwrap_or(bytes));
+    if bvh::starts_like_bvh(&head) {
+        FileKind::Bvh
+    } else if acclaim::starts_like_asf(&head) {
+        FileKind::Asf
+    } else if acclaim::starts_like_amc(&head) {
+        FileKind::Amc
+    } else {
+        let endings = [
+            ("bvh", FileKind::Bvh),
+            ("asf", FileKind::Asf),
+            ("amc", FileKind::Amc),
+            ("glb", FileKind::Gltf),
+            ("gltf", FileKind::Gltf),
+            ("zip", FileKind::Zip),
+            ("gz", FileKind::Gzip),
+        ];
+        let known = endings.into_iter().find(|(ending, _)| has_extension(name, ending));
+        known.map_or(FileKind::Unknown, |(_, kind)| kind)
+    }
+}
+
+fn has_extension(name: &str, extension: &str) -> bool {
+    name.rsplit_once('.')
+        .is_some_and(|(_, found)| found.eq_ignore_ascii_case(extension))
+}
+
+/// The file's name without folders and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match file.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem,
+        _ => file,
+    }
+}
+
+fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), ImportError> {
+    if bytes.len() <= options.max_bytes {
+        return Ok(());
+    }
+    let found = format!("a file of {} MB", bytes.len().div_ceil(1 << 20));
+    Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20)).with_hint("cut the motion into parts"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_known_by_its_content_or_its_name() {
+        let options = ImportOptions::default();
+        let text = b"# a comment\nROOT Hips { OFFSET 0 1 0 }";
+        assert_eq!(import("dir/walk.txt", text, &options).unwrap().clips[0].clip.name(), "walk");
+        assert_eq!(
+            import("walk.BVH", b"nothing", &options).unwrap_err().to_string(),
+            "walk.BVH:1:1: found `nothing`, expected `HIERARCHY` and a `ROOT`"
+        );
+        let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)"
+        );
+        assert!(error.hint.is_some());
+        assert!(import("", b"", &options).is_err());
+    }
+
+    #[test]
+    fn content_counts_before_the_ending() {
+        let kinds = [
+            ("x.amc", "HIERARCHY\nROOT a", FileKind::Bvh),
+            ("x.bvh", "# by hand\n:version 1.10\n:root", FileKind::Asf),
+            ("x.bvh", ":DEGREES\n1\nroot 1", FileKind::Amc),
+            ("x", "1\nroot 1 2 3", FileKind::Amc),
+            ("x.AMC", "", FileKind::Amc),
+            ("x.asf", "?", FileKind::Asf),
+            ("x.txt", "?", FileKind::Unknown),
+        ];
+        for (name, text, kind) in kinds {
+            assert_eq!(kind_of(name, text.as_bytes()), kind, "{name} {text}");
+        }
+    }
+
+    #[test]
+    fn the_size_is_checked_first() {
+        let options = ImportOptions {
+            max_bytes: 10 << 20,
+            ..ImportOptions::default()
+        };
+        let error = import("big.bvh", &vec![b' '; (10 << 20) + 1], &options).unwrap_err();
+        assert_eq!(error.to_string(), "big.bvh:1:1: found a file of 11 MB, expected at most 10 MB");
+    }
+
+    #[test]
+    fn stems() {
+        for (name, expected) in [
+            ("a/b.c/walk.bvh", "walk"),
+            ("C:\\x\\run.1.bvh", "run.1"),
+            (".bvh", ".bvh"),
+            ("walk", "walk"),
+        ] {
+            assert_eq!(stem(name), expected);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! A motion on its way from a file to a [`Clip`]: in the file's units and axes, and not yet checked.
+
+use super::error::Fault;
+use super::measure::Measure;
+use glam::{Quat, Vec3};
+use segue_motion::clip::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
+use segue_motion::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_pose_into};
+use std::sync::Arc;
+
+/// Translations nearer to the rest offset than this are the offset, metres.
+const SAME_PLACE: f32 = 1e-6;
+
+/// Joints, rotations (frame-major), the root's way and the translations of other joints, all as in the file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RawMotion {
+    pub(super) joints: Vec<Joint>,
+    pub(super) rotations: Vec<Quat>,
+    pub(super) root_translations: Vec<Vec3>,
+    pub(super) tracks: Vec<(usize, Vec<Vec3>)>,
+}
+
+/// Why a motion makes no clip. The readers see to it that neither happens.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(super) enum RawError {
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}
+
+impl RawMotion {
+    pub(super) fn frames(&self) -> usize {
+        self.root_translations.len()
+    }
+
+    /// The root's way, and then the tracks.
+    pub(super) fn translations_mut(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
+        std::iter::once(&mut self.root_translations).chain(self.tracks.iter_mut().map(|(_, values)| values))
+    }
+
+    /// Takes the memory for so many more frames.
+    pub(super) fn reserve(&mut self, frames: usize) -> Result<(), Fault> {
+        let joints = self.joints.len();
+        let mut taken = self.rotations.try_reserve_exact(frames.saturating_mul(joints));
+        for track in self.translations_mut() {
+            taken = taken.and_then(|()| track.try_reserve_exact(frames));
+        }
+        taken.map_err(|_| {
+            let found = format!("a motion for which there is no memory after {} frames", self.frames());
+            Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts")
+        })
+    }
+
+    /// The local rotations of one frame; empty for one that there is not.
+    pub(super) fn pose(&self, frame: usize) -> &[Quat] {
+        let joints = self.joints.len();
+        self.rotations.get(frame * joints..(frame + 1) * joints).unwrap_or_default()
+    }
+
+    /// Where all OFFSETs are zero and position channels carry the skeleton, the first frame is the rest pose. Tells whether that was so.
+    pub(super) fn rest_from_first_frame(&mut self) -> bool {
+        let degenerate = self.joints.len() > 1 && self.joints.iter().skip(1).all(|joint| joint.offset == Vec3::ZERO);
+        let mut changed = false;
+        for (joint, values) in &self.tracks {
+            if let (true, Some(joint), Some(&first)) = (degenerate, self.joints.get_mut(*joint), values.first()) {
+                changed |= first != Vec3::ZERO;
+                joint.offset = first;
+            }
+        }
+        changed
+    }
+
+    /// Leaves out the first frame.
+    pub(super) fn drop_first_frame(&mut self) {
+        self.rotations.drain(..self.joints.len().min(self.rotations.len()));
+        for values in self.translations_mut() {
+            values.drain(..1.min(values.len()));
+        }
+    }
+
+    /// Joints and end sites in the rest pose with the root at the origin, file units.
+    pub(super) fn rest_points(&self) -> Vec<Vec3> {
+        let mut world = WorldPose::default();
+        for joint in &self.joints {
+            let position = joint
+                .parent
+                .and_then(|parent| world.positions.get(parent))
+                .map_or(Vec3::ZERO, |&parent| parent + joint.offset);
+            world.positions.push(position);
+        }
+        world.rotations = vec![Quat::IDENTITY; world.positions.len()];
+        with_end_sites(&self.joints, world)
+    }
+
+    /// Joints and end sites in one frame, file units and axes.
+    pub(super) fn world_points(&self, skeleton: &Skeleton, frame: usize) -> Vec<Vec3> {
+        let mut world = WorldPose::default();
+        let root = self.root_translations.get(frame).copied().unwrap_or_default();
+        let moved = self.tracks.iter().filter_map(|(joint, values)| Some((*joint, *values.get(frame)?)));
+        world_pose_into(skeleton, root, self.pose(frame), moved, &mut world);
+        with_end_sites(&self.joints, world)
+    }
+
+    /// The clip in metres with Y up, its first joint the one that carries the body ([`Clip::folded`]).
+    pub(super) fn into_clip(mut self, name: String, fps: f64, measure: &Measure) -> Result<Clip, RawError> {
+        let Provenance { metres_per_unit, up } = measure.provenance;
+        let length = |v: Vec3| {
+            let v = (v.as_dvec3() * metres_per_unit).as_vec3();
+            match up {
+                UpAxis::Y => v,
+                UpAxis::Z => y_up_from_z_up(v),
+            }
+        };
+        for joint in &mut self.joints {
+            joint.offset = length(joint.offset);
+            joint.end_site = joint.end_site.map(length);
+        }
+        self.translations_mut().flatten().for_each(|v| *v = length(*v));
+        if up == UpAxis::Z {
+            for q in &mut self.rotations {
+                let v = y_up_from_z_up(Vec3::new(q.x, q.y, q.z));
+                *q = Quat::from_xyzw(v.x, v.y, v.z, q.w);
+            }
+        }
+        let joints = &self.joints;
+        self.tracks.retain(|(joint, values)| {
+            let rest = joints.get(*joint).map_or(Vec3::ZERO, |joint| joint.offset);
+            values.iter().any(|v| (*v - rest).abs().max_element() > SAME_PLACE)
+        });
+        let tracks = self
+            .tracks
+            .into_iter()
+            .map(|(joint, values)| JointTranslations { joint, values })
+            .collect();
+        let skeleton = Arc::new(Skeleton::new(self.joints)?);
+        let clip = Clip::new(name, skeleton, fps, self.rotations, self.root_translations)?;
+        Ok(clip.with_translations(tracks)?.with_provenance(measure.provenance).folded()?)
+    }
+}
+
+/// -90° about X: +Z becomes +Y, and what a Z-up character faces by custom, -Y, becomes +Z.
+fn y_up_from_z_up(v: Vec3) -> Vec3 {
+    Vec3::new(v.x, v.z, -v.y)
+}
+
+/// The same as a rotation.
+pub(super) const Y_UP_FROM_Z_UP: Quat = Quat::from_xyzw(-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
+
+fn with_end_sites(joints: &[Joint], world: WorldPose) -> Vec<Vec3> {
+    let ends = joints
+        .iter()
+        .enumerate()
+        .filter_map(|(index, joint)| Some(world.point(index, joint.end_site?)));
+    let ends: Vec<Vec3> = ends.collect();
+    let mut points = world.positions;
+    points.extend(ends);
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_memory_cannot_hold_are_refused_and_take_nothing() {
+        let joint = Joint {
+            name: "root".into(),
+            parent: None,
+            offset: Vec3::ZERO,
+            end_site: None,
+            channels: Vec::new(),
+        };
+        let mut raw = RawMotion {
+            joints: vec![joint],
+            ..RawMotion::default()
+        };
+        for frames in [usize::MAX, usize::MAX / 64] {
+            let refused = raw.reserve(frames).unwrap_err();
+            assert!(refused.found.contains("no memory"), "{refused:?}");
+        }
+        raw.reserve(100).unwrap();
+        assert!(raw.rotations.capacity() >= 100 && raw.root_translations.capacity() >= 100);
+    }
+}

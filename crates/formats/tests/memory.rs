@@ -1,0 +1,59 @@
+//! What reading a file takes at its peak, the file itself among it, by an allocator that counts. In a binary of its own, with one test, so that
+//! nothing else allocates meanwhile.
+
+use peak_alloc::PeakAlloc;
+use segue_formats::bvh::{WriteOptions, write};
+use segue_formats::{ImportOptions, import};
+use segue_motion::synth::{Action, Params, synthesize};
+
+/// Moves vectors that grow to a new place, as the allocators of browsers do.
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// What the header says of the number of frames, in words, and made from that number.
+type Header = (&'static str, fn(usize) -> String);
+
+/// 100 MB where the build is optimised; what counts is the ratio.
+const BYTES: usize = if cfg!(debug_assertions) { 12_000_000 } else { 100_000_000 };
+
+/// A walk over and over, with this in the place of the number of frames.
+fn file(header: impl Fn(usize) -> String) -> Vec<u8> {
+    let clip = synthesize(&Params::new(Action::Walk)).expect("natural parameters").clip;
+    let text = write(&clip, &WriteOptions::default());
+    let (hierarchy, motion) = text.split_once("Frames: ").expect("a header");
+    let (_, motion) = motion.split_once('\n').expect("a header");
+    let (frame_time, rows) = motion.split_once('\n').expect("a header");
+    let times = BYTES.div_ceil(rows.len());
+    let mut file = Vec::with_capacity(hierarchy.len() + 100 + times * rows.len());
+    file.extend_from_slice(format!("{hierarchy}{}\n{frame_time}\n", header(times * clip.frames())).as_bytes());
+    (0..times).for_each(|_| file.extend_from_slice(rows.as_bytes()));
+    file
+}
+
+#[test]
+fn the_peak_is_at_most_three_times_the_file() {
+    let headers: [Header; 4] = [
+        ("right", |frames| format!("Frames: {frames}")),
+        ("far too many", |_| "Frames: 4000000000".to_owned()),
+        ("a few too many", |frames| format!("Frames: {}", frames + frames / 12)),
+        ("none", |_| String::new()),
+    ];
+    for (name, header) in headers {
+        let bytes = file(header);
+        ALLOCATOR.reset_peak_usage();
+        let before = ALLOCATOR.current_usage() - bytes.capacity();
+        let imported = import("walk.bvh", &bytes, &ImportOptions::default()).expect("a clip");
+        let peak = ALLOCATOR.peak_usage() - before;
+        let clip = &imported.clips[0].clip;
+        let ratio = peak as f64 / bytes.len() as f64;
+        println!(
+            "{name}: {} bytes, {} frames, peak {peak} bytes: {ratio:.2} times the file",
+            bytes.len(),
+            clip.frames()
+        );
+        // The motion alone, so that the allocator is seen to count.
+        let motion = clip.frames() * clip.skeleton().len() * size_of::<glam::Quat>();
+        assert!(peak > bytes.len() + motion, "{name}");
+        assert!(ratio <= 3.0, "{name}: {ratio}");
+    }
+}

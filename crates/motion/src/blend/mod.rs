@@ -1,0 +1,164 @@
+//! From one clip to another, and one over another: weights, placing one motion on another, the dissolve, registered blends, and layers.
+//!
+//! # The idea
+//!
+//! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in
+//! which `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`. In frame p of the window:
+//!
+//! ```text
+//! α = 2t³ - 3t² + 1,  t = (p + 1)/k           weight of A: 1 before the window, 0 at its end
+//! pose  = α A[i + p] + (1 - α) B[j + p]       angles slerp the shorter way, lengths lerp
+//! frame = frame before · (α a + (1 - α) b)    a, b: the characters' own steps
+//! ```
+//!
+//! Poses are blended as each character sees its own body, and the way over the ground is made of blended *steps*: forward, sideways, turn.
+//! Picture two people who walk side by side in step while the camera goes over from one to the other; it does not matter where either walked
+//! before. Blended in the world ([`RootBlend::World`]) the character is pulled from one way to the other.
+//!
+//! [`registered_blend`] plays both clips along a timewarp, so that like meets like for as long as the clips last. A [`layer`] puts a part of
+//! one body over another, or adds what a motion does beyond a reference pose:
+//!
+//! ```text
+//! in place   slerp(base, over, w)                        w = mask · weight
+//! added      base · exp(w · log(reference⁻¹ · over))
+//! ```
+//!
+//! # Example
+//!
+//! ```
+//! use segue_motion::blend::{BodyPart, DissolveOptions, LayerOptions, Source, dissolve, layer};
+//! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
+//! use segue_motion::skeleton::{Role, Roles};
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use std::sync::Arc;
+//!
+//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
+//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
+//! let roles = Roles::detect(walk.skeleton());
+//! let weights = limb_weights(walk.skeleton());
+//!
+//! // Where do half a second of walking and of running look most alike?
+//! let height = f64::from(roles.body_height(walk.skeleton()));
+//! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
+//!
+//! let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
+//! let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
+//! let out = dissolve(&a, found.leave, &b, found.enter, &options)?;
+//! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
+//! assert_eq!(out.transition, found.leave..found.leave + 30);
+//! // Behind the window B plays as it is, somewhere else on the ground.
+//! let (there, own) = (out.clip.world_pose(out.transition.end), run.world_pose(found.enter + 30));
+//! let mut pairs = there.positions.iter().zip(&own.positions);
+//! assert!(pairs.all(|(p, q)| p.distance(out.world_from_b.apply(*q)) < 1e-5));
+//!
+//! // The arms of the run over the legs of the walk: knees are the walk's, bit for bit.
+//! let upper_body = LayerOptions { parts: vec![BodyPart::UpperBody], ..LayerOptions::default() };
+//! let mixed = layer(&walk, &roles, &run, &upper_body)?;
+//! let knee = roles.get(Role::LeftShin).ok_or("no knee")?;
+//! let elbow = roles.get(Role::LeftForearm).ok_or("no elbow")?;
+//! assert_eq!(mixed.rotations(40)[knee], walk.rotations(40)[knee]);
+//! assert!(mixed.rotations(40)[elbow].angle_between(run.rotations(40)[elbow]) < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less than 0.2 mm. Between two straight walks
+//! no turn appears that neither has, and but for the sway of a stride speeds stay between both. Dissolves and layers agree with `SciPy`.
+//! O(frames × joints).
+//!
+//! # What it does not do
+//!
+//! It does not plant feet: a foot that stands in A and swings in B slides, and [`crate::transition::foot_lock`] repairs that. Two poses that
+//! are far apart have a mean that neither clip has; search a better place first. Nothing is retargeted or resampled on the way:
+//! [`BlendError`] asks for it.
+//!
+//! # Sources
+//!
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002 (window and weight). Kovar, Gleicher 2003, section 5 (registered blends). Perlin 2002
+//! ([`WeightLaw::Smoother`]).
+
+mod assembly;
+mod concatenation;
+mod dissolve;
+mod layers;
+mod mask;
+mod place;
+mod registered;
+mod weight;
+mod weight_curve;
+
+pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, translation_of};
+pub use concatenation::Concatenation;
+pub use dissolve::{AlignBy, DissolveOptions, RootBlend, Source, dissolve};
+pub(crate) use dissolve::{check, laid_on};
+pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
+pub use mask::{BodyPart, mask};
+pub use place::{align_facing, align_onto};
+pub use registered::{Instant, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join};
+pub use weight::WeightLaw;
+pub use weight_curve::WeightCurve;
+
+use crate::clip::ClipError;
+use crate::registration::RegistrationError;
+
+/// The longest time that a transition may be asked to take, seconds.
+pub(crate) const MOST_SECS: f64 = 60.0;
+
+/// Why two clips cannot be blended.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BlendError {
+    /// The clips move different bodies.
+    #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
+    Skeletons {
+        /// Name of the outgoing clip.
+        a: String,
+        /// Name of the incoming clip.
+        b: String,
+    },
+    /// The frame rates differ.
+    #[error("the clips run at {a_fps} and {b_fps} frames per second: resample one to the other's rate first")]
+    FrameRates {
+        /// Frame rate of the outgoing clip.
+        a_fps: f64,
+        /// Frame rate of the incoming clip.
+        b_fps: f64,
+    },
+    /// The window does not fit behind the frame where it starts.
+    #[error(
+        "{window} frames from frame {at} do not fit into the {which} clip of {frames} frames: lower the window to {} or start it earlier",
+        frames.saturating_sub(*at)
+    )]
+    Window {
+        /// "outgoing" or "incoming".
+        which: &'static str,
+        /// Frames of that clip.
+        frames: usize,
+        /// The window's first frame.
+        at: usize,
+        /// Frames of the window.
+        window: usize,
+    },
+    /// Nothing is registered that could be blended.
+    #[error(
+        "`{reference}` and the clips blended with it have no registered part in common: register them over the same frames, or free fewer ends"
+    )]
+    Apart {
+        /// Name of the clip that the others are registered to.
+        reference: String,
+    },
+    /// A time that is none.
+    #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]
+    Time {
+        /// Which time.
+        what: &'static str,
+        /// The number given.
+        secs: f64,
+    },
+    /// The windows cannot be laid on each other.
+    #[error(transparent)]
+    Registration(#[from] RegistrationError),
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}

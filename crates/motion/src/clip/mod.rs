@@ -1,0 +1,103 @@
+//! Clips: poses over time, and what can be asked of one clip alone. How fast does it go, which way does it face, when does a foot stand?
+//!
+//! # The idea
+//!
+//! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each cell, and beside it the root's way
+//! through the world. Everything else is derived from the table:
+//!
+//! ```text
+//! pose(t)       between frames ⌊t·fps⌋ and the next: positions lerp, rotations slerp
+//! velocity(f)   (x[f + 1] - x[f - 1]) / 2dt        angular: log(q[f + 1] · q[f - 1]⁻¹) / 2dt
+//! facing        across × up, across = from right to left over hips and shoulders
+//! speed         length of the root's way over the ground / duration
+//! ```
+//!
+//! Facing comes from where joints are and never from an Euler angle, which jumps where the body does not. Place and facing together are the
+//! character's frame ([`character_frames`]): poses are blended and matched as seen from there.
+//!
+//! The first joint carries the body: it is the one where legs and trunk meet. Files may have more above it, a root that stands still or goes along
+//! the ground; on import that is folded into it ([`Clip::folded`]), and comes back when the clip is written ([`Clip::unfolded`]). A lever between
+//! root and hips would otherwise be mixed by its angles, and swing the body.
+//!
+//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one to come down and a looser one to leave, as
+//! a thermostat has two temperatures: about a single limit a trembling foot would flicker.
+//!
+//! # Example
+//!
+//! ```
+//! use segue_motion::clip::{ContactOptions, Contacts, Interpolation, character_frames, ground_speed};
+//! use segue_motion::skeleton::{Roles, Side};
+//! use segue_motion::synth::{Action, Params, synthesize};
+//!
+//! let made = synthesize(&Params { speed_mps: 1.2, ..Params::new(Action::Walk) })?;
+//! let roles = Roles::detect(made.clip.skeleton());
+//!
+//! // The measured way holds the sway of the hips, which makes it a little longer.
+//! let speed = ground_speed(&character_frames(&made.clip, &roles), made.clip.fps());
+//! assert!(speed > 1.2 && speed < 1.21);
+//!
+//! // What is detected against what was made: less than one frame in twenty differs.
+//! let contacts = Contacts::detect(&made.clip, &roles, &ContactOptions::default());
+//! for side in Side::BOTH {
+//!     let made_so = |frame: usize| made.truth.contacts[frame][side.index()].any();
+//!     let is_wrong = |&frame: &usize| contacts.planted(side, frame) != made_so(frame);
+//!     assert!((0..made.clip.frames()).filter(is_wrong).count() * 20 < made.clip.frames());
+//! }
+//! // Between two frames.
+//! let pose = made.clip.sample(30.5 / 60.0, Interpolation::Linear).ok_or("no frames")?;
+//! let roots = made.clip.root_translations();
+//! assert!(pose.root_translation.distance((roots[30] + roots[31]) * 0.5) < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice, likewise. Contacts do not change with the height
+//! of the capture's floor or the size of the character, and with the frame rate by at most 2.5 of the coarser frames. Everything is one pass
+//! over frames × joints, but for the sorting of heights in contacts.
+//!
+//! # What it does not do
+//!
+//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. A body that lies on its side has no
+//! facing: over such frames its heading turns evenly from the last known to the next.
+//!
+//! # Sources
+//!
+//! Angular velocities: Holden, "Joint limits, quaternions and angular velocity". Cubic interpolation: Catmull and Rom, on rotation vectors.
+
+mod carrier;
+mod contacts;
+mod curves;
+#[cfg(any(test, feature = "fixtures"))]
+#[allow(
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate,
+    clippy::unwrap_used,
+    reason = "made for tests"
+)]
+pub mod fixtures;
+mod ground;
+mod jolts;
+mod mirror;
+mod poses;
+mod reference;
+mod resample;
+mod retarget;
+mod root_motion;
+mod sampling;
+mod storage;
+mod velocity;
+
+pub use contacts::{ContactOptions, Contacts};
+pub(crate) use contacts::{stillest_point, stillest_step};
+pub use curves::{CurveKind, joint_curve};
+pub use ground::estimate_ground;
+pub(crate) use jolts::{Jolting, jolts, turn_change};
+pub use mirror::{MirrorError, mirror};
+pub use reference::{reference_pose, stance_for_rest};
+pub use resample::resample;
+pub use retarget::{RetargetError, retarget, retarget_onto};
+pub use root_motion::{character_frames, facing, ground_speed};
+pub use sampling::Interpolation;
+pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
+pub use velocity::{Velocities, velocities};

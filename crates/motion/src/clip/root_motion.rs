@@ -1,0 +1,255 @@
+use super::Clip;
+use crate::math::{Planar, wrap_angle};
+use crate::skeleton::{Role, Roles, Side, WorldPose};
+use glam::{Quat, Vec3};
+
+/// Across axes whose share over the ground is below this are those of a character lying on its side: no facing.
+const LEAST_ACROSS: f32 = 0.2;
+
+/// The pairs of joints whose axes say where the body faces.
+const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
+
+/// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or nowhere (a character lying on its side).
+///
+/// The mean of the axes across hips and shoulders (right to left), turned a quarter about up. Never an Euler angle: those jump where the
+/// body does not. A rig without legs and arms faces along its root's +Z.
+#[must_use]
+pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
+    let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint));
+    let has = |role: fn(Side) -> Role| Side::BOTH.into_iter().all(|side| at(role(side)).is_some());
+    if ACROSS.into_iter().any(has) {
+        return axis_facing(world, roles);
+    }
+    over_the_ground(*world.rotations.first()? * Vec3::Z)
+}
+
+/// Likewise by hips and shoulders alone; `None` without either.
+fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
+    let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
+    let across = |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
+    let [hips, shoulders] = ACROSS.map(across);
+    // Left × up = forward.
+    let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?;
+    over_the_ground(across.cross(Vec3::Y))
+}
+
+fn over_the_ground(forward: Vec3) -> Option<Vec3> {
+    let forward = Vec3::new(forward.x, 0.0, forward.z);
+    if forward.length() < LEAST_ACROSS {
+        None
+    } else {
+        forward.try_normalize()
+    }
+}
+
+/// Returns where the character stands on the ground and what it faces, frame by frame: `world_from_character`.
+///
+/// The shift is the first joint, which carries the body ([`Clip::folded`]), projected to the ground; the yaw is that of [`facing`]. Over frames
+/// without facing the yaw turns evenly, the shorter way, from the last known one to the next, so that it is continuous; before the first and
+/// behind the last it stays. Without any facing, as for creatures without hips and shoulders, the yaw is the turn of the first joint about +Y since
+/// the first frame, and faces along its +Z there: that is 0 for a joint that points up or down.
+#[must_use]
+pub fn character_frames(clip: &Clip, roles: &Roles) -> Vec<Planar> {
+    frames_of(clip, roles, 0)
+}
+
+/// [`character_frames`] of a body that another joint than the first carries.
+pub(super) fn frames_of(clip: &Clip, roles: &Roles, carrier: usize) -> Vec<Planar> {
+    let mut world = WorldPose::default();
+    let mut frames = Vec::with_capacity(clip.frames());
+    let mut known: Vec<Option<f64>> = Vec::with_capacity(clip.frames());
+    let mut turns: Vec<Quat> = Vec::with_capacity(clip.frames());
+    let across: Vec<usize> = ACROSS
+        .into_iter()
+        .flat_map(|role| Side::BOTH.map(role))
+        .filter_map(|role| roles.get_within(role, clip.skeleton().len()))
+        .collect();
+    let needed = clip.skeleton().with_ancestors(across.iter().copied().chain([carrier]));
+    for frame in 0..clip.frames() {
+        clip.world_pose_of(frame, &needed, &mut world);
+        let facing = axis_facing(&world, roles);
+        let standing = Planar::standing_at(world.positions[carrier], facing.unwrap_or(Vec3::Z));
+        known.push(facing.map(|_| standing.yaw));
+        turns.push(world.rotations[carrier]);
+        frames.push(standing);
+    }
+    if known.iter().all(Option::is_none) {
+        known = turned_since_the_first(&turns);
+    }
+    for (frame, yaw) in frames.iter_mut().zip(without_gaps(&known)) {
+        frame.yaw = yaw.unwrap_or(0.0);
+    }
+    frames
+}
+
+/// The yaw of a joint, frame by frame: how far it has turned about +Y since the first frame, on top of where its +Z points there. Relative
+/// rotations do not depend on how the file lays the joint's axes. `None` where it is upside down.
+fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
+    let Some(&first) = turns.first() else {
+        return Vec::new();
+    };
+    let forward = first * Vec3::Z;
+    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < LEAST_ACROSS {
+        0.0
+    } else {
+        f64::from(forward.x).atan2(f64::from(forward.z))
+    };
+    let yaw = |turn: &Quat| {
+        let since = *turn * first.conjugate();
+        let upright = since.y.hypot(since.w) > LEAST_ACROSS;
+        upright.then(|| wrap_angle(start + 2.0 * f64::from(since.y).atan2(f64::from(since.w))))
+    };
+    turns.iter().map(yaw).collect()
+}
+
+/// Fills gaps between known angles evenly, the shorter way; before the first and behind the last known one with that.
+fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
+    let mut filled = values.to_vec();
+    let known: Vec<(usize, f64)> = values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?))).collect();
+    for pair in known.windows(2) {
+        let [(from, start), (to, end)] = [pair[0], pair[1]];
+        for (step, slot) in (1..).zip(&mut filled[from + 1..to]) {
+            let share = f64::from(step) / (to - from) as f64;
+            *slot = Some(wrap_angle(start + wrap_angle(end - start) * share));
+        }
+    }
+    if let (Some(&(first, start)), Some(&(last, end))) = (known.first(), known.last()) {
+        filled[..first].fill(Some(start));
+        filled[last + 1..].fill(Some(end));
+    }
+    filled
+}
+
+/// The measured speed over the ground, metres per second: the length of the path of the frames' origins over its duration.
+///
+/// 0 for fewer than two frames or a frame rate that is not positive; never negative. The path contains the body's sway.
+///
+/// ```
+/// use segue_motion::{clip::ground_speed, math::Planar};
+///
+/// // 31 frames, 2 cm apart, at 60 frames per second: half a second for 60 cm.
+/// let walk: Vec<Planar> = (0..=30).map(|i| Planar::new(0.0, 0.0, 0.02 * f64::from(i))).collect();
+/// assert!((ground_speed(&walk, 60.0) - 1.2).abs() < 1e-6);
+/// ```
+#[must_use]
+pub fn ground_speed(frames: &[Planar], fps: f64) -> f32 {
+    let steps = frames.len().saturating_sub(1);
+    if steps == 0 || !(fps.is_finite() && fps > 0.0) {
+        return 0.0;
+    }
+    let path: f64 = frames.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).sum();
+    (path * fps / steps as f64) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::fixtures::wander_by;
+    use crate::skeleton::fixtures;
+    use glam::Quat;
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+    use std::sync::Arc;
+
+    #[test]
+    fn the_body_tells_where_it_faces_whatever_the_root_says() {
+        for (rig, skeleton, _) in fixtures::all() {
+            let roles = fixtures::roles(&skeleton);
+            let world = wander_by(&skeleton, 1, 0, 0.0).world_pose(0);
+            assert!((facing(&world, &roles).unwrap() - Vec3::Z).length() < 1e-6, "{rig}");
+        }
+        let skeleton = fixtures::lafan();
+        let rest = wander_by(&skeleton, 1, 0, 0.0);
+        // A rig whose root joint is turned by the file: the body still faces +X when its left is at -Z.
+        let turned = rest.transformed(&Planar::new(FRAC_PI_2, 0.0, 0.0)).world_pose(0);
+        assert!((facing(&turned, &fixtures::roles(&skeleton)).unwrap() - Vec3::X).length() < 1e-6);
+        // Without roles the root's own +Z.
+        assert!((facing(&turned, &Roles::default()).unwrap() - Vec3::X).length() < 1e-6);
+        assert_eq!(facing(&WorldPose::default(), &Roles::default()), None);
+    }
+
+    /// A roll over the side: in the middle the axis across the body points up.
+    #[test]
+    fn lying_on_the_side_keeps_the_facing_of_the_neighbour() {
+        let skeleton = fixtures::lafan();
+        let roles = fixtures::roles(&skeleton);
+        let yaw = Quat::from_rotation_y(0.5);
+        let mut rotations = vec![Quat::IDENTITY; 3 * skeleton.len()];
+        for (frame, roll) in [0.1f32, 1.57, 0.2].into_iter().enumerate() {
+            rotations[frame * skeleton.len()] = yaw * Quat::from_rotation_z(roll);
+        }
+        let clip = Clip::new("roll", skeleton, 30.0, rotations, vec![Vec3::Y; 3]).unwrap();
+        assert_eq!(facing(&clip.world_pose(1), &roles), None);
+        for frame in character_frames(&clip, &roles) {
+            assert!((frame.yaw - 0.5).abs() < 1e-5, "{}", frame.yaw);
+        }
+    }
+
+    #[test]
+    fn gaps_turn_evenly_the_shorter_way() {
+        let (a, b) = (Some(1.0), Some(2.0));
+        assert_eq!(without_gaps(&[]), []);
+        assert_eq!(without_gaps(&[None, None]), [None, None]);
+        assert_eq!(
+            without_gaps(&[None, a, None, None, None, b, None]),
+            [a, a, Some(1.25), Some(1.5), Some(1.75), b, b]
+        );
+        let across_the_back = without_gaps(&[Some(3.0), None, Some(-3.0)])[1].unwrap();
+        assert!((across_the_back.abs() - PI).abs() < 1e-12, "{across_the_back}");
+    }
+
+    /// A creature without hips and shoulders, whose root's axes lie as the file likes, turns as it turns.
+    #[test]
+    fn a_creature_without_limbs_turns_with_its_first_joint() {
+        let skeleton = fixtures::lafan();
+        for axes in [
+            Quat::IDENTITY,
+            Quat::from_rotation_x(1.3),
+            Quat::from_euler(glam::EulerRot::XYZ, 0.4, -2.0, 0.9),
+        ] {
+            let turned = |frame: usize| Quat::from_rotation_y(0.1 * frame as f32) * axes;
+            let mut rotations = vec![Quat::IDENTITY; 60 * skeleton.len()];
+            for (frame, root) in rotations.iter_mut().step_by(skeleton.len()).enumerate() {
+                *root = turned(frame);
+            }
+            let clip = Clip::new("whirl", Arc::clone(&skeleton), 30.0, rotations, vec![Vec3::Y; 60]).unwrap();
+            let frames = character_frames(&clip, &Roles::default());
+            for pair in frames.windows(2) {
+                let turn = crate::math::wrap_angle(pair[1].yaw - pair[0].yaw);
+                assert!((turn - 0.1).abs() < 1e-4, "{turn}");
+            }
+        }
+    }
+
+    #[test]
+    fn speed_is_path_over_duration_and_never_negative() {
+        let quarter: Vec<Planar> = (0..=90)
+            .map(|i| f64::from(i) / 90.0 * FRAC_PI_2)
+            .map(|a| Planar::new(0.0, 2.0 * a.cos(), 2.0 * a.sin()))
+            .collect();
+        // A quarter of a circle of 2 m in 3 s; the chords are shorter than the arc by 1.3e-5.
+        assert!((f64::from(ground_speed(&quarter, 30.0)) - PI / 3.0).abs() < 2e-5);
+        assert_eq!(ground_speed(&quarter[..1], 30.0), 0.0);
+        assert_eq!(ground_speed(&[], 30.0), 0.0);
+        for fps in [0.0, -30.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(ground_speed(&quarter, fps), 0.0);
+        }
+    }
+
+    proptest! {
+        /// Turning and moving the clip turns and moves its frames.
+        #[test]
+        fn frames_move_with_the_clip(seed in 0u64..500, yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
+            let skeleton = fixtures::cmu_bvh();
+            let roles = fixtures::roles(&skeleton);
+            let clip = wander_by(&skeleton, 4, seed, 0.3);
+            let placed = Planar::new(yaw, x, z);
+            let moved = character_frames(&clip.transformed(&placed), &roles);
+            for (before, after) in character_frames(&clip, &roles).iter().zip(&moved) {
+                let wanted = placed.after(before);
+                prop_assert!(crate::math::wrap_angle(after.yaw - wanted.yaw).abs() < 1e-5);
+                prop_assert!(after.shift.distance(wanted.shift) < 1e-5);
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows look alike. A walk through the graph is a
+//! motion without end.
+//!
+//! # The idea
+//!
+//! Lay all clips end to end and compare every window with every other. Where the distance ([`crate::registration`]) is small, one may go
+//! over. Picture a railway map: stretches of clips are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a
+//! switch throws a die.
+//!
+//! ```text
+//! p(the clip goes on) = c                       c: continuity; or w₀ / (w₀ + Σ w)
+//! p(jump k)           = (1 - c) · w_k / Σ w     w = 1/D, exp(-(D - D₀)/σ), 1, or (wrong) D
+//! mean run            = 1 / (1 - c) stretches   before the next jump
+//! ```
+//!
+//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`]) every stretch can be reached from every
+//! other, for ever.
+//!
+//! A [`FrameSet`] is what the graph is made of. [`AllPairs`] compares all its windows, [`Candidates`] are the places where one may go over
+//! into another, a [`MotionGraph`] is made of them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the
+//! graph by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the one before it, and can be done again
+//! alone: a new blend window needs new running sums, a new threshold new candidates, another weight law other choices. [`follow`] searches a
+//! walk along a line on the ground.
+//!
+//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave + window)` and `B[enter..enter + window)`
+//! overlap. Distances are root-mean-square distances per point, centimetres on the reference body.
+//!
+//! # Example
+//!
+//! ```
+//! use segue_motion::blend::Source;
+//! use segue_motion::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
+//! use segue_motion::graph::{StitchOptions, Stitcher, Walker, WeightOptions};
+//! use segue_motion::skeleton::Roles;
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use std::sync::Arc;
+//!
+//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
+//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
+//! let roles = Roles::detect(walk.skeleton());
+//! let height = f64::from(roles.body_height(walk.skeleton()));
+//! let sources = [walk, run].map(|clip| Arc::new(Source::new(clip, &roles)));
+//! let set = Arc::new(FrameSet::new(sources.to_vec(), height)?);
+//!
+//! let mut all = AllPairs::new(Arc::clone(&set))?;
+//! while !all.advance(100_000)?.is_complete() {}
+//! let window = 12;
+//! let options = GraphOptions { blend_window: window, edge_threshold_cm: 20.0, ..Default::default() };
+//! let candidates = Candidates::find(&all, &all.distances(window)?, &options)?;
+//! let graph = Arc::new(MotionGraph::new(&set, &candidates, &options)?.pruned()?);
+//! assert!(graph.dead_ends().is_empty() && graph.jumps().len() > 20);
+//!
+//! let choices = Arc::new(Choices::new(&graph, &WeightOptions::default())?);
+//! let mut walker = Walker::new(Arc::clone(&graph), choices, 7);
+//! let mut stitcher = Stitcher::new(Arc::clone(&set), &StitchOptions::dissolve(window));
+//! let (mut secs, mut jumps) = (0.0, 0);
+//! while secs < 20.0 {
+//!     let stay = walker.next_stay().ok_or("a pruned graph has no dead end")?;
+//!     secs += stitcher.stitch(&graph, &stay)?.clip.frames() as f64 / set.fps();
+//!     jumps += usize::from(stay.jump.is_some());
+//! }
+//! // Twenty seconds of motion, from two clips of about three seconds.
+//! assert!(jumps > 5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
+//! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and
+//! leaves a picture of their distances from afar.
+//!
+//! *The same walk everywhere.* From clips that are equal to the last digit, every machine goes the same way: what is chosen depends on sums,
+//! products, quotients and square roots in one order, which are the same everywhere, and on an arc tangent, an exponential and a power of
+//! [`libm`], which is made of these. Distances are rounded to 0.001 cm before they are ordered or held against the threshold, probabilities are
+//! whole numbers, and chance is a generator (PCG) of whole numbers. The trigonometry of the platform, whose last digit is its own, places bodies
+//! along a walk and decides nothing.
+//!
+//! *As far as the clips are equal.* Clips that are made, or read from angles, went through that trigonometry, and may differ by a last digit
+//! between two machines. Rounding hides nearly all of that; where two neighbours of a minimum are as good as equal, or a distance lies in the
+//! middle between two roundings, a transition may come to lie a frame beside. The walk of the built-in clips is held against one that was
+//! written down (`tests/golden/walk.json`), natively and in the browser.
+//!
+//! # What it does not do
+//!
+//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not reached, and [`GraphError`] says what
+//! would do. It does not know what a clip means: an idle stretch is as good a place to stay as any. It reacts at the next switch, not at
+//! once; for that see [`crate::matching`].
+//!
+//! # Sources
+//!
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002. Lee, Chai, Reitsma, Hodgins, Pollard, "Interactive Control of Avatars Animated with Human
+//! Motion Data", 2002, section 4.1 (the exponential weights).
+
+mod build;
+mod candidates;
+mod distances;
+mod error;
+mod export;
+mod follow;
+mod frames;
+mod measure;
+mod overview;
+mod parts;
+mod stitch;
+mod stream;
+mod walk;
+mod weights;
+
+pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
+pub use candidates::{Candidate, CandidateSearch, Candidates};
+pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
+pub use error::GraphError;
+pub use follow::{Followed, GroundPath, PathSearch, follow};
+pub use frames::{FrameSet, JoltSearch, Place};
+pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
+pub use overview::{DistanceDetail, DistanceOverview};
+pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
+pub use stream::CandidateStream;
+pub use walk::{Stay, Walker};
+pub use weights::{Choices, Continuity, DistanceLaw, RunLength, WeightOptions};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Character motion as plain data: clips, the skeletons that they move, and the algorithms that make new clips from them.
+//!
+//! The library is pure and deterministic. It uses no screen, file system, clock or thread: data goes in, data comes out, randomness comes
+//! from a seed, and time is a parameter. The crate `segue-formats` reads and writes motion files; the app Segue is built on both.
+//!
+//! These pages are also a small textbook. Each module is a chapter: the idea, the formula, an example that runs, the accuracy and the cost,
+//! the limits, and the sources.
+//!
+//! # A first example
+//!
+//! The example blends a walk into a run and measures the result. [`synth`] makes both clips, so that no file is needed.
+//!
+//! ```
+//! use segue_motion::blend::{Concatenation, DissolveOptions, Source, dissolve};
+//! use segue_motion::clip::{Clip, ContactOptions, Contacts};
+//! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+//! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
+//! use segue_motion::skeleton::Roles;
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use std::sync::Arc;
+//!
+//! let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
+//! let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
+//! let roles = Roles::detect(walk.skeleton());
+//!
+//! // Align: where is half a second of the one most like half a second of the other?
+//! let weights = limb_weights(walk.skeleton());
+//! let height = f64::from(roles.body_height(walk.skeleton()));
+//! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
+//!
+//! // Blend, and for comparison cut.
+//! let profile = |clip: &Arc<Clip>| {
+//!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
+//!     Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
+//! };
+//! let (a, b) = (profile(&walk), profile(&run));
+//! let blended = |window| {
+//!     let options = DissolveOptions { window, ..DissolveOptions::default() };
+//!     dissolve(a.source(), found.leave, b.source(), found.enter, &options)
+//! };
+//! let (blend, cut) = (blended(30)?, blended(0)?);
+//!
+//! // Measure: how far do joints and character jump in a frame, beyond what is usual?
+//! let measured = |out: &Concatenation| {
+//!     TransitionMetrics::measure(&Subject {
+//!         result: &out.clip,
+//!         start: out.transition.start,
+//!         end: out.transition.end,
+//!         handover: out.handover,
+//!         enter: found.enter,
+//!         a: &a,
+//!         b: &b,
+//!         roles: &roles,
+//!         ground_m: 0.0,
+//!     })
+//! };
+//! assert!(measured(&cut).seam_deg.is_some_and(|jump| jump > 60.0));
+//! assert!(measured(&blend).seam_deg.is_some_and(|jump| jump < 5.0));
+//! assert!(measured(&blend).jump_cm.is_some_and(|jump| jump < 0.1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The chapters, in reading order
+//!
+//! What a motion is:
+//!
+//! 1. [`math`]: rotations as vectors, rigid transforms of the ground, springs, curves.
+//! 2. [`skeleton`]: a tree of joints, where it puts them, what each is for; other bodies and mirror images.
+//! 3. [`clip`]: poses over time; sampling, velocities, facing, feet on the ground.
+//! 4. [`synth`]: motions made from parameters, with the truth about them.
+//!
+//! How two become one:
+//!
+//! 5. [`registration`]: distances of windows, the best place to go over, timewarps.
+//! 6. [`blend`]: the dissolve, registered blends, layers.
+//! 7. [`transition`]: inertialization, dead blending, loops, planted feet.
+//! 8. [`gait`]: a walk and a run become every speed between.
+//! 9. [`metrics`]: what goes wrong, as numbers with a unit.
+//!
+//! What is built on that:
+//!
+//! 10. [`graph`]: motion graphs, and walks through them.
+//! 11. [`path`]: the road is dragged, the character follows.
+//! 12. [`matching`]: a character that is steered.
+//! 13. [`skin`]: a smooth body around any skeleton, and two ways in which it follows.
+//!
+//! `tests/architecture.rs` in the workspace checks the dependencies between these modules:
+//!
+//! ```text
+//! math ← skeleton ← clip ← synth, registration, skin
+//! registration ← blend ← transition ← gait
+//! blend ← metrics
+//! all of these ← graph, path, matching
+//! ```
+//!
+//! # Conventions
+//!
+//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else (`dt_secs`, `rms_cm`, `spin_deg`). Every
+//!   rate is per second at the clip's own frame rate.
+//! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces +Z and has its left at +X; positive yaw
+//!   turns it left (about +Y). A point of the ground is (x, z).
+//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that interpolates first brings both into one
+//!   hemisphere.
+//! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`. `a_world_from_b_world` lays clip B on clip A.
+//! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation is the identity.
+//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over
+//!   `B[j..j + k)`, in search, blend and picture alike.
+//! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are `f64`.
+//! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides when to stop for a frame of the screen.
+//! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can make the library panic.
+
+pub mod blend;
+pub mod clip;
+pub mod gait;
+pub mod graph;
+pub mod matching;
+pub mod math;
+pub mod metrics;
+pub mod path;
+pub mod registration;
+pub mod skeleton;
+pub mod skin;
+pub mod synth;
+pub mod transition;

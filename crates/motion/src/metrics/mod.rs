@@ -1,0 +1,170 @@
+//! Artefacts as numbers with a unit: what a viewer would point at, measured.
+//!
+//! # The idea
+//!
+//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much for a spine and little for a runner's
+//! knee, so a joint is measured *beyond* the most that it does in the clips that the motion was made of.
+//!
+//! Some numbers are told of every motion, whatever made it: [`ResultMetrics`], beside what a [`MotionTrace`] knows of the clips.
+//!
+//! | | unit | what is told |
+//! |---|---|---|
+//! | pose jump | ° | the largest turn of a joint in one step, beyond the clips' |
+//! | velocity jump | °/s | likewise the largest change of its angular velocity in 1/30 s |
+//! | spin | ° | the most yaw of the hips in 0.2 s, beyond the clips' |
+//! | skating | cm/s | how fast low feet move, in the mean |
+//!
+//! ```text
+//! pose jump     = max over joints of  max over steps |ω| / fps - max over the clips' steps |ω| / fps
+//! velocity jump = max over joints of  max over frames |ω(t, t + T) - ω(t - T, t)| - the same of the clips,  T = 1/30 s
+//! spin          = max over frames |yaw(t + 0.2 s) - yaw(t)| - the same of the clips
+//! ```
+//!
+//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not hang on the frame rate: where a blend has an acceleration it is that
+//! times T, where the velocity jumps it is the jump.
+//!
+//! Others belong to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`], [`TransitionMetrics`].
+//!
+//! | | unit | what is told |
+//! |---|---|---|
+//! | foot slide | cm | how far a planted foot gets from where it stood in the worst stance |
+//! | place jump | cm | the character's step over the ground, beyond the usual |
+//! | penetration | cm | how deep the deepest point is below the ground |
+//! | lag | s | until the velocity is the new clip's, to 10 % |
+//!
+//! ```text
+//! slide = max over a stance of  |Σ step of the foot's stillest point|
+//! ```
+//!
+//! Around one transition more is known, the frames of both clips that play: what its fields measure is beyond what the clips do in these very frames.
+//! A [`Profile`] is what is measured of a clip for that.
+//!
+//! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed. [`foot_slide_cm`] does so for a whole
+//! clip.
+//!
+//! # Example
+//!
+//! The same transition, right and with the most famous mistake in it: `atan` in place of `atan2`.
+//!
+//! ```
+//! use segue_motion::blend::{Concatenation, Source};
+//! use segue_motion::clip::{Clip, ContactOptions, Contacts};
+//! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+//! use segue_motion::skeleton::Roles;
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use segue_motion::transition::{Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+//! use std::sync::Arc;
+//!
+//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
+//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
+//! let roles = Roles::detect(walk.skeleton());
+//! let profile = |clip: &Arc<Clip>| {
+//!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
+//!     Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
+//! };
+//! let (a, b) = (profile(&walk), profile(&run));
+//! let spin_deg = |out: &Concatenation| {
+//!     let subject = Subject {
+//!         result: &out.clip,
+//!         start: out.transition.start,
+//!         end: out.transition.end,
+//!         handover: out.handover,
+//!         enter: 20,
+//!         a: &a,
+//!         b: &b,
+//!         roles: &roles,
+//!         ground_m: 0.0,
+//!     };
+//!     TransitionMetrics::measure(&subject).spin_deg.unwrap_or(f64::NAN)
+//! };
+//! let options = TransitionOptions::new(Method::Dissolve { window: 30, law: Default::default() });
+//! let right = concatenate(a.source(), 100, b.source(), 20, &options)?;
+//! let mistake = Mistake::AtanForAtan2;
+//! let wrong = concatenate_mistaken(a.source(), 100, b.source(), 20, &options, mistake)?;
+//! assert!(spin_deg(&right) < 1.0 && spin_deg(&wrong) > 90.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to slide by 5 cm slides 5 cm. A clip that goes
+//! on as itself has no artefact. A transition costs O(its frames × joints) and half a second to either side, a profile O(frames × joints)
+//! once.
+//!
+//! # What it does not do
+//!
+//! No number says whether a motion is beautiful, or in character. Limbs that pass through each other are not seen. What is usual in a
+//! trembling capture hides a trembling seam. Feet are planted where the *sources* say so: a wrong contact is measured as a slide.
+//!
+//! # Sources
+//!
+//! The definitions are Segue's own; each is written out at its field in [`TransitionMetrics`].
+
+mod artefacts;
+mod deviation;
+mod lowest;
+mod profile;
+mod result;
+mod slide;
+mod transition;
+mod whole;
+
+pub use artefacts::{Artefacts, Flash, MotionTrace, TraceMeter};
+pub use deviation::deviations;
+pub use profile::Profile;
+pub use result::{JointFrame, ResultMetrics};
+pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
+pub use transition::{Subject, TransitionMetrics};
+pub use whole::{ClipMeter, ClipMetrics};
+
+/// Which way a number should go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Better {
+    /// Smaller is better; 0 is perfect.
+    Lower,
+    /// Larger is better.
+    Higher,
+    /// Neither: it describes.
+    Neutral,
+}
+
+/// One number for a person.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metric {
+    /// The key in links, exports and comparisons; never changes.
+    pub id: &'static str,
+    /// What it is called.
+    pub label: &'static str,
+    /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no change of speed).
+    pub value: Option<f64>,
+    /// The unit, as written behind the number.
+    pub unit: &'static str,
+    /// Which way it should go.
+    pub better: Better,
+    /// One or two sentences: what it means and how it is measured.
+    pub help: &'static str,
+}
+
+impl Metric {
+    /// A number that should be small; 0 is perfect.
+    #[must_use]
+    pub fn lower(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
+        Self {
+            better: Better::Lower,
+            ..Self::fact(id, label, value, unit, help)
+        }
+    }
+
+    /// A number that only describes.
+    #[must_use]
+    pub fn fact(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
+        Self {
+            id,
+            label,
+            value: value.into(),
+            unit,
+            better: Better::Neutral,
+            help,
+        }
+    }
+}

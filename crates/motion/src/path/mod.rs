@@ -1,0 +1,179 @@
+//! Path editing: drag the road, the character follows.
+//!
+//! # The idea
+//!
+//! Take a walk apart into where it goes and what the body does on the way. The way of the character's root over the ground is fitted by a
+//! cubic B-spline C(u) with N control points; what the fit leaves over, sway of the hips and the angle between body and path, is kept in the
+//! path's moving frame: +Z along the path, +X to its left.
+//!
+//! ```text
+//! fit     min  mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²
+//!         Δ: change of slope of the control polygon, h: spacing of its points
+//! carry   new(k) = new path(v_k) · path(u_k)⁻¹ · character(k)
+//!         v_k: the place on the new path, by Timing
+//! ```
+//!
+//! Picture a tram with a dancer in it: bend the rails, and the dance goes along. When the path changes, every frame is moved with the frame
+//! of the path that it rides in ([`carry`]), and the feet are planted again ([`PathEditor`]). What happens to time where a path becomes
+//! longer, [`Timing`] says: metres stay, speed stays, or duration stays. Turns that are sharper than the motion knows are told
+//! ([`hard_turns`]: curvature × speed).
+//!
+//! # Example
+//!
+//! ```
+//! use glam::DVec2;
+//! use segue_motion::blend::Source;
+//! use segue_motion::clip::Clip;
+//! use segue_motion::path::{CarryOptions, FitOptions, FittedPath, PathEdit, Pins, Road, carry};
+//! use segue_motion::skeleton::Roles;
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use std::sync::Arc;
+//!
+//! let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
+//! let roles = Roles::detect(walk.skeleton());
+//! let fit = FitOptions { control_points: 6, ..FitOptions::default() };
+//! let path = FittedPath::new(Arc::new(Source::new(Arc::clone(&walk), &roles)), &fit)?;
+//! assert!(path.error().rms_cm < 5.0);
+//!
+//! // On its own path the walk is itself.
+//! let same = carry(&path, path.road(), &CarryOptions::default())?.clip;
+//! let mut pairs = same.root_translations().iter().zip(walk.root_translations());
+//! assert!(pairs.all(|(p, q)| p.distance(*q) < 1e-4));
+//!
+//! // The fourth control point half a metre to the left: the walk takes a bow.
+//! let spline = path.road().spline();
+//! let to = spline.points()[3] + DVec2::new(0.5, 0.0);
+//! let bow = spline.edited(&PathEdit::Move { index: 3, to }, Pins::default())?;
+//! let out = carry(&path, &Road::new(bow)?, &CarryOptions::default())?.clip;
+//! let left = |clip: &Clip| clip.root_translations().iter().map(|p| p.x).fold(0.0, f32::max);
+//! assert!(left(&walk) < 0.05 && left(&out) > 0.25 && out.frames() == walk.frames());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! A path that is not edited gives its motion back to 1e-4 m and 1e-4 radians, and one that is moved rigidly moves it rigidly. Control
+//! points are those of `SciPy`'s least squares to 1e-9 m. Joints of one frame keep their distances whatever is done to the path, until feet
+//! are planted. A fit is O(frames + control points), a carried motion O(frames × joints).
+//!
+//! # What it does not do
+//!
+//! It bends motions, and neither invents steps nor takes them away: a path of twice the length is walked halfway, or with strides twice as
+//! long, as [`Timing`] says. A motion that stays in place has no path. Balance is not looked after: whoever is sent around a hairpin does
+//! not lean.
+//!
+//! # Sources
+//!
+//! Gleicher, "Motion Path Editing", 2001. de Boor, "A Practical Guide to Splines"; Boehm 1980 (adding a knot); Dierckx 1993, section 4.1
+//! (least squares by rotations); Eilers and Marx 1996 (smoothing).
+
+use crate::clip::ClipError;
+use crate::transition::FootLockError;
+
+mod carry;
+mod code;
+mod edit;
+mod fit;
+mod fitted;
+mod motion;
+mod road;
+mod spline;
+mod turning;
+
+pub use carry::{Carried, CarryOptions, Offset, Orientation, Timing, carry};
+pub use edit::{PathEdit, Pins};
+pub use fit::{FitOptions, MOST_SMOOTHING, drawn_path, fit_spline};
+pub use fitted::{FitError, FittedPath};
+pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
+pub use road::{Road, Waypoint};
+pub use spline::{FARTHEST_M, GroundSpline, Jet, LEAST_POINTS, MOST_POINTS, SplineEnds};
+pub use turning::{HardTurn, hard_turns, turn_rates};
+
+/// Why a path cannot be fitted, edited or walked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PathEditError {
+    /// No motion to take a path from.
+    #[error("{frames} frames are no way over the ground: take a clip of two or more")]
+    Frames {
+        /// Frames that there are.
+        frames: usize,
+    },
+    /// The character does not go anywhere.
+    #[error("this motion stays within {:.0} cm, so that there is no path to edit: choose one that travels", extent_m * 100.0)]
+    Stands {
+        /// The diagonal of the box around the root's way, metres.
+        extent_m: f64,
+    },
+    /// A path that is a point.
+    #[error("a path of {:.1} cm has no direction: draw its control points apart", length_m * 100.0)]
+    NoLength {
+        /// Its length, metres.
+        length_m: f64,
+    },
+    /// Too few or too many control points.
+    #[error("a path of {points} control points cannot be used: take {LEAST_POINTS} to {MOST_POINTS}")]
+    ControlPoints {
+        /// The number asked for.
+        points: usize,
+    },
+    /// A point that is no place.
+    #[error("point {index} is not within {FARTHEST_M} m of the origin")]
+    Point {
+        /// Which.
+        index: usize,
+    },
+    /// Knots that do not fit.
+    #[error("knots have to rise between 0 and 1, four fewer than control points and not too close to each other: take another place")]
+    Knots,
+    /// Parameters that are none.
+    #[error("each point needs a parameter from 0 to 1, at least two of them different, and none below the one before")]
+    Parameters,
+    /// A control point that is not there.
+    #[error("there is no control point {index} among {points}")]
+    NoSuchPoint {
+        /// Which.
+        index: usize,
+        /// Points that there are.
+        points: usize,
+    },
+    /// A control point that has to stay.
+    #[error("control point {index} cannot be removed: ends stay, and so do the last {least}")]
+    NotRemoved {
+        /// Which.
+        index: usize,
+        /// The fewest points of this path.
+        least: usize,
+    },
+    /// An end that has to stay where it is.
+    #[error("an end of the path is pinned: free it first")]
+    Pinned,
+    /// Too few control points for a loop.
+    #[error("{points} control points do not make a loop: add points until there are {least}")]
+    TooFewToClose {
+        /// Points that there are.
+        points: usize,
+        /// Points that a loop needs.
+        least: usize,
+    },
+    /// A number out of range.
+    #[error("a {what} of {value} cannot be used: give a number from {least} to {most}")]
+    Option {
+        /// Which number.
+        what: &'static str,
+        /// The number given.
+        value: f64,
+        /// The smallest number.
+        least: f64,
+        /// The largest number.
+        most: f64,
+    },
+    /// A word that is no path.
+    #[error("this is not a path from a link: copy the whole link")]
+    Code,
+    /// Feet cannot be planted.
+    #[error(transparent)]
+    FootLock(#[from] FootLockError),
+    /// The result is no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+}

@@ -1,0 +1,262 @@
+//! Which joint is the hips, which the left foot: found by name, else by shape, and corrected by hand.
+
+mod names;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+use super::{Role, Side, Skeleton};
+use glam::Vec3;
+use std::collections::BTreeMap;
+pub(crate) use tokens::{Tokens, are_counterparts, read};
+
+/// How the joint of a role was found; the most trustworthy first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Found {
+    /// A person said so.
+    ByHand,
+    /// By the joint's name.
+    ByName,
+    /// By the skeleton's shape at rest.
+    ByShape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+struct Assigned {
+    joint: usize,
+    found: Found,
+}
+
+/// At most one joint per [`Role`].
+///
+/// Stored (serde) as a map from role to joint index. The indices belong to one skeleton; when roles come from elsewhere, every user of them
+/// treats an index that the skeleton does not have as a missing role.
+///
+/// ```
+/// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
+///
+/// let joint = |name: &str, parent| Joint { name: name.into(), parent, offset: glam::Vec3::NEG_Y, end_site: None, channels: vec![] };
+/// let leg = Skeleton::new(vec![joint("Hips", None), joint("LeftUpLeg", Some(0)), joint("LeftLeg", Some(1)), joint("LeftFoot", Some(2))])?;
+/// let roles = Roles::detect(&leg);
+/// assert_eq!(roles.get(Role::LeftShin), Some(2));
+/// assert_eq!(roles.get(Role::RightShin), None);
+/// # Ok::<(), segue_motion::skeleton::SkeletonError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(from = "BTreeMap<Role, Assigned>", into = "BTreeMap<Role, Assigned>")]
+pub struct Roles {
+    assigned: [Option<Assigned>; Role::COUNT],
+}
+
+impl From<BTreeMap<Role, Assigned>> for Roles {
+    fn from(map: BTreeMap<Role, Assigned>) -> Self {
+        let mut roles = Self::default();
+        for (role, assigned) in map {
+            roles.assigned[role.index()] = Some(assigned);
+        }
+        roles
+    }
+}
+
+impl From<Roles> for BTreeMap<Role, Assigned> {
+    fn from(roles: Roles) -> Self {
+        Role::ALL
+            .into_iter()
+            .filter_map(|role| Some((role, roles.assigned[role.index()]?)))
+            .collect()
+    }
+}
+
+impl Roles {
+    /// Finds the roles of a skeleton by its joints' names, and those that no name tells by its shape at rest.
+    ///
+    /// Names: whole words are compared, without regard to case, after the side (`left`, `L_`, `.L`, `lFemur`, …), name spaces
+    /// (`mixamorig:`) and numbers are taken off; CMU (ASF and BVH), Mixamo, `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and
+    /// Unreal rigs are covered. Shape: needs Y up and arms that are not folded over the legs; left and right follow from the toes, which
+    /// point forward.
+    #[must_use]
+    pub fn detect(skeleton: &Skeleton) -> Self {
+        let mut roles = names::detect(skeleton);
+        if roles.count() < Role::COUNT {
+            roles.fill(skeleton, &shape::detect(skeleton));
+        }
+        roles
+    }
+
+    /// Finds the roles that joints' names tell, whatever the rest pose. See [`Self::detect`].
+    #[must_use]
+    pub fn by_name(skeleton: &Skeleton) -> Self {
+        names::detect(skeleton)
+    }
+
+    /// Takes over what is missing, where it does not contradict what is there.
+    fn fill(&mut self, skeleton: &Skeleton, other: &Self) {
+        for role in Role::ALL {
+            let Some(candidate) = other.assigned[role.index()] else { continue };
+            if self.assigned[role.index()].is_none()
+                && self.role_of(candidate.joint).is_none()
+                && self.fits(skeleton, role, candidate.joint)
+            {
+                self.assigned[role.index()] = Some(candidate);
+            }
+        }
+    }
+
+    /// Whether `joint` lies on the right side of the limb's other joints in the tree.
+    fn fits(&self, skeleton: &Skeleton, role: Role, joint: usize) -> bool {
+        let Some(side) = role.side() else { return true };
+        let (leg, arm) = (Role::leg(side), Role::arm(side));
+        let chain: &[Role] = if leg.contains(&role) { &leg } else { &arm };
+        let place = chain.iter().position(|&r| r == role);
+        chain.iter().enumerate().all(|(other_place, &other)| match self.get(other) {
+            Some(found) if Some(other_place) < place => is_below(skeleton, joint, found),
+            Some(found) => is_below(skeleton, found, joint),
+            None => true,
+        })
+    }
+
+    /// The joint of a role.
+    #[must_use]
+    pub fn get(&self, role: Role) -> Option<usize> {
+        self.assigned[role.index()].map(|a| a.joint)
+    }
+
+    /// The joint of a role, where a skeleton of `joints` joints has it.
+    #[must_use]
+    pub fn get_within(&self, role: Role, joints: usize) -> Option<usize> {
+        self.get(role).filter(|&joint| joint < joints)
+    }
+
+    /// How the joint of a role was found; `None` for a role without a joint.
+    #[must_use]
+    pub fn found(&self, role: Role) -> Option<Found> {
+        self.assigned[role.index()].map(|a| a.found)
+    }
+
+    /// Says by hand which joint has a role, or that none has it. A joint that had another role loses that one.
+    pub fn set(&mut self, role: Role, joint: Option<usize>) {
+        if let Some(previous) = joint.and_then(|joint| self.role_of(joint)) {
+            self.assigned[previous.index()] = None;
+        }
+        self.assigned[role.index()] = joint.map(|joint| Assigned {
+            joint,
+            found: Found::ByHand,
+        });
+    }
+
+    fn assign(&mut self, role: Role, joint: Option<usize>, found: Found) {
+        self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found });
+    }
+
+    /// The role of a joint.
+    #[must_use]
+    pub fn role_of(&self, joint: usize) -> Option<Role> {
+        Role::ALL.into_iter().find(|&role| self.get(role) == Some(joint))
+    }
+
+    /// The number of roles that have a joint, at most [`Role::COUNT`].
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.assigned.iter().flatten().count()
+    }
+
+    /// The roles that have no joint.
+    pub fn missing(&self) -> impl Iterator<Item = Role> + '_ {
+        Role::ALL.into_iter().filter(|&role| self.get(role).is_none())
+    }
+
+    /// One sentence for a person: which joint has the role, and why.
+    #[must_use]
+    pub fn explain(&self, role: Role, skeleton: &Skeleton) -> String {
+        let Some(Assigned { joint, found }) = self.assigned[role.index()] else {
+            return format!("no joint was found for the {}: choose one by hand", role.name());
+        };
+        let name = skeleton
+            .joints()
+            .get(joint)
+            .map_or("a joint that this skeleton does not have", |j| j.name.as_str());
+        match found {
+            Found::ByHand => format!("`{name}` is the {}: chosen by hand", role.name()),
+            Found::ByName => format!("`{name}` is the {}: by its name", role.name()),
+            Found::ByShape => format!(
+                "`{name}` is the {}: by where it lies in the body, its name does not tell",
+                role.name()
+            ),
+        }
+    }
+
+    /// The points of a foot that may stand on the ground: ankle, ball and tip, as far as the skeleton has them, each as a joint and a point in its
+    /// frame (metres).
+    #[must_use]
+    pub fn foot_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(usize, Vec3)> {
+        let joint = |role| self.get_within(role, skeleton.len());
+        let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
+        // A foot without toes may have its tip at its own end.
+        let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
+        foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
+    }
+
+    /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both sides. `None` without a whole leg. Adds up the bones
+    /// between, so that it does not depend on the rest pose.
+    #[must_use]
+    pub fn leg_length(&self, skeleton: &Skeleton) -> Option<f32> {
+        let joint = |role| self.get_within(role, skeleton.len());
+        let legs: Vec<f32> = Side::BOTH
+            .into_iter()
+            .filter_map(|side| {
+                let (hip, knee, ankle) = (joint(Role::thigh(side))?, joint(Role::shin(side))?, joint(Role::foot(side))?);
+                Some(length_between(skeleton, hip, knee)? + length_between(skeleton, knee, ankle)?)
+            })
+            .filter(|&length| length > 0.0)
+            .collect();
+        (!legs.is_empty()).then(|| legs.iter().sum::<f32>() / legs.len() as f32)
+    }
+
+    /// Returns the character's height standing upright, metres: thigh and shin are 0.491 of it (Winter, "Biomechanics and Motor Control of Human
+    /// Movement", table 4.1). Without legs the longest way through the skeleton along its bones, and without any length 1. Only bone lengths
+    /// count, which no rest pose changes.
+    #[must_use]
+    pub fn body_height(&self, skeleton: &Skeleton) -> f32 {
+        if let Some(leg) = self.leg_length(skeleton) {
+            return leg / 0.491;
+        }
+        let longest = longest_way(skeleton);
+        if longest > 0.0 { longest } else { 1.0 }
+    }
+}
+
+/// The lengths of the bones from a joint down to one below it, added up; `None` where it is not below.
+fn length_between(skeleton: &Skeleton, above: usize, below: usize) -> Option<f32> {
+    let mut length = 0.0;
+    let mut joint = below;
+    while joint != above {
+        length += skeleton.joints().get(joint)?.offset.length();
+        joint = skeleton.parent(joint)?;
+    }
+    Some(length)
+}
+
+/// The longest way from one end of the tree to another along its bones.
+fn longest_way(skeleton: &Skeleton) -> f32 {
+    let mut deepest = vec![0.0_f32; skeleton.len()];
+    let mut longest = 0.0_f32;
+    // Children come behind their parents: seen from the back, what is below a joint is known.
+    for (index, joint) in skeleton.joints().iter().enumerate().rev() {
+        if let Some(end) = joint.end_site {
+            longest = longest.max(deepest[index] + end.length());
+            deepest[index] = deepest[index].max(end.length());
+        }
+        if let Some(parent) = joint.parent {
+            let branch = deepest[index] + joint.offset.length();
+            longest = longest.max(deepest[parent] + branch);
+            deepest[parent] = deepest[parent].max(branch);
+        }
+    }
+    longest
+}
+
+/// Whether `joint` lies below `above` in the tree, and is not that joint itself.
+pub(crate) fn is_below(skeleton: &Skeleton, joint: usize, above: usize) -> bool {
+    std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == above)
+}

@@ -1,0 +1,289 @@
+//! A smooth body around any skeleton: its shapes, one surface around those that may flow into each other, and weights along the tree.
+//! All of it is made piece by piece.
+
+use super::capsules::capsules;
+use super::contour::{Contour, Contouring};
+use super::field::{Cone, Field};
+use super::shapes::{PlacedShape, Shape, limb_shapes};
+use super::weights::{Neighbours, Sharing, drawn_together, fair, normals};
+use super::{SkinnedMesh, bind};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Cells of the surface are at most this large, as a share of what is thin there.
+const CELL_SHARE: f32 = 0.5;
+/// And at most this large, as a share of the body's height: 1.9 cm on an adult.
+const LARGEST_CELL: f32 = 0.0108;
+/// Vertices of the whole mesh, about; cells become larger where it would be more.
+const MOST_VERTICES: f32 = 14_000.0;
+/// Skeletons of more shapes get one surface for each.
+const MOST_BLENDED: usize = 400;
+/// Of even more, only the largest are shown.
+const MOST_SHAPES: usize = 4000;
+/// A joint and its ancestor this many steps above are near enough in the tree to flow into each other.
+const NEAR_STEPS: usize = 2;
+/// Cells of a contour that are looked at in one piece of work.
+const CELLS_AT_ONCE: usize = 400;
+/// How often the surface is smoothed.
+const FAIRING_ROUNDS: usize = 8;
+/// How often the ways that vertices take with the girth are.
+const REACH_ROUNDS: usize = 8;
+
+/// The body of a skeleton as it comes to be: [`Sculptor::advance`] makes a little more of it, so that a page can go on meanwhile.
+#[derive(Clone, Debug)]
+pub struct Sculptor {
+    pose: WorldPose,
+    /// The power of the girth that each joint's vertices grow with.
+    powers: Vec<f32>,
+    /// For each shape the joints along it: see [`path`].
+    paths: Vec<Vec<(f32, usize)>>,
+    /// The shells that are still to be made, the next one last.
+    shells: Vec<Shell>,
+    done: Sculpture,
+}
+
+/// A body that any girth can be given in a moment.
+///
+/// A mesh for the girth 1, and how its vertices move for another: away from the axis of the limb that they lie on, as limbs grow.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sculpture {
+    mesh: SkinnedMesh,
+    /// From the axis of its limb to each vertex, metres, smooth over the surface.
+    reach: Vec<Vec3>,
+    /// The power of the girth that each vertex grows with.
+    powers: Vec<f32>,
+}
+
+/// A surface around shapes that may flow into each other.
+#[derive(Clone, Debug)]
+struct Shell {
+    members: Vec<usize>,
+    cones: Vec<Cone>,
+    stage: Stage,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    Contouring(Box<Contouring>),
+    Smoothing(Contour, Neighbours, usize),
+    Sharing(Contour, Neighbours, Sharing),
+}
+
+impl Sculptor {
+    /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. It is made on the
+    /// skeleton's [`canonical_stance`], for which `reference` is a pose that shows how its bones lie to each other
+    /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most the first 65,536 of them).
+    #[must_use]
+    pub fn new(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> Self {
+        let stance = canonical_stance(skeleton, roles, reference);
+        let standing = &skeleton.resting_in(&stance);
+        let rest = standing.rest_positions();
+        let mut shapes = limb_shapes(standing, &rest, Some(roles));
+        shapes.retain(|shape| u16::try_from(shape.a.joint.max(shape.b.joint)).is_ok());
+        let mut sculptor = Self {
+            powers: powers(standing, roles),
+            paths: Vec::new(),
+            shells: Vec::new(),
+            done: Sculpture::default(),
+            pose: bind::bind_pose(standing, roles, &stance),
+        };
+        let is_blended = shapes.len() <= MOST_BLENDED;
+        if !is_blended {
+            shapes.retain(|shape| !shape.soft);
+            shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
+            shapes.truncate(MOST_SHAPES);
+        }
+        let shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
+        if is_blended {
+            sculptor.begin_shells(standing, roles, &shapes);
+        } else {
+            (sculptor.done.mesh, sculptor.done.reach) = capsules(&shapes, &sculptor.pose);
+        }
+        sculptor
+    }
+
+    /// A field around the shapes: one for those that may flow into each other, and one for each shell that must not.
+    fn begin_shells(&mut self, skeleton: &Skeleton, roles: &Roles, shapes: &[Shape]) {
+        let placed: Vec<(&Shape, PlacedShape)> = (shapes.iter())
+            .filter_map(|shape| Some((shape, shape.placed(&self.pose)?)))
+            .collect();
+        let cones: Vec<Cone> = placed.iter().map(|(_, placed)| Cone::new(placed)).collect();
+        self.paths = (placed.iter())
+            .map(|(shape, placed)| path(skeleton, shape, placed, &self.pose))
+            .collect();
+        let largest = LARGEST_CELL * roles.body_height(skeleton);
+        // Cells are halved and halved again, so sizes are rounded to that.
+        let size = |cone: &Cone| largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2();
+        let sizes: Vec<f32> = cones.iter().map(size).collect();
+        // A surface passes through about 1.5 cells for each square of a cell's size.
+        let vertices: f32 = cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
+        let coarser = (vertices / MOST_VERTICES).max(1.0).sqrt();
+        let mut shells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (index, (shape, _)) in placed.iter().enumerate() {
+            shells.entry(shape.shell).or_default().push(index);
+        }
+        for members in shells.into_values().rev() {
+            let are_neighbours = |i: usize, j: usize| are_near(skeleton, &self.paths[members[i]], &self.paths[members[j]]);
+            let own: Vec<Cone> = members.iter().map(|&index| cones[index]).collect();
+            let field = Field::new(own.clone(), are_neighbours);
+            let sizes = members.iter().map(|&index| sizes[index] * coarser).collect();
+            self.shells.push(Shell {
+                members,
+                cones: own,
+                stage: Stage::Contouring(Box::new(Contouring::new(field, sizes))),
+            });
+        }
+    }
+
+    /// Makes a little more of it: a millisecond's work, or two in a browser. The body, once it is whole; after that an empty one.
+    pub fn advance(&mut self) -> Option<Sculpture> {
+        let Some(Shell { members, cones, stage }) = self.shells.last_mut() else {
+            return Some(self.finished());
+        };
+        match stage {
+            Stage::Contouring(contouring) => {
+                if let Some(surface) = contouring.advance(CELLS_AT_ONCE) {
+                    let neighbours = Neighbours::of(surface.positions.len(), &surface.triangles);
+                    *stage = Stage::Smoothing(surface, neighbours, 0);
+                }
+            }
+            Stage::Smoothing(surface, neighbours, rounds) => {
+                fair(&mut surface.positions, neighbours);
+                *rounds += 1;
+                if *rounds >= FAIRING_ROUNDS {
+                    let first = (surface.owners.iter()).map(|&(shape, share)| joint_at(&self.paths[members[shape]], share) as u16);
+                    let sharing = Sharing::new(first);
+                    *stage = Stage::Sharing(std::mem::take(surface), std::mem::take(neighbours), sharing);
+                }
+            }
+            Stage::Sharing(surface, neighbours, sharing) => {
+                if sharing.advance(neighbours) {
+                    self.done.add(surface, neighbours, sharing, cones, &self.powers);
+                    self.shells.pop();
+                }
+            }
+        }
+        None
+    }
+
+    fn finished(&mut self) -> Sculpture {
+        let mut done = std::mem::take(&mut self.done);
+        done.mesh.bind = bind::joint_from_bind(&self.pose);
+        if done.powers.len() < done.mesh.joints.len() {
+            // Plain capsules: each vertex follows one joint.
+            let power_of = |joints: &[u16; 4]| self.powers.get(usize::from(joints[0])).copied().unwrap_or(1.0);
+            done.powers = done.mesh.joints.iter().map(power_of).collect();
+        }
+        done
+    }
+}
+
+impl Sculpture {
+    /// Adds a finished surface.
+    fn add(&mut self, surface: &Contour, neighbours: &Neighbours, sharing: &Sharing, cones: &[Cone], powers: &[f32]) {
+        let before = self.mesh.positions.len() as u32;
+        let axis_of = |&(shape, share): &(usize, f32)| cones.get(shape).map(|cone| cone.at(share));
+        let mut reach: Vec<Vec3> = (surface.positions.iter().zip(&surface.owners))
+            .map(|(position, owner)| axis_of(owner).map_or(Vec3::ZERO, |axis| *position - axis))
+            .collect();
+        // Where one limb goes over into another the axis changes at once; the skin must not tear there.
+        for _ in 0..REACH_ROUNDS {
+            reach = drawn_together(&reach, neighbours, 0.5);
+        }
+        for (joints, weights) in sharing.shares() {
+            let power = joints
+                .iter()
+                .zip(weights)
+                .map(|(joint, weight)| powers[usize::from(*joint)] * weight);
+            self.powers.push(power.sum());
+            self.mesh.joints.push(joints);
+            self.mesh.weights.push(weights);
+        }
+        self.reach.extend(reach);
+        self.mesh.normals.extend(normals(&surface.positions, &surface.triangles));
+        self.mesh.positions.extend(&surface.positions);
+        let corners = surface.triangles.iter().map(|triangle| triangle.map(|corner| corner + before));
+        self.mesh.triangles.extend(corners);
+    }
+
+    /// The mesh of a body so stout beside an average adult, 0.4 to 2.5 (1 is average, and taken for what is no number): the trunk so many times as
+    /// wide, arms and legs less so, head, hands and feet hardly.
+    #[must_use]
+    pub fn with_girth(&self, girth: f32) -> SkinnedMesh {
+        let girth = if girth.is_nan() { 1.0 } else { girth.clamp(0.4, 2.5) };
+        let mut mesh = self.mesh.clone();
+        if girth == 1.0 {
+            return mesh;
+        }
+        for ((position, reach), power) in mesh.positions.iter_mut().zip(&self.reach).zip(&self.powers) {
+            *position += *reach * (girth.powf(*power) - 1.0);
+        }
+        mesh.normals = normals(&mesh.positions, &mesh.triangles);
+        mesh
+    }
+}
+
+/// The power of the girth that the radii at each joint grow with: a stout body has a stout trunk, but not as much larger a head, hands and feet.
+fn powers(skeleton: &Skeleton, roles: &Roles) -> Vec<f32> {
+    let power = |joint: usize| {
+        let role = roles.role_of(joint)?;
+        let is = |of: fn(Side) -> Role| Side::BOTH.into_iter().any(|side| of(side) == role);
+        Some(match role {
+            Role::Head => 0.15,
+            _ if is(Role::foot) || is(Role::toe) => 0.0,
+            _ if is(Role::hand) => 0.15,
+            _ if is(Role::shin) || is(Role::forearm) => 0.6,
+            _ if is(Role::thigh) || is(Role::upper_arm) => 0.8,
+            _ => 1.0,
+        })
+    };
+    let mut powers: Vec<f32> = Vec::with_capacity(skeleton.len());
+    for joint in 0..skeleton.len() {
+        let above = skeleton.parent(joint).map_or(1.0, |parent| powers[parent]);
+        powers.push(power(joint).unwrap_or(above));
+    }
+    powers
+}
+
+/// The joints along a shape, each from where on (0 at its start to 1 at its end) it moves what lies there.
+fn path(skeleton: &Skeleton, shape: &Shape, placed: &PlacedShape, pose: &WorldPose) -> Vec<(f32, usize)> {
+    let above = |joint: usize| std::iter::successors(Some(joint), |&joint| skeleton.parent(joint));
+    let (start, end) = (shape.a.joint, shape.b.joint);
+    let mut joints: Vec<usize> = above(start).collect();
+    let shared = above(end).find(|joint| joints.contains(joint));
+    joints.truncate(joints.iter().position(|joint| Some(*joint) == shared).map_or(1, |place| place + 1));
+    let mut down: Vec<usize> = above(end).take_while(|joint| Some(*joint) != shared).collect();
+    down.reverse();
+    joints.extend(down);
+    let along = placed.b - placed.a;
+    let mut from = 0.0f32;
+    let steps = joints.into_iter().enumerate().map(|(step, joint)| {
+        if step > 0 {
+            let share = (pose.positions[joint] - placed.a).dot(along) / along.length_squared().max(1e-12);
+            from = from.max(share.clamp(0.0, 1.0));
+        }
+        (from, joint)
+    });
+    steps.collect()
+}
+
+fn joint_at(path: &[(f32, usize)], share: f32) -> usize {
+    // What lies at the very end belongs to the bone that leads there.
+    path.iter()
+        .take_while(|(from, _)| *from <= share && *from < 1.0)
+        .last()
+        .or(path.first())
+        .map_or(0, |(_, joint)| *joint)
+}
+
+/// Whether two shapes lie on one way along the tree: joints of theirs are one, or the one is a little above the other.
+fn are_near(skeleton: &Skeleton, one: &[(f32, usize)], other: &[(f32, usize)]) -> bool {
+    let is_above = |above: usize, below: usize| {
+        std::iter::successors(Some(below), |&joint| skeleton.parent(joint))
+            .take(NEAR_STEPS + 1)
+            .any(|joint| joint == above)
+    };
+    one.iter()
+        .any(|&(_, i)| other.iter().any(|&(_, j)| is_above(i, j) || is_above(j, i)))
+}

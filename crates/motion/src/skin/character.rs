@@ -1,0 +1,269 @@
+//! A character of a file, moved by clips of other skeletons.
+
+use super::{RigidTransform, SkinnedMesh};
+use crate::clip::{Clip, ClipError, stance_for_rest};
+use crate::math::stats;
+use crate::skeleton::{JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Frames of a clip that are looked at for where its ground is.
+const SAMPLES: usize = 48;
+/// So many parts of limbs make a figure that others' clips move.
+const LEAST_LIMBS: usize = 2;
+/// Vertices of the sole that are looked at.
+const SOLE_VERTICES: usize = 32;
+/// The lowest point of a clip's feet lies within this share of the leg's length of the ground where the clip stands on it.
+const NEAR_GROUND: f32 = 0.2;
+/// The share of frames, per cent, in which a foot is lower than what counts as its ground: slips of single frames.
+const GROUND_PERCENTILE: f32 = 5.0;
+
+/// A skeleton with a mesh of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Character {
+    /// The skeleton.
+    pub skeleton: Arc<Skeleton>,
+    /// What its joints are for.
+    pub roles: Roles,
+    /// The mesh, bound to `skeleton`.
+    pub mesh: Arc<SkinnedMesh>,
+}
+
+impl Character {
+    /// Whether it has limbs that clips of other bodies can move: parts of two, such as thigh and shin.
+    #[must_use]
+    pub fn has_limbs(&self) -> bool {
+        self.limbs().count() >= LEAST_LIMBS
+    }
+
+    /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of limbs in common, or one that moves half of its joints
+    /// by their names. A figure that only has its hips carried about stands stiffly where the motion is.
+    #[must_use]
+    pub fn is_moved_by(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> bool {
+        if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
+            return true;
+        }
+        let map = JointMap::between(&self.skeleton, &self.roles, skeleton, roles);
+        let limbs = self.limbs().filter(|joint| map.source_of(*joint).is_some()).count();
+        limbs >= LEAST_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
+    }
+
+    fn limbs(&self) -> impl Iterator<Item = usize> + '_ {
+        let of_side = |side| [Role::thigh(side), Role::shin(side), Role::upper_arm(side), Role::forearm(side)];
+        Side::BOTH
+            .into_iter()
+            .flat_map(of_side)
+            .filter_map(|role| self.roles.get_within(role, self.skeleton.len()))
+    }
+
+    /// Returns how many times as large the character is as a body of another skeleton, as [`Retargeting::scale`] measures it; `None` where the two
+    /// have no joint in common.
+    #[must_use]
+    pub fn size_beside(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<f32> {
+        if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
+            return Some(1.0);
+        }
+        let way = self
+            .is_moved_by(skeleton, roles)
+            .then(|| Retargeting::new(skeleton, roles, &self.skeleton, &self.roles));
+        Some(way??.scale())
+    }
+
+    /// Returns the character with all lengths multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut mesh = SkinnedMesh::clone(&self.mesh);
+        mesh.scale(factor);
+        Self {
+            skeleton: Arc::new(self.skeleton.scaled(factor)),
+            roles: self.roles.clone(),
+            mesh: Arc::new(mesh),
+        }
+    }
+}
+
+/// How the poses of one skeleton move a [`Character`], rest poses considered (see [`Retargeting`]).
+///
+/// ```
+/// use segue_motion::skeleton::{Roles, WorldPose};
+/// use segue_motion::skin::{Character, Drive, SkinnedMesh, linear_blend};
+/// use segue_motion::synth::{Action, Params, humanoid, synthesize};
+/// use std::sync::Arc;
+///
+/// let skeleton = humanoid(1.5)?;
+/// let roles = Roles::detect(&skeleton);
+/// let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
+/// let child = Character { skeleton, roles, mesh };
+///
+/// let walk = synthesize(&Params::new(Action::Walk))?.clip;
+/// let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).expect("two people have joints in common");
+/// let (mut pose, mut transforms, mut positions, mut normals) = (WorldPose::default(), vec![], vec![], vec![]);
+/// drive.pose(&walk.world_pose(30), &mut pose);
+/// child.mesh.joint_transforms(&pose, &mut transforms);
+/// linear_blend(&child.mesh, &transforms, &mut positions, &mut normals);
+/// let lowest = positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+/// assert!(lowest.abs() < 0.03, "the soles are at {lowest} m");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Drive {
+    source: Arc<Skeleton>,
+    target: Arc<Skeleton>,
+    /// `None` where both have the same skeleton.
+    way: Option<Retargeting>,
+    /// What is added to the height of all joints, metres.
+    lift: f32,
+}
+
+impl Drive {
+    /// Prepares the way from the skeleton of `clip` to the character; `None` when it is not moved by it ([`Character::is_moved_by`]). Some frames of the clip are looked at,
+    /// so that the character's soles stand where the clip's feet stand: on the ground. The clip may be any that is like those to come.
+    #[must_use]
+    pub fn new(clip: &Clip, roles: &Roles, character: &Character) -> Option<Self> {
+        let (source, target) = (clip.skeleton(), &character.skeleton);
+        if !character.is_moved_by(source, roles) {
+            return None;
+        }
+        let way = if Arc::ptr_eq(source, target) || source == target {
+            None
+        } else {
+            let stance = stance_for_rest(clip, roles);
+            Some(Retargeting::standing(
+                source,
+                roles,
+                stance.as_ref(),
+                target,
+                &character.roles,
+                None,
+            )?)
+        };
+        let mut drive = Self {
+            source: Arc::clone(source),
+            target: Arc::clone(target),
+            lift: 0.0,
+            way,
+        };
+        drive.lift = drive
+            .way
+            .as_ref()
+            .map_or(0.0, |way| drive.found_lift(clip, roles, character, way.scale()));
+        Some(drive)
+    }
+
+    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` where it drives none.
+    #[must_use]
+    pub fn joint_driven_by(&self, source: usize) -> Option<usize> {
+        match &self.way {
+            None => Some(source),
+            Some(way) => (0..self.target.len()).find(|&joint| way.map().source_of(joint) == Some(source)),
+        }
+    }
+
+    /// The pose of the character for a pose of the clip's skeleton; both in the world.
+    pub fn pose(&self, source: &WorldPose, out: &mut WorldPose) {
+        let Some(way) = &self.way else {
+            out.clone_from(source);
+            return;
+        };
+        let pose = way.pose(&local_pose(&self.source, source));
+        world_pose_into(
+            &self.target,
+            pose.root_translation,
+            &pose.rotations,
+            pose.translations.iter().copied(),
+            out,
+        );
+        for position in &mut out.positions {
+            position.y += self.lift;
+        }
+    }
+
+    /// Returns the motion of the character that a clip moves: a clip of the character's skeleton, frame by frame as [`Drive::pose`] has it.
+    ///
+    /// # Errors
+    /// [`ClipError`] when the clip is not one of the skeleton that the drive was prepared for.
+    pub fn clip(&self, clip: &Clip) -> Result<Clip, ClipError> {
+        let Some(way) = &self.way else { return Ok(clip.clone()) };
+        let poses = (0..clip.frames()).map(|frame| {
+            let pose = way.pose(&clip.pose(frame));
+            Pose {
+                root_translation: pose.root_translation + Vec3::Y * self.lift,
+                ..pose
+            }
+        });
+        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.target), clip.fps(), poses)?.with_provenance(clip.provenance()))
+    }
+
+    /// The transforms that move the character's mesh for a pose of the clip's skeleton: [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
+    pub fn transforms(&self, source: &WorldPose, mesh: &SkinnedMesh, out: &mut Vec<RigidTransform>) {
+        let mut pose = WorldPose::default();
+        self.pose(source, &mut pose);
+        mesh.joint_transforms(&pose, out);
+    }
+
+    fn found_lift(&self, clip: &Clip, roles: &Roles, character: &Character, scale: f32) -> f32 {
+        let sole = Sole::of(character);
+        let feet = |pose: &WorldPose| {
+            let points = Side::BOTH.into_iter().flat_map(|side| roles.foot_points(&self.source, side));
+            let heights = points.filter_map(|(joint, point)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y));
+            heights.min_by(f32::total_cmp)
+        };
+        let (mut from, mut to) = (WorldPose::default(), WorldPose::default());
+        let (mut theirs, mut ours) = (Vec::new(), Vec::new());
+        let step = clip.frames().div_ceil(SAMPLES).max(1);
+        for frame in (0..clip.frames()).step_by(step) {
+            clip.world_pose_into(frame, &mut from);
+            self.pose(&from, &mut to);
+            theirs.extend(feet(&from));
+            ours.extend(sole.height(&to));
+        }
+        let (Some(theirs), Some(ours)) = (
+            stats::percentile(&theirs, GROUND_PERCENTILE),
+            stats::percentile(&ours, GROUND_PERCENTILE),
+        ) else {
+            return 0.0;
+        };
+        let reach = NEAR_GROUND * roles.leg_length(&self.source).unwrap_or(0.0);
+        let ground = if theirs.abs() < reach { 0.0 } else { theirs * scale };
+        let lift = ground - ours;
+        if lift.is_finite() { lift } else { 0.0 }
+    }
+}
+
+/// The lowest vertices of a character's feet, each with the joint that it follows most.
+struct Sole {
+    points: Vec<(usize, Vec3)>,
+}
+
+impl Sole {
+    fn of(character: &Character) -> Self {
+        let mesh = &character.mesh;
+        let roles = &character.roles;
+        let feet: Vec<usize> = (Side::BOTH.into_iter())
+            .flat_map(|side| [roles.get(Role::foot(side)), roles.get(Role::toe(side))])
+            .flatten()
+            .collect();
+        let vertices = mesh.positions.iter().zip(&mesh.joints);
+        let mut points: Vec<(usize, Vec3)> = vertices
+            .filter_map(|(&position, joints)| {
+                let joint = usize::from(*joints.first()?);
+                let in_joint = mesh.bind.get(joint)?.point(position);
+                feet.contains(&joint).then_some((joint, in_joint))
+            })
+            .collect();
+        // Joints rest without rotation, so down is down in all of their frames; the lowest at rest, over all of the foot.
+        let rest = character.skeleton.rest_positions();
+        points.sort_by(|x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
+        // Every so often one, over the lower half: heel, ball and tips.
+        points.truncate(points.len() / 2);
+        let step = points.len().div_ceil(SOLE_VERTICES).max(1);
+        Self {
+            points: points.into_iter().step_by(step).collect(),
+        }
+    }
+
+    fn height(&self, pose: &WorldPose) -> Option<f32> {
+        let height = |&(joint, point): &(usize, Vec3)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y);
+        self.points.iter().filter_map(height).min_by(f32::total_cmp)
+    }
+}

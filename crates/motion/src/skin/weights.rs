@@ -1,0 +1,159 @@
+//! Which joints move a vertex: each vertex begins with the one whose bone it lies on, and neighbours share.
+
+use glam::Vec3;
+
+/// How often neighbours share: joints reach about three vertices to each side, and vertices are as near to each other as the limb is thin.
+const ROUNDS: usize = 10;
+/// Joints that a vertex keeps while it shares.
+const KEPT: usize = 6;
+
+/// The neighbours of each vertex along the edges of triangles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Neighbours {
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+impl Neighbours {
+    pub(super) fn of(vertices: usize, triangles: &[[u32; 3]]) -> Self {
+        let mut starts = vec![0u32; vertices + 1];
+        for triangle in triangles {
+            for &corner in triangle {
+                starts[corner as usize + 1] += 1;
+            }
+        }
+        for vertex in 0..vertices {
+            starts[vertex + 1] += starts[vertex];
+        }
+        // On a closed surface every edge is in one triangle in each direction: each gives its corner the next one.
+        let mut free = starts.clone();
+        let mut neighbours = vec![0u32; triangles.len() * 3];
+        for &[a, b, c] in triangles {
+            for (corner, next) in [(a, b), (b, c), (c, a)] {
+                neighbours[free[corner as usize] as usize] = next;
+                free[corner as usize] += 1;
+            }
+        }
+        Self { starts, neighbours }
+    }
+
+    pub(super) fn of_vertex(&self, vertex: usize) -> &[u32] {
+        &self.neighbours[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    }
+}
+
+/// Weights of joints, the greatest first; unused places have weight 0.
+type Shares = [(u16, f32); KEPT];
+
+/// The joints and weights of each vertex, from the joint that it begins with; round by round.
+#[derive(Clone, Debug)]
+pub(super) struct Sharing {
+    now: Vec<Shares>,
+    next: Vec<Shares>,
+    rounds: usize,
+}
+
+impl Sharing {
+    pub(super) fn new(first: impl Iterator<Item = u16>) -> Self {
+        let now: Vec<Shares> = first
+            .map(|joint| std::array::from_fn(|i| (joint, f32::from(u8::from(i == 0)))))
+            .collect();
+        Self {
+            next: now.clone(),
+            now,
+            rounds: 0,
+        }
+    }
+
+    /// One more round; `true` when none is left.
+    pub(super) fn advance(&mut self, neighbours: &Neighbours) -> bool {
+        let now = &self.now;
+        let mut sum: Vec<(u16, f32)> = Vec::new();
+        for (vertex, out) in self.next.iter_mut().enumerate() {
+            let around = neighbours.of_vertex(vertex);
+            let own = now[vertex];
+            // Far from every joint there is nothing to share.
+            if own[0].1 == 1.0 && around.iter().all(|&other| now[other as usize][0] == own[0]) {
+                *out = own;
+                continue;
+            }
+            sum.clear();
+            let mut add = |shares: &Shares, factor: f32| {
+                for &(joint, weight) in shares.iter().take_while(|(_, weight)| *weight > 0.0) {
+                    match sum.iter_mut().find(|(known, _)| *known == joint) {
+                        Some((_, known)) => *known += weight * factor,
+                        None => sum.push((joint, weight * factor)),
+                    }
+                }
+            };
+            add(&own, 0.5);
+            for &other in around {
+                add(&now[other as usize], 0.5 / around.len() as f32);
+            }
+            *out = greatest(&mut sum);
+        }
+        std::mem::swap(&mut self.now, &mut self.next);
+        self.rounds += 1;
+        self.rounds >= ROUNDS
+    }
+
+    /// The four greatest of each vertex.
+    pub(super) fn shares(&self) -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
+        self.now.iter().map(|shares| {
+            let joints = std::array::from_fn(|i| shares[i].0);
+            let total: f32 = shares[..4].iter().map(|(_, weight)| weight).sum();
+            (joints, std::array::from_fn(|i| shares[i].1 / total))
+        })
+    }
+}
+
+/// The greatest weights, scaled to the sum 1.
+fn greatest(sum: &mut [(u16, f32)]) -> Shares {
+    sum.sort_unstable_by(|(joint, weight), (other, than)| than.total_cmp(weight).then(joint.cmp(other)));
+    let kept = &sum[..sum.len().min(KEPT)];
+    let total: f32 = kept.iter().map(|(_, weight)| weight).sum();
+    let spare = kept.first().map_or(0, |(joint, _)| *joint);
+    std::array::from_fn(|i| kept.get(i).map_or((spare, 0.0), |&(joint, weight)| (joint, weight / total)))
+}
+
+/// Smooths a surface without shrinking it (Taubin, "A Signal Processing Approach to Fair Surface Design", 1995): a step towards the neighbours' mean and
+/// a longer one back.
+pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours) {
+    for step in [0.5, -0.53] {
+        *positions = drawn_together(positions, neighbours, step);
+    }
+}
+
+/// Each value, by this share on the way to the mean of its neighbours'.
+pub(super) fn drawn_together(values: &[Vec3], neighbours: &Neighbours, share: f32) -> Vec<Vec3> {
+    let drawn = values.iter().enumerate().map(|(vertex, &own)| {
+        let around = neighbours.of_vertex(vertex);
+        if around.is_empty() {
+            return own;
+        }
+        let mean = around.iter().map(|&other| values[other as usize]).sum::<Vec3>() / around.len() as f32;
+        own + (mean - own) * share
+    });
+    drawn.collect()
+}
+
+/// Returns the unit normal of each vertex: the mean of the normals of its triangles, weighted by area.
+///
+/// # Panics
+///
+/// Panics if a triangle names a vertex that `positions` does not have.
+#[must_use]
+pub fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; positions.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        for &corner in triangle {
+            normals[corner as usize] += normal;
+        }
+    }
+    for normal in &mut normals {
+        *normal = normal.normalize_or(Vec3::Y);
+    }
+    normals
+}

@@ -1,0 +1,118 @@
+use super::document::NoResult;
+use super::lesson::Source;
+use super::outside::short;
+use super::params::{Key, Value, ValueError};
+use super::reading::ReadTask;
+use super::recipe::Slot;
+use super::samples::{Sample, SampleSet};
+use segue_formats::{ImportError, ImportOptions};
+use segue_motion::matching::Control;
+use segue_motion::skeleton::Role;
+
+/// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all end here.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Sets parameters, all or none.
+    Set(Vec<(Key, Value)>),
+    /// Brings one parameter back to its default.
+    Reset(Key),
+    /// Ends a gesture: what a slider did since it was taken is one step for undo.
+    Settle,
+    /// Takes over what a query string says; what it does not name goes back to its default.
+    OpenLink(String),
+    /// Puts a clip into a slot.
+    Assign(Slot, String),
+    /// Loads all takes of a bundled set into the library.
+    LoadSamples(&'static SampleSet),
+    /// Takes a clip out of the library.
+    Remove(String),
+    /// Gives a clip another name.
+    Rename(String, String),
+    /// Says by hand which joint of a clip has a role.
+    CorrectRole(String, Role, Option<usize>),
+    /// Reads a clip's file again with other options.
+    Reimport(String, ImportOptions),
+    /// Puts the result of a pane, counted from 0, into the library.
+    Keep(usize),
+    /// Changes who plays along in the Path lab.
+    Company(CompanyChange),
+    /// What the character of the Match lab is asked for from now on.
+    Steer(Control),
+    /// The character of the Match lab stands at the origin again, and nothing of what it was asked for is remembered.
+    RestartDrive,
+    /// Plays what the character was asked for again: it becomes the parameter `drive`.
+    ReplayDrive,
+    /// Moves the playhead, seconds.
+    Seek(f64),
+    /// Moves the playhead by whole frames and pauses.
+    Step(i64),
+    /// Plays or pauses.
+    TogglePlay,
+    /// Opens several values of a parameter side by side: of a number the full, half and a third, of a choice those there are.
+    Compare(Key),
+    /// Lays a link of the open lesson over the state of its page; an empty one is the page's own state.
+    Try(String),
+    /// Takes the last step back.
+    Undo,
+    /// Does it again.
+    Redo,
+    /// Takes a message away.
+    Dismiss(u64),
+    /// Gives up making the graph and the walk that are under way, or goes on with them.
+    StopGraph(bool),
+    /// Gives up reading a file, by the number of its task.
+    StopReading(u64),
+}
+
+/// Who plays along on the stage of the Path lab: by their place in the list, counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CompanyChange {
+    /// A clip of the library joins.
+    Join(String),
+    /// The result of a pane joins, and is kept in the library; another path can be made then.
+    JoinResult(usize),
+    /// Changes places with what is being edited.
+    Edit(usize),
+    /// Leaves the stage; in the library it stays.
+    Leave(usize),
+}
+
+/// Why a command could not be carried out. Nothing is changed then.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CommandError {
+    /// A value that does not fit.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// A file that cannot be read.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// A clip that is not there.
+    #[error("there is no clip `{}` in the library", short(.0))]
+    NoClip(String),
+    /// A pane without a result to keep.
+    #[error(transparent)]
+    NoResult(#[from] NoResult),
+    /// Not possible with this clip.
+    #[error("{0}")]
+    NotPossible(&'static str),
+}
+
+/// What the document needs from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to [`super::Session::fail_sample`] why there are none.
+    Sample(&'static Sample),
+    /// A file at an address; hand its bytes to [`super::Session::load_fetched`].
+    Fetch(String),
+    /// The text of a lesson; hand its bytes to [`super::Session::finish_lesson`].
+    Lesson(Source),
+    /// A file that is not to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
+    Read(ReadTask),
+    /// Nobody waits for a task any longer.
+    StopReading {
+        /// The task's number.
+        task: u64,
+        /// The key of a file outside that nobody else needs.
+        forget: Option<String>,
+    },
+}

@@ -1,0 +1,276 @@
+//! Bundled takes, alone and as a set: asked for, come, failed, taken back, stored.
+
+use super::tests::settle;
+use super::*;
+use crate::clip_sets::ClipSet;
+use crate::samples::{Sample, SampleSet};
+
+fn set() -> &'static SampleSet {
+    &Session::sample_sets()[0]
+}
+
+fn ids() -> Vec<&'static str> {
+    set().samples.iter().map(|sample| sample.id).collect()
+}
+
+fn packed(sample: &Sample) -> Vec<u8> {
+    std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap()
+}
+
+/// The takes that are asked for.
+fn asked(session: &mut Session) -> Vec<&'static Sample> {
+    let requests = session.take_requests().into_iter();
+    let sample = |request| {
+        if let Request::Sample(sample) = request {
+            Some(sample)
+        } else {
+            None
+        }
+    };
+    requests.filter_map(sample).collect()
+}
+
+/// Hands over all takes that are asked for, and does all work.
+fn serve(session: &mut Session) {
+    loop {
+        settle(session);
+        let asked = asked(session);
+        if asked.is_empty() {
+            return;
+        }
+        for sample in asked {
+            session.load_sample(sample, &packed(sample)).unwrap();
+        }
+    }
+}
+
+/// The takes of the set that the library has, and how many of them can be played.
+fn here(session: &Session) -> (usize, usize) {
+    let entries = ids().into_iter().filter_map(|id| session.library().get(id)).collect::<Vec<_>>();
+    (entries.len(), entries.iter().filter(|entry| entry.motion.is_some()).count())
+}
+
+fn load() -> Command {
+    Command::LoadSamples(set())
+}
+
+#[test]
+fn a_set_is_loaded_with_one_command_and_taken_back_with_one() {
+    let mut session = Session::new();
+    let all = set().samples.len();
+    assert_eq!(here(&session), (0, 0), "nobody asked for it");
+    session.apply(load()).unwrap();
+    assert_eq!((session.samples_progress(), here(&session)), (Some((0, all)), (all, 0)));
+    let wanted = asked(&mut session);
+    assert_eq!(wanted.iter().map(|sample| sample.id).collect::<Vec<_>>(), ids());
+    for (come, sample) in wanted.into_iter().enumerate() {
+        assert_eq!(session.samples_progress(), Some((come, all)));
+        session.load_sample(sample, &packed(sample)).unwrap();
+    }
+    settle(&mut session);
+    assert_eq!((session.samples_progress(), here(&session)), (None, (all, all)));
+    assert_eq!(
+        [Key::A, Key::B].map(|key| session.params().text(key).to_owned()),
+        ["cmu16_walk", "cmu16_run"]
+    );
+    assert!(session.notices().list().is_empty() && session.panes()[0].problem.is_none());
+
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(here(&session), (0, 0));
+    assert_eq!([Key::A, Key::B].map(|key| session.params().text(key).to_owned()), ["walk", "run"]);
+    session.apply(Command::Redo).unwrap();
+    assert_eq!(here(&session), (all, all), "they are not fetched again");
+    assert_eq!(asked(&mut session).len(), 0);
+    session.apply(load()).unwrap();
+    assert_eq!(session.notices().list().len(), 1, "it is there already, and that is said");
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(here(&session), (0, 0), "what changed nothing is no step");
+}
+
+#[test]
+fn a_set_that_is_taken_back_while_it_loads_stays_away_and_comes_when_it_is_asked_for_again() {
+    let mut session = Session::new();
+    session.apply(load()).unwrap();
+    let wanted = asked(&mut session);
+    session.apply(Command::Undo).unwrap();
+    for &sample in &wanted[1..] {
+        session.load_sample(sample, &packed(sample)).unwrap();
+    }
+    assert_eq!(here(&session), (0, 0));
+    session.apply(Command::Redo).unwrap();
+    serve(&mut session);
+    // The first is still under way from the first time.
+    session.load_sample(wanted[0], &packed(wanted[0])).unwrap();
+    let all = set().samples.len();
+    assert_eq!((here(&session), session.samples_progress()), ((all, all), None));
+}
+
+#[test]
+fn in_view_the_first_of_a_set_is_looked_at_and_own_clips_keep_their_places() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=view".into())).unwrap();
+    session.apply(load()).unwrap();
+    assert_eq!(session.params().text(Key::A), "cmu16_walk");
+    let mut session = Session::new();
+    let own = session.load("x.bvh", super::tests::made_bvh(1.0)).unwrap().ids.remove(0);
+    session.apply(load()).unwrap();
+    assert_eq!(
+        [Key::A, Key::B].map(|key| session.params().text(key).to_owned()),
+        [own.as_str(), "cmu16_walk"]
+    );
+}
+
+#[test]
+fn a_link_that_names_a_take_loads_that_one_alone() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=loop&a=cmu16_walk".into())).unwrap();
+    let wanted: Vec<_> = asked(&mut session).iter().map(|sample| sample.id).collect();
+    assert_eq!(wanted, ["cmu16_walk"]);
+    for (link, count) in [
+        ("lab=view&compare=a:walk,cmu16_stop", 1),
+        ("lab=register&a=walk&b=run&warp_also=0.5:cmu16_fast_walk", 1),
+        ("lab=graph&clips=walk,cmu16_walk,cmu16_stop", 2),
+        ("lab=match&scenario=straight&match_clips=cmu16_walk,cmu16_run,cmu16_stop", 3),
+        ("lab=path&a=walk&others=cmu16_walk", 1),
+        ("lab=view&a=loop(a:cmu16_walk)", 1),
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        settle(&mut session);
+        let wanted = asked(&mut session);
+        assert_eq!(wanted.len(), count, "{link}: all at once, and no more than that");
+        for sample in wanted {
+            session.load_sample(sample, &packed(sample)).unwrap();
+        }
+        serve(&mut session);
+        assert_eq!(session.panes()[0].problem, None, "{link}");
+        assert!(session.panes()[0].outcome.is_some(), "{link}");
+    }
+}
+
+#[test]
+fn a_take_that_does_not_come_says_why_and_is_asked_for_by_the_next_command() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=loop&a=cmu16_walk".into())).unwrap();
+    let sample = asked(&mut session)[0];
+    session.fail_sample(sample, "its server answered 404");
+    assert_eq!(asked(&mut session).len(), 0, "not over and over");
+    let said = "CMU 16 · walk could not be loaded: its server answered 404.";
+    assert_eq!(session.panes()[0].problem.as_deref(), Some(said));
+    assert_eq!(session.notices().list()[0].text, said);
+    assert_eq!(session.samples_progress(), None);
+    session.apply(Command::Set(vec![(Key::LoopRatio, Value::Number(0.25))])).unwrap();
+    assert_eq!(asked(&mut session), [sample]);
+    assert!(
+        session.panes()[0]
+            .problem
+            .as_deref()
+            .is_some_and(|problem| problem.contains("is being loaded"))
+    );
+    session.load_sample(sample, b"no file").unwrap_err();
+    assert!(
+        session.panes()[0]
+            .problem
+            .as_deref()
+            .is_some_and(|problem| problem.contains("could not be loaded"))
+    );
+    session.apply(Command::Set(vec![(Key::LoopRatio, Value::Number(0.5))])).unwrap();
+    serve(&mut session);
+    assert_eq!(session.panes()[0].problem, None);
+}
+
+#[test]
+fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
+    let mut session = Session::new();
+    session.apply(load()).unwrap();
+    serve(&mut session);
+    session.apply(Command::Remove("cmu16_stop".into())).unwrap();
+    let saved = session.saved();
+    let all = set().samples.len();
+    for late in [false, true] {
+        let mut restored = Session::new();
+        if late {
+            restored.restore_late(&saved, |_| None);
+        } else {
+            restored.restore(&saved, |_| None, None);
+        }
+        serve(&mut restored);
+        assert_eq!(here(&restored), (all - 1, all - 1), "late: {late}");
+        assert!(restored.library().get("cmu_climb").is_none());
+    }
+    // What was loaded before the stored work came is not taken for something that was removed on an earlier visit.
+    let mut waiting = Session::new();
+    waiting.apply(load()).unwrap();
+    waiting.restore_late(&Session::new().saved(), |_| None);
+    serve(&mut waiting);
+    assert_eq!(here(&waiting), (all, all));
+    // Earlier versions stored every take there was, asked for or not.
+    let mut text = serde_json::to_value(&saved).unwrap();
+    for entry in text["entries"].as_array_mut().unwrap() {
+        entry.as_object_mut().unwrap().remove("is_sample");
+    }
+    let mut restored = Session::new();
+    restored.restore(&serde_json::from_value(text).unwrap(), |_| None, Some("lab=view&a=cmu16_turn_left"));
+    serve(&mut restored);
+    assert_eq!(here(&restored), (1, 1));
+}
+
+#[test]
+fn every_lab_with_a_set_of_clips_changes_it_in_one_step() {
+    for lab in ["speed", "loop", "register", "path", "graph", "match"] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("lab={lab}&scenario=straight"))).unwrap();
+        settle(&mut session);
+        let before = session.query();
+        assert!(
+            session.uses_clip_set(ClipSet::Made) && !session.uses_clip_set(ClipSet::Captured),
+            "{lab}"
+        );
+        assert_eq!(session.clip_set(ClipSet::Own), None, "{lab}: there are none");
+        session.apply(Command::Set(session.clip_set(ClipSet::Captured).unwrap())).unwrap();
+        serve(&mut session);
+        assert!(
+            session.uses_clip_set(ClipSet::Captured) && !session.uses_clip_set(ClipSet::Made),
+            "{lab}"
+        );
+        assert_eq!(session.panes()[0].problem, None, "{lab}");
+        assert!(session.panes()[0].outcome.is_some(), "{lab}");
+        session.apply(Command::Settle).unwrap();
+        session.apply(Command::Set(session.clip_set(ClipSet::Made).unwrap())).unwrap();
+        assert_eq!(session.query(), before, "{lab}");
+        session.apply(Command::Undo).unwrap();
+        assert!(session.uses_clip_set(ClipSet::Captured), "{lab}");
+    }
+    for lab in ["view", "make", "blend", "transition", "layers"] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("lab={lab}"))).unwrap();
+        assert_eq!(session.clip_set(ClipSet::Captured), None, "{lab}");
+    }
+}
+
+#[test]
+fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
+    for (lab, key) in [("graph", Key::Clips), ("match", Key::MatchClips)] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("lab={lab}&scenario=straight"))).unwrap();
+        let own: Vec<String> = [1.0, 2.0]
+            .map(|seed| {
+                session
+                    .load(&format!("own {seed}.bvh"), super::tests::made_bvh(seed))
+                    .unwrap()
+                    .ids
+                    .remove(0)
+            })
+            .into();
+        session.apply(load()).unwrap();
+        serve(&mut session);
+        let values = session.clip_set(ClipSet::Own).unwrap();
+        assert_eq!(
+            values[0],
+            (key, Value::Text(crate::write_ids(&own))),
+            "{lab}: no bundled take among them"
+        );
+        session.apply(Command::Set(values)).unwrap();
+        assert!(session.uses_clip_set(ClipSet::Own), "{lab}");
+    }
+}

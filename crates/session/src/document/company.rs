@@ -1,0 +1,139 @@
+//! Who plays along on the stage of the Path lab: clips of the library, most of them motions on paths of their own.
+
+use super::Session;
+use crate::command::{CommandError, CompanyChange};
+use crate::library::{Entry, Origin, split_reference};
+use crate::motion::Motion;
+use crate::params::{Key, Params, Value};
+use crate::recipe::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
+use std::sync::Arc;
+
+/// As many as a stage and an eye have room for.
+const MOST: usize = 6;
+
+/// One who plays along.
+#[derive(Clone, Debug)]
+pub struct Companion {
+    /// The id of the clip, as the link has it.
+    pub id: String,
+    /// What a person calls it.
+    pub name: String,
+    /// What it does, or why that is not to be seen.
+    pub motion: Result<Arc<Motion>, String>,
+}
+
+impl Companion {
+    /// How long it moves, seconds; `None` where nothing is to be seen.
+    #[must_use]
+    pub fn duration_secs(&self) -> Option<f64> {
+        self.motion.as_ref().ok().map(|motion| motion.clip.duration_secs())
+    }
+}
+
+impl Session {
+    /// Who plays along, in the order of the list; nobody in other labs.
+    #[must_use]
+    pub fn company(&self) -> &[Companion] {
+        &self.company
+    }
+
+    pub(super) fn company_ids(&self) -> Vec<String> {
+        read_ids(self.params.text(Key::Others)).unwrap_or_default()
+    }
+
+    /// Finds or makes everybody in the list.
+    pub(super) fn refresh_company(&mut self) {
+        self.company.clear();
+        if self.params.text(Key::Lab) != "path" {
+            return;
+        }
+        for id in self.company_ids().into_iter().take(MOST) {
+            self.bring(&id);
+            let motion = self.motion_of(&id);
+            let entry = self.library.find(&id);
+            let name = entry.map_or_else(|| split_reference(&id).0.to_owned(), |entry| entry.name.clone());
+            self.company.push(Companion { id, name, motion });
+        }
+    }
+
+    /// One step of undo, whatever the change.
+    pub(super) fn change_company(&mut self, change: CompanyChange) -> Result<(), CommandError> {
+        let mut ids = self.company_ids();
+        let nobody = CommandError::NotPossible("nobody is in this place of the list");
+        let mut params = self.params.clone();
+        match change {
+            CompanyChange::Join(_) | CompanyChange::JoinResult(_) if ids.len() >= MOST => {
+                return Err(CommandError::NotPossible("the stage is full: six play along already"));
+            }
+            CompanyChange::Join(id) => {
+                let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
+                self.remember(None);
+                ids.push(id);
+            }
+            CompanyChange::JoinResult(pane) => {
+                let made = self.made_by(pane)?;
+                self.remember(None);
+                ids.push(self.put_made(made));
+            }
+            CompanyChange::Edit(place) => {
+                let id = ids.get(place).cloned().ok_or(nobody)?;
+                let made = self.made_by(0)?;
+                take_up(&mut params, &id)?;
+                self.remember(None);
+                ids[place] = self.put_made(made);
+            }
+            CompanyChange::Leave(place) => {
+                if place >= ids.len() {
+                    return Err(nobody);
+                }
+                self.remember(None);
+                ids.remove(place);
+            }
+        }
+        params.set(Key::Others, Value::Text(write_ids(&ids)))?;
+        self.params = params;
+        Ok(())
+    }
+
+    /// Takes a clip off the stage that is no longer in the library.
+    pub(super) fn leave_company(&mut self, id: &str) {
+        let mut ids = self.company_ids();
+        ids.retain(|other| other != id);
+        self.set_unchecked(Key::Others, Value::Text(write_ids(&ids)));
+    }
+
+    /// The result of a pane, as an entry of the library.
+    fn made_by(&self, pane: usize) -> Result<Entry, CommandError> {
+        let made = self.pane(pane)?.recipe()?;
+        let id =
+            recipe_id(made.params, made.outcome, [1.0; 2]).ok_or(CommandError::NotPossible("there is no result to put on the stage"))?;
+        Ok(Entry {
+            motion: (!made.outcome.awaits_feet()).then(|| Arc::clone(&made.outcome.motion)),
+            ..Entry::new(id, recipe_name(made.params), Origin::Made)
+        })
+    }
+
+    /// Puts it into the library, if it is not there; its id.
+    fn put_made(&mut self, made: Entry) -> String {
+        let id = made.id.clone();
+        if self.library.find(&id).is_none() {
+            self.library.put(made);
+            self.library_revision += 1;
+        }
+        id
+    }
+}
+
+/// Sets everything that a clip on a path is made from; any other clip goes on the path that is fitted to it.
+fn take_up(params: &mut Params, id: &str) -> Result<(), CommandError> {
+    let made = recipe_params(id).filter(|made| made.text(Key::Lab) == "path");
+    for key in recipe_ingredients("path") {
+        let value = match (&made, key) {
+            (Some(made), _) => made.get(key).clone(),
+            (None, Key::A) => Value::Text(id.to_owned()),
+            (None, _) => key.param().default_value(),
+        };
+        params.set(key, value)?;
+    }
+    Ok(())
+}

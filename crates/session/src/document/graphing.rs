@@ -1,0 +1,85 @@
+//! What panels and pictures ask about the Graph lab.
+
+use super::Session;
+use crate::params::Key;
+use crate::recipe::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
+use glam::DVec2;
+use std::sync::Arc;
+
+impl Session {
+    fn is_graph_lab(&self) -> bool {
+        self.params.text(Key::Lab) == "graph"
+    }
+
+    /// The ids of the clips that the graph is made of; none where the list cannot be read.
+    #[must_use]
+    pub fn graph_clip_ids(&self) -> Vec<String> {
+        clips_of(self.params.text(Key::Clips)).unwrap_or_default()
+    }
+
+    /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are made ready.
+    #[must_use]
+    pub fn graph_cast(&self) -> Option<&Arc<Cast>> {
+        self.grapher.cast().filter(|_| self.is_graph_lab())
+    }
+
+    /// The distances that the Graph lab looks at: those of the first pane's window, or the last ones while these are made.
+    #[must_use]
+    pub fn graph_field(&self) -> Option<&Arc<Field>> {
+        self.grapher.field().filter(|_| self.is_graph_lab())
+    }
+
+    /// The graph of the first pane: the one that is asked for where it is made, else the one that is walked in.
+    #[must_use]
+    pub fn graph_built(&self) -> Option<&Arc<Built>> {
+        let walked = || self.graph_walk().map(|walk| &walk.built);
+        self.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
+    }
+
+    /// The walk of the first pane.
+    #[must_use]
+    pub fn graph_walk(&self) -> Option<&Arc<Walk>> {
+        self.main_outcome()?.walk.as_ref().filter(|_| self.is_graph_lab())
+    }
+
+    /// How long it took to make a graph, seconds, as far as [`Session::work_took`] was told.
+    #[must_use]
+    pub fn graph_build_secs(&self, built: &Built) -> Option<f64> {
+        self.grapher.build_secs(built)
+    }
+
+    /// How long the last call of [`Session::work`] took, seconds: there is no clock here.
+    pub fn work_took(&mut self, secs: f64) {
+        self.grapher.took(secs);
+    }
+
+    /// Whether making the graph was given up.
+    #[must_use]
+    pub fn graph_is_stopped(&self) -> bool {
+        self.is_graph_lab() && self.grapher.is_stopped()
+    }
+
+    /// When the walk sets off for which clip: seconds, and the clip's index.
+    #[must_use]
+    pub fn graph_visits(&self) -> Vec<(f64, usize)> {
+        read_visits(self.params.text(Key::GoTo)).unwrap_or_default()
+    }
+
+    /// The line that the walk follows, (x, z) in metres.
+    #[must_use]
+    pub fn graph_path(&self) -> Vec<DVec2> {
+        read_path(self.params.text(Key::WalkPath)).unwrap_or_default()
+    }
+
+    /// Takes a clip out of the graph's list.
+    pub(super) fn leave_out_of_graph(&mut self, id: &str) {
+        let mut ids = self.graph_clip_ids();
+        let before = ids.len();
+        ids.retain(|known| known != id);
+        if !ids.is_empty() && ids.len() < before {
+            for (key, value) in graph_of(&ids) {
+                self.set_unchecked(key, value);
+            }
+        }
+    }
+}

@@ -1,0 +1,705 @@
+//! The Graph lab, by commands.
+
+use super::*;
+use crate::{Walk, write_jump, write_path};
+use glam::DVec2;
+use segue_motion::graph::Place;
+
+fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    session
+}
+
+/// A graph that is made in a moment.
+const SMALL: &str = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20";
+
+fn set(session: &mut Session, key: Key, value: Value) {
+    session.apply(Command::Set(vec![(key, value)])).unwrap();
+    while session.work() {}
+}
+
+fn walk(session: &Session) -> &Arc<Walk> {
+    walk_of(session, 0)
+}
+
+fn walk_of(session: &Session, pane: usize) -> &Arc<Walk> {
+    let pane = &session.panes()[pane];
+    assert_eq!(pane.problem, None);
+    pane.outcome.as_ref().unwrap().walk.as_ref().unwrap()
+}
+
+fn number(session: &Session, pane: usize, id: &str) -> f64 {
+    let outcome = session.panes()[pane].outcome.as_ref().unwrap();
+    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
+    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+}
+
+/// Clips, in the order in which they play, with the frame at which each is entered.
+fn way(walk: &Walk) -> Vec<(usize, usize)> {
+    walk.passed.iter().map(|passed| (passed.stay.clip, passed.stay.from)).collect()
+}
+
+#[test]
+fn the_result_of_another_lab_does_not_stand_in_for_a_walk() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(SMALL.into())).unwrap();
+    assert!(session.panes()[0].outcome.is_none());
+    while session.work() {}
+    let first = walk(&session).clone();
+    // A walk stays until there is a newer one.
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(12.0))])).unwrap();
+    assert!(Arc::ptr_eq(walk(&session), &first));
+}
+
+#[test]
+fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
+    let session = opened("lab=graph");
+    let walk = walk(&session);
+    assert_eq!(walk.motion.clip.frames(), 3600);
+    assert_eq!(walk.motion.ground_frames.len(), 3600);
+    assert_eq!((number(&session, 0, "spins"), number(&session, 0, "flashes")), (0.0, 0.0));
+    assert!(number(&session, 0, "seams_per_min") > 10.0 && number(&session, 0, "variety") > 30.0);
+    let slide = number(&session, 0, "foot_slide_cm");
+    assert!(slide < 15.0, "{slide}");
+    assert!(walk.built.rings()[0] > 0.6, "one large component: {:?}", walk.built.rings());
+    assert!(walk.run_secs.unwrap() > 0.5);
+    // What it shows is what it is made of.
+    for secs in [0.0, 3.3, 17.0, 59.0] {
+        let at = walk.at(secs).unwrap();
+        let frame = (secs * 60.0).round() as usize;
+        let passed = walk.passed[at.stay];
+        assert!((passed.start..passed.end).contains(&frame) && passed.stay.clip == at.place.clip);
+        assert_eq!(at.place.frame, passed.stay.from + frame - passed.start);
+    }
+    // Behind a transition and before the next, the walk is the clip, laid somewhere else.
+    let calm = walk
+        .passed
+        .iter()
+        .find(|passed| passed.end > passed.start + 60 && passed.seam.is_some())
+        .unwrap();
+    let clip = &walk.built.cast().motions()[calm.stay.clip].clip;
+    let (frame, place) = (calm.start + 45, calm.stay.from + 45);
+    for joint in 1..clip.skeleton().len() {
+        let turned = walk.motion.clip.rotations(frame)[joint].angle_between(clip.rotations(place)[joint]);
+        assert!(turned < 1e-3, "joint {joint}: {turned}");
+    }
+}
+
+#[test]
+fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
+    let mut session = opened(SMALL);
+    let first = Arc::clone(walk(&session));
+    assert_eq!(way(&first), way(walk(&opened(SMALL))));
+    assert_ne!(way(&first), way(walk(&opened(&format!("{SMALL}&seed=8")))));
+    assert!(!session.work() && session.jobs().is_empty());
+    let numbers: Vec<f64> = ["spins", "lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec();
+    for _ in 0..20 * 30 {
+        assert!(session.tick(1.0 / 20.0));
+        while session.work() {}
+        assert!(session.jobs().is_empty(), "that it gets longer is nothing to wait for");
+    }
+    let now = walk(&session);
+    assert!(
+        (session.now_secs() - 30.0).abs() < 0.1,
+        "it never came round: {}",
+        session.now_secs()
+    );
+    assert!(now.motion.clip.duration_secs() > 49.0 && now.motion.clip.frames() > first.motion.clip.frames());
+    assert_eq!(way(now)[..way(&first).len() - 1], way(&first)[..way(&first).len() - 1]);
+    let frames = first.motion.clip.frames();
+    assert_eq!(now.motion.ground_frames[..frames], first.motion.ground_frames[..frames]);
+    assert_eq!(["spins", "lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec(), numbers);
+    // A link to a time beyond what is measured shows that time.
+    let later = opened(&format!("{SMALL}&play=off&t=61"));
+    assert!(later.now_secs() == 61.0 && walk(&later).motion.clip.duration_secs() > 80.0);
+}
+
+#[test]
+fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
+    let mut session = opened("lab=graph&walk_seconds=20");
+    let slices = |session: &mut Session, key: Key, value: f64| {
+        session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
+        let before = Arc::clone(walk(session));
+        let (mut count, mut progress) = (0, -1.0);
+        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") {
+            assert!(job.progress >= progress && job.progress <= 1.0, "{} after {progress}", job.progress);
+            assert!(Arc::ptr_eq(&before, walk(session)));
+            progress = job.progress;
+            assert!(session.work());
+            count += 1;
+        }
+        while session.work() {}
+        assert!(!Arc::ptr_eq(&before, walk(session)));
+        count
+    };
+    let for_seed = slices(&mut session, Key::Seed, 8.0);
+    let for_threshold = slices(&mut session, Key::EdgeThreshold, 9.0);
+    let for_window = slices(&mut session, Key::BlendWindow, 25.0);
+    assert!(
+        for_seed > 5 && for_threshold > for_seed / 2 && for_window > 5,
+        "{for_seed} {for_threshold} {for_window}"
+    );
+    // A window that was there before is there at once, but for the walk.
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
+    assert_eq!(session.graph_field().unwrap().window(), 30);
+    assert!(session.graph_built().is_some());
+    while session.work() {}
+
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(40.0))])).unwrap();
+    session.work();
+    session.apply(Command::StopGraph(true)).unwrap();
+    assert!(!session.work() && session.jobs().is_empty() && session.graph_is_stopped());
+    assert!(session.panes()[0].problem.as_ref().unwrap().contains("Stopped"));
+    assert!(session.panes()[0].outcome.is_none(), "a walk in another graph is not this one");
+    session.apply(Command::StopGraph(false)).unwrap();
+    while session.work() {}
+    assert_eq!(walk(&session).built.options().blend_window, 40);
+    session.apply(Command::StopGraph(true)).unwrap();
+    set(&mut session, Key::BlendWindow, Value::Number(12.0));
+    assert_eq!(walk(&session).built.options().blend_window, 12, "a change goes on");
+    // A lab that is left is not worked for.
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(33.0))])).unwrap();
+    session.apply(Command::Set(vec![(Key::Lab, Value::Choice("view"))])).unwrap();
+    assert!(session.jobs().is_empty());
+}
+
+#[test]
+fn the_mistakes_spin_on_the_same_walk() {
+    let session = opened(&format!("{SMALL}&compare=atan:atan2,atan"));
+    assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
+    assert!(number(&session, 0, "spins") == 0.0 && number(&session, 1, "spins") > 0.0);
+    let session = opened(&format!("{SMALL}&compare=transform:whole,first"));
+    assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
+    assert!(number(&session, 0, "spins") == 0.0 && number(&session, 1, "spins") > 0.0);
+    let both = opened(&format!("{SMALL}&atan=atan&transform=first"));
+    assert!(both.panes()[0].problem.as_ref().unwrap().contains("Two mistakes at once"));
+}
+
+#[test]
+fn other_windows_walk_the_same_way_where_they_can() {
+    let session = opened(&format!("{SMALL}&edge_threshold=10&compare=blend_window:24,12,8"));
+    let clips = |pane: usize| -> Vec<usize> { walk_of(&session, pane).passed.iter().map(|passed| passed.stay.clip).collect() };
+    assert!(!walk_of(&session, 0).is_guided && walk_of(&session, 1).is_guided);
+    // Most of the time the same clip plays in all panes.
+    for pane in 1..session.panes().len() {
+        let same = (0..200).filter(|k| {
+            let secs = f64::from(*k) * 0.1;
+            let clip = |pane| walk_of(&session, pane).at(secs).unwrap().place.clip;
+            clip(0) == clip(pane)
+        });
+        let share = same.count() as f64 / 200.0;
+        assert!(share > 0.6, "{share}: {:?} {:?}", clips(0), clips(pane));
+    }
+}
+
+#[test]
+fn other_segments_and_thresholds_have_walks_of_their_own() {
+    let segments = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&construction=segments&blend_window=10&edge_threshold=10";
+    for link in [
+        format!("{segments}&compare=segment_size:40,20"),
+        format!("{SMALL}&compare=edge_threshold:2,10"),
+    ] {
+        let session = opened(&link);
+        assert!(!walk_of(&session, 1).is_guided);
+        assert_ne!(way(walk_of(&session, 0)), way(walk_of(&session, 1)), "{link}");
+        assert_ne!(number(&session, 0, "skate"), number(&session, 1, "skate"), "{link}");
+        // As if each stood alone.
+        let alone = opened(
+            &link
+                .replace("compare=segment_size:40,20", "segment_size=20")
+                .replace("compare=edge_threshold:2,10", "edge_threshold=10"),
+        );
+        assert_eq!(way(walk(&alone)), way(walk_of(&session, 1)), "{link}");
+    }
+}
+
+#[test]
+fn a_clip_is_gone_to_and_a_path_is_followed() {
+    let mut session = opened(SMALL);
+    let before = Arc::clone(walk(&session));
+    for clip in [2, 0, 1] {
+        set(&mut session, Key::GoTo, Value::Text(format!("6:{clip}")));
+        let now = walk(&session);
+        let reached = (60..140).any(|k| now.at(f64::from(k) * 0.1).unwrap().place.clip == clip);
+        assert!(reached, "clip {clip}: {:?}", way(now));
+        let same = before
+            .motion
+            .ground_frames
+            .iter()
+            .zip(&now.motion.ground_frames)
+            .take_while(|(a, b)| a == b);
+        assert!(same.count() >= 5 * 60, "what has played stays");
+    }
+    set(&mut session, Key::GoTo, Value::Text("6:9".into()));
+    assert!(session.panes()[0].problem.as_ref().unwrap().contains("no clip 9"));
+    set(&mut session, Key::GoTo, Value::Text(String::new()));
+
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    set(&mut session, Key::WalkPath, Value::Text(write_path(&line)));
+    let walk = walk(&session);
+    let trace = walk.followed.as_ref().unwrap();
+    assert!(trace.along_m > 9.5 && trace.rms_m < 1.0, "{trace:?}");
+    let start = walk.motion.ground_frames[0].origin();
+    assert!(start.length() < 0.1, "{start}");
+    let at = walk.motion.ground_frames[6 * 60].origin();
+    assert!(at.z > 5.0 && (at.x - 0.1 * at.z).abs() < 1.5, "{at}");
+}
+
+#[test]
+fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    let mut patient = opened(SMALL);
+    set(&mut patient, Key::WalkPath, Value::Text(write_path(&line)));
+    let mut hasty = opened(SMALL);
+    hasty
+        .apply(Command::Set(vec![(Key::WalkPath, Value::Text(write_path(&line)))]))
+        .unwrap();
+    let (mut shown, mut along) = (0, 0.0);
+    let mut last = Arc::clone(walk(&hasty));
+    while hasty.work() {
+        // A slow machine.
+        hasty.work_took(0.3);
+        if !Arc::ptr_eq(&last, walk(&hasty)) {
+            last = Arc::clone(walk(&hasty));
+            let trace = last.followed.as_ref().unwrap();
+            shown += usize::from(trace.is_searching);
+            assert!(trace.along_m + 2.0 > along && last.motion.clip.frames() >= 20 * 60);
+            along = trace.along_m;
+            assert_eq!(hasty.jobs().is_empty(), !trace.is_searching);
+        }
+    }
+    assert!(shown >= 2, "{shown}");
+    // How long one had to wait changes nothing in the end.
+    let (a, b) = (walk(&patient), walk(&hasty));
+    assert_eq!(a.followed, b.followed);
+    assert!(!a.followed.as_ref().unwrap().is_searching);
+    assert_eq!((&a.passed, &a.motion.clip), (&b.passed, &b.motion.clip));
+}
+
+#[test]
+fn held_feet_stay_where_they_are_while_the_walk_grows() {
+    let mut session = opened(&format!("{SMALL}&foot_lock=on"));
+    let before = Arc::clone(walk(&session));
+    let free = opened(SMALL);
+    assert_eq!(way(&before), way(walk(&free)), "the same walk");
+    assert_ne!(before.motion.clip, walk(&free).motion.clip);
+    session.apply(Command::Seek(15.0)).unwrap();
+    while session.work() {}
+    let after = walk(&session);
+    assert!(after.motion.clip.frames() > before.motion.clip.frames());
+    // What is about to play is what was shown before, but for roundings: the plane in which a leg usually bends is that of the whole walk.
+    let mut most = 0.0_f32;
+    for frame in 0..18 * 60 {
+        let pairs = after.motion.clip.rotations(frame).iter().zip(before.motion.clip.rotations(frame));
+        most = pairs.map(|(a, b)| (*a - *b).length()).fold(most, f32::max);
+    }
+    assert!(most < 1e-5, "{most}");
+}
+
+#[test]
+fn one_transition_plays_alone() {
+    let mut session = opened(SMALL);
+    let jump = walk(&session).built.whole().jumps()[3];
+    set(&mut session, Key::Jump, Value::Text(write_jump(jump.leave, jump.enter)));
+    let outcome = session.main_outcome().unwrap();
+    let transition = outcome.transition.unwrap();
+    assert!(walk(&session).is_jump && outcome.sources.len() == 2);
+    assert!((f64::from(transition.distance_cm) - jump.distance_cm).abs() < 1e-3);
+    assert_eq!((transition.leave_a_secs * 60.0).round() as usize, jump.leave.frame);
+    // Each source lies on the result where that is the source alone.
+    for (source, secs) in outcome.sources.iter().zip([0.0, transition.end_secs + 0.2]) {
+        let stands = source
+            .world_from_clip
+            .after(&source.motion.standing_at(secs - source.starts_at_secs));
+        let off = stands.shift.distance(outcome.motion.standing_at(secs).shift);
+        assert!(off < 0.25, "{off} m");
+    }
+    assert!(number(&session, 0, "variety").is_nan());
+    let none = write_jump(Place { clip: 0, frame: 1 }, Place { clip: 1, frame: 1 });
+    set(&mut session, Key::Jump, Value::Text(none));
+    let pane = &session.panes()[0];
+    assert!(
+        pane.problem.as_ref().unwrap().contains("There is no transition from frame 1"),
+        "{:?}",
+        pane.problem
+    );
+    assert!(pane.outcome.is_none());
+}
+
+#[test]
+fn every_setting_answers_and_no_earlier_walk_stands_for_it() {
+    let mut session = opened("lab=graph&clips=walk(make_seconds:2),walk(turn_rate:20,make_seconds:2)&walk_seconds=10");
+    let (mut made, mut refused) = (0, 0);
+    for construction in ["segments", "minima"] {
+        for (window, segment) in [
+            (1, 1),
+            (1, 2),
+            (10, 10),
+            (10, 11),
+            (30, 60),
+            (59, 61),
+            (118, 119),
+            (119, 600),
+            (240, 600),
+            (5, 120),
+            (20, 121),
+        ] {
+            for threshold in [0.1, 6.0, 60.0] {
+                session
+                    .apply(Command::Set(vec![
+                        (Key::Construction, Key::Construction.param().parse(construction).unwrap()),
+                        (Key::BlendWindow, Value::Number(f64::from(window))),
+                        (Key::SegmentSize, Value::Number(f64::from(segment))),
+                        (Key::EdgeThreshold, Value::Number(threshold)),
+                    ]))
+                    .unwrap();
+                while session.work() {}
+                assert!(session.jobs().is_empty());
+                let pane = &session.panes()[0];
+                match &pane.problem {
+                    None => made += 1,
+                    Some(problem) => {
+                        refused += 1;
+                        assert!(problem.ends_with('.') && problem.contains(':'), "{problem}");
+                        assert!(pane.outcome.is_none());
+                    }
+                }
+            }
+        }
+    }
+    assert!(made > 10 && refused > 10, "{made} {refused}");
+    for (key, text) in [
+        (Key::Clips, "walk,nobody"),
+        (Key::Clips, "walk,(run"),
+        (Key::Clips, ","),
+        (Key::WalkPath, "0:0"),
+        (Key::WalkPath, "a"),
+        (Key::GoTo, "3"),
+        (Key::Jump, "0:1-x"),
+    ] {
+        set(&mut session, key, Value::Text(text.into()));
+        assert!(session.panes()[0].problem.is_some(), "{text}");
+        session.apply(Command::Reset(key)).unwrap();
+    }
+}
+
+#[test]
+fn a_walk_is_kept_and_made_again_from_its_link() {
+    let mut session = opened(SMALL);
+    let kept = session.main_outcome().unwrap().motion.clip.clone();
+    session.apply(Command::Keep(0)).unwrap();
+    let entry = session.library().entries().last().unwrap();
+    let id = entry.id.clone();
+    assert!(id.starts_with("graph(") && id.contains("clips:walk%2Cwalk_left"), "{id}");
+    let again = opened(&format!("lab=view&a={}", id.replace('%', "%25")));
+    let made = again.main_outcome().unwrap();
+    assert_eq!(
+        (made.motion.clip.rotations(900), made.motion.clip.frames()),
+        (kept.rotations(900), kept.frames())
+    );
+    // A clip that is taken out of the library leaves the graph.
+    session.apply(Command::Remove("walk_left".into())).unwrap();
+    while session.work() {}
+    assert_eq!(session.graph_clip_ids(), ["walk", "walk_right"]);
+    assert_eq!(walk(&session).built.cast().names().len(), 2);
+    // Not what a guided pane shows: alone it goes another way.
+    let mut compared = opened(&format!("{SMALL}&compare=blend_window:20,10"));
+    assert!(matches!(compared.apply(Command::Keep(1)), Err(CommandError::NotPossible(_))));
+    assert!(compared.apply(Command::Keep(0)).is_ok());
+}
+
+/// What plays begins where a transition leads to, and goes on to where the next one leaves; the way is one through the graph.
+fn hangs_together(walk: &Walk) {
+    let jumps = walk.built.graph().jumps();
+    for pair in walk.passed.windows(2) {
+        let (stay, next) = (&pair[0].stay, &pair[1].stay);
+        let jump = &jumps[next.jump.unwrap()];
+        assert_eq!((stay.clip, stay.to), (jump.leave.clip, jump.leave.frame));
+        assert_eq!((next.clip, next.from), (jump.enter.clip, jump.enter.frame));
+        assert!(stay.from < stay.to && pair[0].end == pair[1].start);
+        assert_eq!(pair[1].seam.map(|seam| [seam.leave, seam.enter]), Some([jump.leave, jump.enter]));
+    }
+}
+
+#[test]
+fn a_walk_can_set_off_at_any_time() {
+    let segments =
+        "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=15&construction=segments&segment_size=40&edge_threshold=10";
+    for link in [SMALL, segments] {
+        let mut session = opened(link);
+        let before = Arc::clone(walk(&session));
+        let (mut first, mut off_the_way) = (0, 0);
+        let mut known = std::collections::BTreeMap::new();
+        for tenth in (0..180).step_by(4) {
+            let (secs, clip) = (f64::from(tenth) * 0.1, tenth as usize / 4 % 3);
+            set(&mut session, Key::GoTo, Value::Text(format!("{secs}:{clip}")));
+            let now = &Arc::clone(walk(&session));
+            assert_eq!(now.missed, []);
+            hangs_together(now);
+            let due = (secs * 60.0).round() as usize;
+            for frame in 0..due {
+                let same = now.motion.clip.rotations(frame) == before.motion.clip.rotations(frame)
+                    && now.motion.clip.root_translations()[frame] == before.motion.clip.root_translations()[frame]
+                    && now.motion.ground_frames[frame] == before.motion.ground_frames[frame];
+                assert!(same, "{link}: set off at {due}, frame {frame} is another one");
+            }
+            // As soon as there is a way, and not by chance some day.
+            let there = now
+                .passed
+                .iter()
+                .find(|passed| passed.stay.clip == clip && passed.end > due)
+                .unwrap();
+            assert!(there.start < due + 9 * 60, "{link}: {due} {there:?}");
+            assert_eq!(number(&session, 0, "spins"), 0.0, "{link}: {secs}");
+            // What a transition does wherever one comes to it is none of the visit's.
+            let flashes = number(&session, 0, "flashes");
+            let mut alone = 0.0;
+            for seam in now.passed.iter().filter_map(|passed| passed.seam) {
+                let text = write_jump(seam.leave, seam.enter);
+                if !known.contains_key(&text) {
+                    set(&mut session, Key::Jump, Value::Text(text.clone()));
+                    known.insert(text.clone(), number(&session, 0, "flashes"));
+                }
+                alone += known[&text];
+            }
+            session.apply(Command::Reset(Key::Jump)).unwrap();
+            assert!(flashes <= alone, "{link}: {secs}: {flashes}, {alone} of them by themselves");
+            off_the_way += usize::from(way(now) != way(&before));
+            first += usize::from(now.passed[0].stay == before.passed[0].stay);
+        }
+        assert!(off_the_way > 20 && first > 20, "{off_the_way} {first}");
+    }
+    // One visit behind the other, and a second one before the first has come to anything.
+    let mut session = opened(SMALL);
+    for visits in ["3:2,9:0,14:1", "6:2,6.1:0,6.2:1"] {
+        set(&mut session, Key::GoTo, Value::Text(visits.into()));
+        hangs_together(walk(&session));
+    }
+    let reached = (62..150).any(|k| walk(&session).at(f64::from(k) * 0.1).unwrap().place.clip == 1);
+    assert!(reached, "{:?}", way(walk(&session)));
+}
+
+#[test]
+fn where_no_way_leads_is_told() {
+    // Without clips that start and stop nobody comes to rest.
+    let mut session = opened("lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20");
+    let built = Arc::clone(&walk(&session).built);
+    let walked: Vec<bool> = (0..5).map(|clip| built.is_walked(clip)).collect();
+    assert_eq!(walked, [true, true, true, false, false]);
+    assert_eq!(built.clips_from(Place { clip: 0, frame: 50 }), walked[..4]);
+    let before = way(walk(&session));
+    set(&mut session, Key::GoTo, Value::Text("5:3,8:1".into()));
+    assert_eq!(walk(&session).missed, [(5.0, 3)]);
+    assert_ne!(way(walk(&session)), before, "the other visit is made");
+    set(&mut session, Key::GoTo, Value::Text(String::new()));
+    assert_eq!(walk(&session).missed, []);
+    // All of the graph: its parts do not reach each other, or one way only.
+    set(&mut session, Key::Prune, Value::Switch(false));
+    let built = &walk(&session).built;
+    for clip in 0..4 {
+        for frame in (0..built.cast().set().frames_of(clip)).step_by(37) {
+            let place = Place { clip, frame };
+            let reached = built.clips_from(place);
+            let graph = built.graph();
+            let start = graph.node_at(place).unwrap();
+            for (other, reached) in reached.iter().enumerate() {
+                let mut nodes = graph.graph().node_indices();
+                let wanted = nodes
+                    .any(|node| graph.graph()[node].clip == other && petgraph::algo::has_path_connecting(graph.graph(), start, node, None));
+                assert_eq!(*reached, wanted, "{place:?} {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
+    let small = format!("{SMALL}&edge_threshold=10&play=off");
+    let compare = "blend_window:24,12,8";
+    let fresh = opened(&format!("{small}&compare={compare}"));
+    // The first walk is there already, and much more of it.
+    let mut late = opened(&format!("{small}&blend_window=24&t=90"));
+    assert!(walk(&late).motion.clip.duration_secs() > 100.0);
+    late.apply(Command::Set(vec![
+        (Key::Compare, Value::Text(compare.into())),
+        (Key::Time, Value::Number(0.0)),
+    ]))
+    .unwrap();
+    while late.work() {}
+    // Or the walk that goes like it gets long.
+    let mut long = opened(&format!("{small}&compare={compare}"));
+    long.apply(Command::Seek(70.0)).unwrap();
+    while long.work() {}
+    for pane in 1..3 {
+        let wanted = way(walk_of(&fresh, pane));
+        let wanted = &wanted[..wanted.len() - 1];
+        assert!(walk_of(&fresh, pane).is_guided && wanted.len() > 5);
+        for other in [&late, &long] {
+            assert_eq!(way(walk_of(other, pane))[..wanted.len()], *wanted, "pane {pane}");
+        }
+        hangs_together(walk_of(&long, pane));
+    }
+    // One that follows a line goes there, whatever the first one does.
+    let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
+    let path = write_path(&line);
+    let both = opened(&format!("{small}&walk_path={path}&compare={compare}"));
+    let alone = opened(&format!("{small}&walk_path={path}&blend_window=12"));
+    assert!(!walk_of(&both, 1).is_guided);
+    assert_eq!(walk_of(&both, 1).followed, walk(&alone).followed);
+    let (found, wanted) = (way(walk_of(&both, 1)), way(walk(&alone)));
+    assert_eq!(found[..found.len() - 1], wanted[..found.len() - 1]);
+}
+
+#[test]
+fn a_walk_that_goes_like_another_goes_where_it_is_sent() {
+    // From a walk one comes to rest only by stopping.
+    let link = "lab=graph&clips=walk,start,stop,idle,walk_left&walk_seconds=30&play=off&compare=blend_window:24,12,8&edge_threshold=10";
+    let mut session = opened(link);
+    for secs in (2..16).map(f64::from) {
+        set(&mut session, Key::GoTo, Value::Text(format!("{secs}:3")));
+        for pane in 0..3 {
+            let walk = walk_of(&session, pane);
+            assert_eq!(walk.missed, []);
+            let due = (secs * 60.0).round() as usize;
+            let mut behind = walk.passed.iter().filter(|passed| passed.end > due);
+            let transitions = behind.position(|passed| passed.stay.clip == 3);
+            assert!(
+                transitions.is_some_and(|transitions| transitions <= 4),
+                "{secs} s, pane {pane}: {transitions:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
+    let mut session = opened(&format!("{SMALL}&go_to=6:2&jump=0:1-2:3"));
+    session.apply(Command::Remove("walk".into())).unwrap();
+    while session.work() {}
+    assert_eq!(session.graph_clip_ids(), ["walk_left", "walk_right"]);
+    let text = |session: &Session, key| session.params().text(key).to_owned();
+    assert_eq!(
+        (text(&session, Key::GoTo), text(&session, Key::Jump)),
+        (String::new(), String::new())
+    );
+    assert_eq!(session.panes()[0].problem, None);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(
+        (text(&session, Key::GoTo), text(&session, Key::Jump)),
+        ("6:2".into(), "0:1-2:3".into())
+    );
+}
+
+#[test]
+fn clips_may_be_called_anything() {
+    let mut session = opened(SMALL);
+    let motion = session.library().find("walk_left").unwrap().motion.clone().unwrap();
+    let bytes: Arc<[u8]> = segue_formats::bvh::write(&motion.clip, &segue_formats::bvh::WriteOptions::default())
+        .into_bytes()
+        .into();
+    let mut ids = vec!["walk".to_owned()];
+    for name in ["slow, then fast.bvh", "turn (left.bvh", "a) b.bvh", "100 %.bvh"] {
+        session.load(name, Arc::clone(&bytes)).unwrap();
+        ids.push(session.library().entries().last().unwrap().id.clone());
+    }
+    session.apply(Command::Set(crate::graph_of(&ids))).unwrap();
+    while session.work() {}
+    assert_eq!(session.graph_clip_ids(), ids);
+    assert_eq!(walk(&session).built.cast().names().len(), 5);
+    session.apply(Command::Remove(ids[1].clone())).unwrap();
+    while session.work() {}
+    ids.remove(1);
+    assert_eq!((session.graph_clip_ids(), walk(&session).built.cast().names().len()), (ids, 4));
+}
+
+#[test]
+fn a_threshold_is_dragged_without_looking_at_the_distances_again() {
+    // More frames than distances are held of.
+    let clips = "walk(make_seconds:30),walk(turn_rate:20,make_seconds:30),run(make_seconds:30),walk(turn_rate:-20,make_seconds:20)";
+    let base = format!("lab=graph&clips={clips}&walk_seconds=10&blend_window=12&edge_threshold=6");
+    let mut session = opened(&base);
+    let field = Arc::clone(session.graph_field().unwrap());
+    assert!(matches!(field.distances(), crate::Distances::FromAfar(_)));
+    // How far one is at once.
+    let starts_at = |session: &mut Session, key: Key, value: Value| {
+        session.apply(Command::Set(vec![(key, value)])).unwrap();
+        let before = Arc::clone(walk(session));
+        let (mut first, mut progress) = (None, 0.0);
+        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") {
+            assert!(job.progress >= progress, "{key:?}: {} after {progress}", job.progress);
+            assert!(
+                Arc::ptr_eq(&before, walk(session)) && session.graph_built().is_some(),
+                "the last one stays"
+            );
+            progress = job.progress;
+            first.get_or_insert(progress);
+            assert!(session.work());
+        }
+        while session.work() {}
+        first.unwrap()
+    };
+    let streamed = starts_at(&mut session, Key::MinJump, Value::Number(0.8));
+    assert!(streamed < 0.2, "{streamed}");
+    for threshold in [4.0, 9.0, 12.0, 5.0] {
+        let known = starts_at(&mut session, Key::EdgeThreshold, Value::Number(threshold));
+        assert!(known >= 0.85, "{threshold}: {known}");
+        let alone = segue_motion::graph::GraphOptions {
+            edge_threshold_cm: threshold,
+            ..*walk(&session).built.options()
+        };
+        assert_eq!(*walk(&session).built.options(), alone);
+    }
+    let known = starts_at(&mut session, Key::Prune, Value::Switch(false));
+    assert!(known >= 0.85, "{known}");
+    assert!(Arc::ptr_eq(session.graph_field().unwrap(), &field) && !walk(&session).built.lacks_some());
+    // The graph is the one that is made when nothing else was asked before.
+    let direct = opened(&base.replace("edge_threshold=6", "edge_threshold=5&min_jump=0.8&prune=off"));
+    assert_eq!(direct_jumps(&session), direct_jumps(&direct));
+    assert!(direct_jumps(&session).len() > 10);
+}
+
+fn direct_jumps(session: &Session) -> Vec<segue_motion::graph::Jump> {
+    walk(session).built.whole().jumps().to_vec()
+}
+
+/// A stay of the walk that is written down: the clip's id, the frames that play, and the walk's frame at which it begins.
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct GoldenStay {
+    clip: String,
+    from: usize,
+    to: usize,
+    start: usize,
+}
+
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct GoldenWalk {
+    link: String,
+    fps: f64,
+    window: usize,
+    stays: Vec<GoldenStay>,
+}
+
+/// A minute of the walk that everybody sees who opens this link, here and in the browser (`labs.test.mjs`). Where a change makes another walk on purpose, write down
+/// what the test found.
+#[test]
+fn the_walk_is_the_one_that_is_written_down() {
+    let text = include_str!("../../tests/golden/walk.json");
+    let golden: GoldenWalk = serde_json::from_str(text).unwrap();
+    let session = opened(&golden.link);
+    let (walk, ids) = (walk(&session), session.graph_clip_ids());
+    let stays = walk.passed.iter().filter(|passed| passed.start < 60 * 60).map(|passed| GoldenStay {
+        clip: ids[passed.stay.clip].clone(),
+        from: passed.stay.from,
+        to: passed.stay.to,
+        start: passed.start,
+    });
+    let found = GoldenWalk {
+        stays: stays.collect(),
+        fps: walk.motion.clip.fps(),
+        window: walk.built.options().blend_window,
+        link: golden.link.clone(),
+    };
+    assert!(found == golden, "another walk: {}", serde_json::to_string_pretty(&found).unwrap());
+}

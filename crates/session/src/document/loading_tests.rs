@@ -1,0 +1,776 @@
+//! Files that lean on others: motions and their skeletons, archives.
+
+use super::loading::MOST_FAILURES;
+use super::tests::settle;
+use super::*;
+use crate::reading::Content;
+use std::io::Write as _;
+
+pub(super) const ASF: &str = "\
+:version 1.10
+:name toy
+:units
+  length 1.0
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+  axis XYZ
+  position 0 0 0
+  orientation 0 0 0
+:bonedata
+  begin
+    id 1
+    name thigh
+    direction 0 -1 0
+    length 85
+    axis 0 0 0 XYZ
+    dof rx
+  end
+  begin
+    id 2
+    name spine
+    direction 0 1 0
+    length 80
+    axis 0 0 0 XYZ
+    dof rx
+  end
+:hierarchy
+  begin
+    root thigh spine
+  end
+";
+pub(super) const AMC: &str =
+    ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+
+pub(super) fn bytes(text: &str) -> Arc<[u8]> {
+    Arc::from(text.as_bytes())
+}
+
+pub(super) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
+    let infos = session.clip_infos().into_iter().filter(|info| info.sha256.is_some());
+    infos.map(|info| (info.name, info.format, info.frames)).collect()
+}
+
+#[test]
+fn a_motion_waits_for_its_skeleton() {
+    let mut session = Session::new();
+    let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
+    assert!(loaded.warnings[0].contains("drop the .asf file"), "{:?}", loaded.warnings);
+    assert_eq!(files(&session), [("01_02".to_owned(), "amc", 0)]);
+    // It waits through a reload, too.
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), |_| Some(Content::Here(bytes(AMC))), None);
+    for mut session in [session, restored] {
+        session.load("01.asf", bytes(ASF)).unwrap();
+        assert_eq!(
+            files(&session),
+            [("01_02".to_owned(), "amc", 2)],
+            "and the skeleton has no row of its own"
+        );
+        assert_eq!(session.slot(Slot::A).unwrap().id, loaded.ids[0]);
+    }
+}
+
+#[test]
+fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
+    let mut session = Session::new();
+    let task = session.begin_reading("01_02.amc", Content::Outside("file 1".into()), 2 << 20);
+    let report = |setup: &crate::reading::ReadSetup| crate::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap();
+    session
+        .finish_reading(task, Ok(report(&crate::reading::ReadSetup::default())))
+        .unwrap()
+        .unwrap();
+    session.take_requests();
+    let asked = |session: &mut Session| {
+        session.take_requests().into_iter().find_map(|request| match request {
+            Request::Read(task) => Some(task),
+            _ => None,
+        })
+    };
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    assert_eq!(asked(&mut session), None);
+    session.load("01.asf", bytes(ASF)).unwrap();
+    let again = asked(&mut session).unwrap();
+    session.finish_reading(again.id, Ok(report(&again.setup))).unwrap().unwrap();
+    let names: Vec<String> = files(&session).into_iter().map(|(name, ..)| name).collect();
+    assert_eq!(names, ["01_02", "walk"], "the skeleton has no row of its own any longer");
+}
+
+/// The bytes of a session's files by their SHA-256, as storage has them.
+fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
+    |sha256| {
+        session.library().entries().iter().find_map(|entry| match &entry.origin {
+            Origin::File(file) if file.sha256 == sha256 => Some(file.content.clone()),
+            _ => None,
+        })
+    }
+}
+
+/// How many notices of a level there are.
+fn told(session: &Session, level: Level) -> usize {
+    session.notices().list().iter().filter(|notice| notice.level == level).count()
+}
+
+/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was asked with.
+pub(super) fn serve(session: &mut Session) {
+    loop {
+        let asked: Vec<_> = (session.take_requests().into_iter())
+            .filter_map(|request| match request {
+                Request::Read(task) => Some(task),
+                _ => None,
+            })
+            .collect();
+        if asked.is_empty() {
+            return;
+        }
+        for task in asked {
+            let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
+            let report = crate::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
+            assert!(session.is_reading(task.id) && session.is_reading_small() && session.jobs().iter().all(|job| job.task.is_none()));
+            session.finish_reading(task.id, Ok(report));
+        }
+    }
+}
+
+/// Names and bytes of what is dropped.
+type Dropped<'a> = &'a [(&'a str, Arc<[u8]>)];
+
+/// What is in the library, and what is played.
+fn shown(session: &Session) -> (Vec<(String, &'static str, usize)>, [String; 2]) {
+    (files(session), [Key::A, Key::B].map(|key| session.params().text(key).to_owned()))
+}
+
+#[test]
+fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
+    let packed = {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(BVH.as_bytes()).unwrap();
+        Arc::<[u8]>::from(encoder.finish().unwrap())
+    };
+    let archive = Arc::<[u8]>::from(zip(&[("01_03.amc", AMC)]));
+    let dropped: [Dropped<'_>; 6] = [
+        &[("walk.bvh", bytes(BVH))],
+        &[("01_02.amc", bytes(AMC)), ("01.asf", bytes(ASF))],
+        &[("01.asf", bytes(ASF)), ("01_02.amc", bytes(AMC))],
+        &[("01.asf", bytes(ASF)), ("takes.zip", archive)],
+        &[("person.glb", person(60))],
+        &[("walk.bvh.gz", packed), ("broken.bvh", bytes("HIERARCHY ROOT"))],
+    ];
+    for files in dropped {
+        let (mut at_once, mut elsewhere) = (Session::new(), Session::that_has_files_read());
+        for (name, bytes) in files {
+            at_once.load(name, Arc::clone(bytes)).ok();
+            assert_eq!(elsewhere.load(name, Arc::clone(bytes)), Ok(Loaded::default()), "it is asked for");
+        }
+        assert!(elsewhere.clip_infos().iter().all(|info| info.sha256.is_none()));
+        serve(&mut elsewhere);
+        assert_eq!(shown(&elsewhere), shown(&at_once));
+        assert_eq!(told(&elsewhere, Level::Error), told(&at_once, Level::Error));
+        assert!(elsewhere.jobs().iter().all(|job| job.task.is_none()));
+
+        // After a reload, and read with other options.
+        let mut restored = Session::that_has_files_read();
+        restored.restore(&elsewhere.saved(), stored(&at_once), None);
+        serve(&mut restored);
+        assert_eq!(shown(&restored), shown(&at_once));
+        let id = restored.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
+        let options = segue_formats::ImportOptions {
+            fps: Some(60.0),
+            ..Default::default()
+        };
+        restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+        serve(&mut restored);
+        assert_eq!(restored.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps, 60.0);
+    }
+}
+
+#[test]
+fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_only() {
+    let sample = &Session::samples()[2];
+    let mut session = Session::that_has_files_read();
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+    session.load_sample(sample, b"").unwrap();
+    let Some(Request::Read(task)) = session.take_requests().pop() else {
+        panic!()
+    };
+    session
+        .finish_reading(task.id, Err("the worker could not be started".into()))
+        .unwrap()
+        .unwrap_err();
+    assert!(session.take_requests().is_empty() && !session.is_reading_small());
+    session.load_sample(sample, b"").unwrap();
+    serve(&mut session);
+    assert!(
+        session.take_requests().is_empty() && !session.is_reading_small(),
+        "nor where it is damaged"
+    );
+    session.apply(Command::Set(vec![(Key::BlendTime, Value::Number(0.6))])).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+}
+
+#[test]
+fn what_was_read_stays_read_when_a_step_is_taken_back() {
+    let mut session = Session::that_has_files_read();
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    session.load("01.asf", bytes(ASF)).unwrap();
+    session.load("01_02.amc", bytes(AMC)).unwrap();
+    serve(&mut session);
+    let unread = |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
+    let (mut before, mut late) = (Session::that_has_files_read(), Session::that_has_files_read());
+    before.restore(&session.saved(), stored(&session), None);
+    // Something is changed while they are read, or before they come.
+    let change = |session: &mut Session| session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
+    change(&mut before);
+    change(&mut late);
+    late.restore_late(&session.saved(), stored(&session));
+    for mut session in [before, late] {
+        assert_eq!(unread(&session), 2);
+        serve(&mut session);
+        assert_eq!(unread(&session), 0);
+        session.apply(Command::Undo).unwrap();
+        assert_eq!(unread(&session), 0);
+        session.apply(Command::Redo).unwrap();
+        assert_eq!(unread(&session), 0);
+    }
+}
+
+#[test]
+fn how_a_file_is_read_can_be_changed_while_it_is_read() {
+    let mut session = Session::that_has_files_read();
+    session.load("walk.bvh", bytes(BVH)).unwrap();
+    serve(&mut session);
+    let id = session.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
+    let fps_of = |session: &Session| session.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps;
+    let options_of = |session: &Session| match &session.library().get(&id).unwrap().origin {
+        Origin::File(file) => file.options,
+        _ => panic!(),
+    };
+    let reimport = |session: &mut Session, fps: Option<f64>, metres_per_unit: Option<f64>| {
+        let options = segue_formats::ImportOptions {
+            metres_per_unit,
+            fps,
+            ..options_of(session)
+        };
+        session.apply(Command::Reimport(id.clone(), options)).unwrap();
+    };
+    reimport(&mut session, Some(60.0), None);
+    reimport(&mut session, Some(60.0), Some(0.5));
+    serve(&mut session);
+    assert_eq!((fps_of(&session), options_of(&session).metres_per_unit), (60.0, Some(0.5)));
+    // Taken back before it has come: it does not come.
+    reimport(&mut session, Some(90.0), Some(0.5));
+    session.apply(Command::Undo).unwrap();
+    serve(&mut session);
+    assert_eq!(fps_of(&session), 60.0);
+    session.apply(Command::Undo).unwrap();
+    session.apply(Command::Undo).unwrap();
+    serve(&mut session);
+    assert_eq!(
+        (fps_of(&session), options_of(&session)),
+        (10.0, segue_formats::ImportOptions::default())
+    );
+}
+
+#[test]
+fn a_bundled_take_is_read_elsewhere_without_a_word() {
+    let sample = &Session::samples()[2];
+    let packed = std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    let mut session = Session::that_has_files_read();
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    let asks = |session: &mut Session| session.take_requests().contains(&Request::Sample(sample));
+    assert!(asks(&mut session));
+    session.load_sample(sample, &packed).unwrap();
+    assert!(session.is_reading_small() && session.jobs().is_empty());
+    session.apply(Command::Set(vec![(Key::BlendTime, Value::Number(0.6))])).unwrap();
+    let told = session.notices().list().len();
+    let reads: Vec<_> = session.take_requests();
+    assert!(!reads.contains(&Request::Sample(sample)), "it has come");
+    let Some(Request::Read(task)) = reads.into_iter().find(|request| matches!(request, Request::Read(_))) else {
+        panic!()
+    };
+    let report = crate::reading::read(&task.name, &packed, &task.setup, &mut |_| true).unwrap();
+    session.finish_reading(task.id, Ok(report)).unwrap().unwrap();
+    assert!(session.library().get(sample.id).unwrap().motion.is_some());
+    assert_eq!(session.notices().list().len(), told);
+    assert!(!session.is_reading_small());
+}
+
+#[test]
+fn a_motion_has_the_skeleton_of_its_name() {
+    let of_16 = ASF.replace("length 85", "length 95");
+    for ahead in [true, false] {
+        for mut session in [Session::new(), Session::that_has_files_read()] {
+            let mut come = |files: &[(&str, &str)]| {
+                for (name, text) in files {
+                    session.load(name, bytes(text)).unwrap();
+                }
+                serve(&mut session);
+                session
+                    .notices()
+                    .list()
+                    .last()
+                    .map(|notice| notice.text.clone())
+                    .unwrap_or_default()
+            };
+            come(&[("16.asf", &of_16), ("16_22.amc", AMC)]);
+            // Its own comes behind it, or only later.
+            let own = [("01_01.amc", AMC.replace("spine 2", "spine 3")), ("01_01.asf", ASF.to_owned())];
+            let own = [(own[0].0, own[0].1.as_str()), (own[1].0, own[1].1.as_str())];
+            if ahead {
+                come(&[own[1], own[0]]);
+            } else {
+                assert!(come(&own[..1]).contains("It is on the skeleton of 16.asf."));
+                come(&own[1..]);
+            }
+            assert_eq!(files(&session), [("16_22".to_owned(), "amc", 2), ("01_01".to_owned(), "amc", 2)]);
+            let companions = session.library().entries().iter().filter_map(|entry| match &entry.origin {
+                Origin::File(file) => Some(file.companion.as_ref()?.name.as_str()),
+                _ => None,
+            });
+            assert_eq!(companions.collect::<Vec<_>>(), ["16.asf", "01_01.asf"]);
+        }
+    }
+}
+
+#[test]
+fn what_waits_for_its_other_half_says_so_until_that_has_come() {
+    for files in [[("01_02.amc", AMC), ("01.asf", ASF)], [("01.asf", ASF), ("01_02.amc", AMC)]] {
+        for mut session in [Session::new(), Session::that_has_files_read()] {
+            session.load(files[0].0, bytes(files[0].1)).unwrap();
+            serve(&mut session);
+            assert_eq!(told(&session, Level::Warning), 1);
+            session.load(files[1].0, bytes(files[1].1)).unwrap();
+            serve(&mut session);
+            let texts: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            assert!(
+                !texts.iter().any(|text| text.contains("no motion") || text.contains("waits")),
+                "{texts:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_skeleton_serves_all_its_motions() {
+    let mut session = Session::new();
+    session.load("01.asf", bytes(ASF)).unwrap();
+    assert_eq!(files(&session), [("01".to_owned(), "asf", 0)]);
+    session.load("01_01.amc", bytes(AMC)).unwrap();
+    let id = session
+        .load("01_02.amc", bytes(&AMC.replace("spine 2", "spine 9")))
+        .unwrap()
+        .ids
+        .remove(0);
+    assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("01_02".to_owned(), "amc", 2)]);
+    // The skeleton is stored with each, and used when the file is read again.
+    let saved = session.saved();
+    let mut restored = Session::new();
+    restored.restore(&saved, stored(&session), None);
+    assert_eq!(files(&restored), files(&session));
+    let options = segue_formats::ImportOptions {
+        fps: Some(60.0),
+        ..Default::default()
+    };
+    restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+    let info = restored.clip_infos().into_iter().find(|info| info.id == id).unwrap();
+    assert_eq!((info.frames, info.fps), (2, 60.0));
+}
+
+#[test]
+fn an_archive_brings_all_its_motions() {
+    // A zip archive with stored files, by hand: the crate that reads them writes none in tests of the core.
+    let names = [
+        ("take/01.asf", ASF),
+        ("take/01_01.amc", AMC),
+        ("take/walk.bvh", BVH),
+        ("notes.txt", "hello"),
+    ];
+    let mut session = Session::new();
+    let loaded = session.load("takes.zip", Arc::from(zip(&names))).unwrap();
+    assert_eq!(loaded.ids.len(), 2, "{loaded:?}");
+    assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("walk".to_owned(), "bvh", 2)]);
+    assert!(session.notices().list().last().unwrap().text.contains("2 files"));
+    // What came out of the archive is stored file by file.
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), stored(&session), None);
+    assert_eq!(files(&restored), files(&session));
+
+    let packed = {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(BVH.as_bytes()).unwrap();
+        encoder.finish().unwrap()
+    };
+    session.load("other.bvh.gz", Arc::from(packed)).unwrap();
+    assert!(files(&session).iter().any(|(name, ..)| name == "other"));
+    assert!(session.load("cut.zip", Arc::from(&zip(&names)[..200])).is_err());
+}
+
+const BVH: &str =
+    "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+
+/// A zip archive of files that are not packed (PKWARE's application note, 4.3).
+fn zip(files: &[(&str, &str)]) -> Vec<u8> {
+    let (mut out, mut directory) = (Vec::new(), Vec::new());
+    for (name, text) in files {
+        let mut crc = flate2::Crc::new();
+        crc.update(text.as_bytes());
+        let mut about = vec![20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        about.extend(crc.sum().to_le_bytes());
+        about.extend((text.len() as u32).to_le_bytes());
+        about.extend((text.len() as u32).to_le_bytes());
+        about.extend((name.len() as u16).to_le_bytes());
+        about.extend([0, 0]);
+        directory.extend(b"PK\x01\x02\x14\x00");
+        directory.extend(&about);
+        directory.extend([0; 10]);
+        directory.extend((out.len() as u32).to_le_bytes());
+        directory.extend(name.as_bytes());
+        out.extend(b"PK\x03\x04");
+        out.extend(&about);
+        out.extend(name.as_bytes());
+        out.extend(text.as_bytes());
+    }
+    let at = out.len() as u32;
+    out.extend(&directory);
+    out.extend(b"PK\x05\x06\0\0\0\0");
+    out.extend((files.len() as u16).to_le_bytes());
+    out.extend((files.len() as u16).to_le_bytes());
+    out.extend((directory.len() as u32).to_le_bytes());
+    out.extend(at.to_le_bytes());
+    out.extend([0, 0]);
+    out
+}
+
+/// A person in a file of another program: a mesh with a skin, and `frames` frames of a walk.
+fn person(frames: usize) -> Arc<[u8]> {
+    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(segue_motion::synth::Action::Walk))
+        .unwrap()
+        .clip;
+    figure(&walk.crop(0..frames).unwrap())
+}
+
+/// A creature of eight legs, none of which a person has.
+fn spider() -> Arc<[u8]> {
+    let leg = |number: u32| {
+        let angle = f64::from(number) * std::f64::consts::FRAC_PI_4 + 0.4;
+        let (x, z) = (20.0 * angle.sin(), 20.0 * angle.cos());
+        format!(
+            "  JOINT segment_{number}_a\n  {{\n    OFFSET {x:.3} 4 {z:.3}\n    CHANNELS 3 Zrotation Xrotation Yrotation\n    JOINT segment_{number}_b\n    {{\n      OFFSET {x:.3} 10 {z:.3}\n      CHANNELS 3 Zrotation Xrotation Yrotation\n      End Site\n      {{\n        OFFSET {x:.3} -40 {z:.3}\n      }}\n    }}\n  }}\n"
+        )
+    };
+    let legs: String = (0..8).map(leg).collect();
+    let row = |frame: u32| {
+        let turns: Vec<String> = (0..48).map(|channel| (5 * ((channel + frame) % 3)).to_string()).collect();
+        format!("0 30 {frame} 0 0 0 {}\n", turns.join(" "))
+    };
+    let rows: String = (0..40).map(row).collect();
+    let text = format!(
+        "HIERARCHY\nROOT trunk\n{{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n{legs}}}\nMOTION\nFrames: 40\nFrame Time: 0.033333\n{rows}"
+    );
+    let read = segue_formats::import("spider.bvh", text.as_bytes(), &segue_formats::ImportOptions::default());
+    figure(&read.unwrap().clips[0].clip)
+}
+
+/// A clip in a file of another program, with a mesh around its bones.
+fn figure(clip: &segue_motion::clip::Clip) -> Arc<[u8]> {
+    use segue_formats::gltf::{GlbOptions, write_glb};
+    let mut bytes = write_glb(
+        clip,
+        &GlbOptions {
+            smooth: true,
+            ..GlbOptions::default()
+        },
+    )
+    .unwrap();
+    let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    bytes[at..at + 5].copy_from_slice(b"Other");
+    bytes.into()
+}
+
+#[test]
+fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
+    let mut session = Session::new();
+    assert!(session.character().is_none());
+    let before = session.params().text(Key::A).to_owned();
+    let loaded = session.load("person.glb", person(0)).unwrap();
+    let character = session.character().unwrap();
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert!(character.mesh.positions.len() > 1000);
+    // A character without a motion plays nothing.
+    assert_eq!(session.params().text(Key::A), before);
+    let outcome = Arc::clone(session.main_outcome().unwrap());
+    let drive = segue_motion::skin::Drive::new(&outcome.motion.clip, &outcome.motion.roles, &character).unwrap();
+    let mut transforms = Vec::new();
+    drive.transforms(&outcome.motion.clip.world_pose(10), &character.mesh, &mut transforms);
+    assert_eq!(transforms.len(), character.skeleton.len());
+    assert!(
+        transforms
+            .iter()
+            .all(|transform| transform.translation.is_finite() && transform.rotation.is_normalized())
+    );
+    // It is stored with the library and comes back with it.
+    let saved = session.saved();
+    let mut again = Session::new();
+    let bytes = person(0);
+    again.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
+    assert_eq!(again.character().unwrap().mesh, character.mesh);
+    // And goes again: by the parameter, by undo, and with its clip.
+    session
+        .apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))]))
+        .unwrap();
+    assert!(session.character().is_none());
+    session.apply(Command::Undo).unwrap();
+    assert!(session.character().is_some());
+    session.apply(Command::Remove(loaded.ids[0].clone())).unwrap();
+    assert!(session.character().is_none() && session.params().text(Key::Character).is_empty());
+}
+
+#[test]
+fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
+    // Alone, it is there for its own clips. What cannot move it has its own body, and that is said.
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=blend".into())).unwrap();
+    let loaded = session.load("spider.glb", spider()).unwrap();
+    assert!(
+        loaded.warnings.iter().any(|warning| warning.contains("only its own clips move it")),
+        "{:?}",
+        loaded.warnings
+    );
+    let spider_id = loaded.ids[0].clone();
+    let character = session.character().unwrap();
+    let show = |session: &mut Session, a: &str| {
+        let link = format!("lab=view&a={a}&character={spider_id}");
+        session.apply(Command::OpenLink(link)).unwrap();
+        settle(session);
+        let motion = Arc::clone(&session.main_outcome().unwrap().motion);
+        let drive = segue_motion::skin::Drive::new(&motion.clip, &motion.roles, &character);
+        (drive.is_some(), session.character_note())
+    };
+    assert_eq!(show(&mut session, &spider_id), (true, None));
+    let (is_moved, note) = show(&mut session, "walk");
+    assert!(!is_moved && note.is_some_and(|note| note.contains("cannot be moved by this clip")));
+
+    // A person that was there stays.
+    let mut session = Session::new();
+    let person_id = session.load("person.glb", person(0)).unwrap().ids.remove(0);
+    session.load("spider.glb", spider()).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+    // And takes the place of a spider.
+    let mut session = Session::new();
+    session.load("spider.glb", spider()).unwrap();
+    session.load("person.glb", person(0)).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+}
+
+#[test]
+fn a_motion_file_without_a_motion_waits_for_nothing() {
+    for text in ["", ":FULLY-SPECIFIED\n:DEGREES\n", "<html>not found</html>", ":DEGREES\n1\n"] {
+        let mut session = Session::new();
+        let before = session.library().entries().len();
+        let error = session.load("01_02.amc", bytes(text)).unwrap_err();
+        assert!(error.to_string().starts_with("01_02.amc:"), "{error}");
+        assert_eq!(session.library().entries().len(), before, "{text}");
+        assert!(
+            session.notices().list().iter().all(|notice| !notice.text.contains("waits")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_skeleton_that_does_not_fit_is_named() {
+    let other = ASF.replace("thigh", "leg").replace("spine", "trunk");
+    let said = |session: &Session| {
+        session
+            .notices()
+            .list()
+            .iter()
+            .map(|notice| notice.text.clone())
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    for files in [
+        [("01_02.amc", AMC), ("01.asf", other.as_str())],
+        [("01.asf", other.as_str()), ("01_02.amc", AMC)],
+    ] {
+        let mut session = Session::new();
+        for (name, text) in files {
+            session.load(name, bytes(text)).unwrap();
+        }
+        let said = said(&session);
+        assert!(said.contains("The skeleton of 01.asf does not fit: 1 of 3 bones"), "{said}");
+        // The one that fits is taken when it comes.
+        session.load("02.asf", bytes(ASF)).unwrap();
+        let motions = files_with_motion(&session);
+        assert_eq!(motions, ["01_02"], "{said}");
+    }
+}
+
+fn files_with_motion(session: &Session) -> Vec<String> {
+    let with_motion = files(session).into_iter().filter(|(.., frames)| *frames > 0);
+    with_motion.map(|(name, ..)| name).collect()
+}
+
+#[test]
+fn a_character_with_a_motion_brings_both() {
+    let mut session = Session::new();
+    let loaded = session.load("walker.glb", person(60)).unwrap();
+    assert_eq!(session.params().text(Key::A), loaded.ids[0]);
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert_eq!(loaded.warnings, [""; 0]);
+}
+
+#[test]
+fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
+    let names: Vec<String> = (0..200).map(|n| format!("{n:03}.bvh")).collect();
+    let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+    let mut session = Session::new();
+    let loaded = session.load("many.zip", Arc::from(zip(&files))).unwrap();
+    let errors: Vec<&str> = session
+        .notices()
+        .errors_since(0)
+        .iter()
+        .map(|notice| notice.text.as_str())
+        .collect();
+    assert_eq!(errors.len(), MOST_FAILURES + 1, "{errors:#?}");
+    assert_eq!(
+        errors[MOST_FAILURES],
+        "197 more did not work: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
+    );
+    assert_eq!(loaded.warnings.len(), 200, "whoever loads it by the API is told of each");
+}
+
+#[test]
+fn name_of_a_file_is_cleaned_and_its_id_is_short() {
+    let name = format!("a\nb\0\u{202e}hvb.{}.amc", "x".repeat(4000));
+    let mut session = Session::new();
+    let loaded = session.load(&name, bytes(AMC)).unwrap();
+    let entry = session.library().find(&loaded.ids[0]).unwrap();
+    assert!(
+        entry.name.starts_with("a bhvb.xxx") && entry.name.chars().count() <= 202,
+        "{}",
+        entry.name
+    );
+    assert!(entry.id.chars().count() < 120, "{}", entry.id);
+    session.load("b.asf", bytes(ASF)).unwrap();
+    assert_eq!(files(&session)[0].2, 2, "it is read by that name");
+    session
+        .apply(Command::Rename(loaded.ids[0].clone(), "x\ny\u{202e}".into()))
+        .unwrap();
+    assert_eq!(files(&session)[0].0, "x y");
+}
+
+#[test]
+fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers() {
+    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(segue_motion::synth::Action::Walk))
+        .unwrap()
+        .clip;
+    let text = segue_formats::bvh::write(&walk, &segue_formats::bvh::WriteOptions::default());
+    // The 40th row: its root is at 1e18 in the file's centimetres.
+    let rows: Vec<&str> = text.lines().collect();
+    let first = rows.iter().position(|row| row.starts_with("Frame Time")).unwrap() + 1;
+    let (_, rest) = rows[first + 40].split_once(' ').unwrap();
+    let wild = text.replace(rows[first + 40], &format!("1e20 {rest}"));
+    let scaled = |factor: f64| {
+        let offset = |line: &str| {
+            let (head, numbers) = line.split_once("OFFSET ")?;
+            let numbers: Vec<String> = numbers
+                .split_whitespace()
+                .map(|n| (n.parse::<f64>().unwrap() * factor).to_string())
+                .collect();
+            Some(format!("{head}OFFSET {}", numbers.join(" ")))
+        };
+        let lines: Vec<String> = text.lines().map(|line| offset(line).unwrap_or_else(|| line.to_owned())).collect();
+        lines.join("\n")
+    };
+    for (text, part) in [
+        (wild, "1 row with a root that is 1.0e18 m away"),
+        (scaled(1e-12), "m tall: its unit may be another one"),
+        (scaled(1e12), "m tall: its unit may be another one"),
+    ] {
+        let mut session = Session::new();
+        let loaded = session.load("x.bvh", bytes(&text)).unwrap();
+        assert!(
+            loaded.warnings.iter().any(|warning| warning.contains(part)),
+            "{part}: {:?}",
+            loaded.warnings
+        );
+        let notice = session.notices().list().iter().find(|notice| notice.mend.is_some()).unwrap();
+        let mend = notice.mend.clone().unwrap();
+        session.apply(Command::Reimport(mend.clip.clone(), mend.options)).unwrap();
+        let entry = session.library().find(&mend.clip).unwrap();
+        let motion = entry.motion.as_ref().unwrap();
+        let height = motion.roles.body_height(motion.clip.skeleton());
+        assert!((0.9..2.5).contains(&height), "{part}: {height} m");
+        if part.starts_with("1 row") {
+            let roots = motion.clip.root_translations();
+            assert!(roots.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.2), "{part}");
+        }
+        session.apply(Command::Undo).unwrap();
+    }
+    // A person of a usual size who goes a usual way is told nothing of the kind.
+    let loaded = Session::new().load("x.bvh", bytes(&text)).unwrap();
+    assert_eq!(loaded.warnings, [""; 0]);
+}
+
+#[test]
+fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
+    let asf = ASF.replace("root thigh spine", "root thigh spine tail");
+    let mut session = Session::new();
+    session.load("01.asf", bytes(&asf)).unwrap();
+    let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
+    assert!(
+        loaded.warnings.iter().any(|warning| warning.contains("such as `tail`")),
+        "{:?}",
+        loaded.warnings
+    );
+}
+
+#[test]
+fn values_of_a_link_of_any_length_are_quoted_in_short_and_its_problems_counted() {
+    let long = "x".repeat(100_000);
+    let nested = format!("{}walk{}", "blend(a:".repeat(2000), ")".repeat(2000));
+    let keys: Vec<String> = (0..500).map(|n| format!("key{n}=1")).collect();
+    let links = [
+        format!("lab={long}"),
+        format!("{long}=1"),
+        format!("blend_window={long}"),
+        format!("compare={long}"),
+        format!("compare=blend_window:{long},2"),
+        format!("a={nested}"),
+        format!("a=x~{}", "0".repeat(10_000)),
+        format!("lab=graph&clips={long}:"),
+        format!("lab=graph&clips=walk&go_to={long}"),
+        format!("lab=graph&clips=walk&jump={long}"),
+        format!("lab=match&tags={long}"),
+        format!("lab=register&also={long}"),
+        format!("lab=register&pins={long}"),
+        format!("src=ftp://{long}"),
+        format!("lesson={long}"),
+        keys.join("&"),
+    ];
+    for link in links {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.clone())).unwrap();
+        while session.work() {}
+        let said = session.notices().list().iter().map(|notice| notice.text.clone());
+        let problems = session.panes().iter().filter_map(|pane| pane.problem.clone());
+        let lesson = session.lesson().and_then(|lesson| match lesson {
+            Lesson::Failed(reason) => Some(reason),
+            _ => None,
+        });
+        let texts: Vec<String> = said.chain(problems).chain(lesson).collect();
+        assert!(!texts.is_empty(), "{}", link.get(..40).unwrap_or(&link));
+        for text in texts {
+            assert!(
+                text.chars().count() < 600,
+                "{} letters: {}…",
+                text.len(),
+                text.get(..200).unwrap_or(&text)
+            );
+        }
+    }
+    let error = Command::Assign(Slot::A, long);
+    assert!(Session::new().apply(error).unwrap_err().to_string().len() < 200);
+}

@@ -1,0 +1,188 @@
+//! The numbers that every lab has.
+
+use super::tests::settle;
+use super::*;
+use crate::motion::Motion;
+use crate::params::Kind;
+use crate::recipe::{Gauge, Measured};
+use glam::Quat;
+use segue_motion::clip::Clip;
+use segue_motion::metrics::{Better, Metric, ResultMetrics};
+use std::collections::BTreeSet;
+use std::f32::consts::PI;
+
+/// A clean result of every lab.
+const LABS: [&str; 12] = [
+    "lab=view",
+    "lab=make",
+    "lab=blend",
+    "lab=transition",
+    "lab=speed",
+    "lab=loop",
+    "lab=layers",
+    "lab=register",
+    "lab=path&a=walk_left",
+    "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20",
+    "lab=match&scenario=straight&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
+    "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
+];
+
+fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    settle(&mut session);
+    assert_eq!(session.panes()[0].problem, None, "{link}");
+    session
+}
+
+/// The first numbers of the first pane.
+fn common(session: &Session) -> Vec<Metric> {
+    session.panes()[0]
+        .result()
+        .unwrap()
+        .outcome
+        .metrics
+        .iter()
+        .take(4)
+        .copied()
+        .collect()
+}
+
+#[test]
+fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
+    let labs: BTreeSet<&str> = LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
+    let Kind::Choice(all) = Key::Lab.param().kind else { panic!() };
+    assert_eq!(labs, all.iter().map(|choice| choice.key).collect());
+    let expected = ResultMetrics::default().list();
+    assert_eq!(
+        expected.map(|metric| (metric.id, metric.label, metric.unit)),
+        [
+            ("pose_jump_deg", "Pose jump", "°"),
+            ("velocity_jump_dps", "Velocity jump", "°/s"),
+            ("spin_deg", "Spin", "°"),
+            ("skating_cmps", "Skating", "cm/s"),
+        ]
+    );
+    for link in LABS {
+        let mut session = opened(link);
+        if session.is_driven() {
+            session
+                .apply(Command::Steer(segue_motion::matching::Control::new(
+                    glam::DVec2::new(0.0, 1.2),
+                    None,
+                )))
+                .unwrap();
+            for _ in 0..90 {
+                session.tick(1.0 / 60.0);
+            }
+        }
+        let found = common(&session);
+        for (found, expected) in found.iter().zip(expected) {
+            assert_eq!(Metric { value: None, ..*found }, expected, "{link}");
+            assert_eq!(found.better, Better::Lower);
+        }
+        let values: Vec<f64> = found.iter().map(|metric| metric.value.unwrap()).collect();
+        let [jump, _, spin, skating] = values[..] else {
+            panic!("{values:?}")
+        };
+        assert!(jump < 6.0 && spin < 4.0 && skating < 15.0, "{link}: {values:?}");
+        // A slide has one name and one measure wherever it stands, and each number stands once.
+        let metrics = &session.main_outcome().unwrap().metrics;
+        let ids: BTreeSet<&str> = metrics.iter().map(|metric| metric.id).collect();
+        assert_eq!(ids.len(), metrics.len(), "{link}");
+        let slides = metrics.iter().filter(|metric| metric.label == "Foot slide");
+        assert_eq!(slides.map(|metric| metric.id).collect::<Vec<_>>(), ["foot_slide_cm"], "{link}");
+    }
+}
+
+/// A result whose frames are something else.
+fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
+    let clip = &outcome.motion.clip;
+    let mut rotations = Vec::new();
+    for frame in 0..clip.frames() {
+        let mut pose = clip.rotations(frame).to_vec();
+        change(frame, &mut pose);
+        rotations.extend(pose);
+    }
+    let roots = clip.root_translations().to_vec();
+    let clip = Clip::new("spoiled", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
+    Outcome {
+        motion: Arc::new(Motion {
+            clip: Arc::new(clip),
+            ..Motion::clone(&outcome.motion)
+        }),
+        measured: Measured::Motion,
+        ..outcome.clone()
+    }
+}
+
+fn measured(outcome: &Outcome) -> ResultMetrics {
+    let mut gauge = Gauge::default();
+    loop {
+        gauge.ask_anew();
+        if let Some(found) = gauge.numbers(outcome) {
+            return found;
+        }
+        while gauge.work() {}
+        assert!(gauge.is_ready());
+    }
+}
+
+#[test]
+fn a_fault_in_the_result_of_any_lab_is_told() {
+    for link in LABS {
+        let session = opened(link);
+        let outcome = session.main_outcome().unwrap();
+        let clip = &outcome.motion.clip;
+        if clip.frames() < 60 {
+            assert!(session.is_driven(), "{link}");
+            continue;
+        }
+        let half = clip.frames() / 2;
+        let joint = clip.skeleton().len() / 2;
+        let flash = measured(&spoiled(outcome, |frame, pose| {
+            if frame == half {
+                pose[joint] *= Quat::from_rotation_x(1.0);
+            }
+        }));
+        assert!(flash.pose_jump_deg.unwrap() > 30.0, "{link}: {flash:?}");
+        let at = flash.pose_jump_at.unwrap();
+        assert!(at.joint == joint && (at.frame == half || at.frame + 1 == half), "{link}: {flash:?}");
+        assert!(flash.velocity_jump_dps.unwrap() > 900.0, "{link}: {flash:?}");
+        let turn = 0.2 * clip.fps();
+        let spin = measured(&spoiled(outcome, |frame, pose| {
+            let share = ((frame as f64 - half as f64) / turn).clamp(0.0, 1.0);
+            pose[0] = Quat::from_rotation_y(share as f32 * PI) * pose[0];
+        }));
+        assert!(spin.spin_deg.unwrap() > 120.0, "{link}: {spin:?}");
+        assert!(spin.spin_at.unwrap().abs_diff(half) < 10, "{link}: {spin:?}");
+    }
+}
+
+#[test]
+fn long_results_are_shown_at_once_and_measured_in_slices() {
+    let mut session = opened("lab=blend&a=walk(make_seconds:25)&b=walk(make_seconds:25)&leave_a=20&enter_b=1");
+    let shorter = Command::Set(vec![(Key::BlendWindow, Value::Number(20.0))]);
+    session.apply(shorter).unwrap();
+    let outcome = Arc::clone(session.main_outcome().unwrap());
+    assert!(outcome.motion.clip.frames() > 2_000);
+    assert_eq!(outcome.metrics[0], ResultMetrics::default().list()[0]);
+    assert!(session.panes()[0].result().is_err() && session.jobs().is_empty());
+    let mut slices = 0;
+    while session.panes()[0].result().is_err() {
+        assert!(session.work());
+        slices += 1;
+    }
+    assert!(slices > 5, "{slices}");
+    assert!(common(&session).iter().all(|metric| metric.value.is_some()));
+    assert!(
+        Arc::ptr_eq(&session.main_outcome().unwrap().motion, &outcome.motion),
+        "the same motion"
+    );
+    // What is kept of it needs no numbers.
+    session.apply(Command::Keep(0)).unwrap();
+    let id = session.library().entries().last().unwrap().id.clone();
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
+    assert_eq!(other.main_outcome().unwrap().motion.clip.frames(), outcome.motion.clip.frames());
+}

@@ -1,0 +1,289 @@
+use super::*;
+use crate::{CompanyChange, OnPath};
+use glam::DVec2;
+use segue_motion::path::{GroundSpline, PathEdit, Pins};
+
+fn open(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    session
+}
+
+fn path(session: &Session) -> &OnPath {
+    assert_eq!(session.panes()[0].problem, None);
+    session.main_outcome().unwrap().path.as_deref().unwrap()
+}
+
+fn metric(session: &Session, id: &str) -> f64 {
+    let outcome = session.main_outcome().unwrap();
+    outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap()
+}
+
+/// The present path with one point elsewhere.
+fn moved(session: &Session, index: usize, by: DVec2) -> Value {
+    let spline = path(session).road.spline();
+    let to = spline.points()[index] + by;
+    Value::Text(spline.edited(&PathEdit::Move { index, to }, Pins::default()).unwrap().to_code())
+}
+
+fn set(session: &mut Session, key: Key, value: Value) {
+    session.apply(Command::Set(vec![(key, value)])).unwrap();
+}
+
+#[test]
+fn a_path_that_nobody_edited_gives_the_clip_back() {
+    for keep in ["speed", "duration", "whole"] {
+        let session = open(&format!("lab=path&a=walk_left&keep={keep}"));
+        let made = &session.main_outcome().unwrap().motion;
+        let original = path(&session).fitted.motion();
+        assert_eq!(made.clip.frames(), original.clip.frames());
+        for frame in 0..made.clip.frames() {
+            let apart = made.clip.root_translations()[frame].distance(original.clip.root_translations()[frame]);
+            assert!(apart < 1e-4, "{keep}, frame {frame}: {apart} m");
+            let stands = made.ground_frames[frame].shift.distance(original.ground_frames[frame].shift);
+            assert!(stands < 1e-4, "{keep}, frame {frame}: {stands} m");
+        }
+        assert!((metric(&session, "foot_slide_cm") - metric(&session, "foot_slide_original_cm")).abs() < 0.05);
+    }
+}
+
+#[test]
+fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
+    let mut session = open("lab=path&a=walk");
+    let before = session.query();
+    let fitted = Arc::clone(&path(&session).fitted);
+    for step in 1..=5 {
+        let value = {
+            let spline = fitted.road().spline();
+            let to = spline.points()[4] + DVec2::new(0.2 * f64::from(step), 0.0);
+            Value::Text(spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap().to_code())
+        };
+        set(&mut session, Key::Path, value);
+        assert!(Arc::ptr_eq(&path(&session).fitted, &fitted), "the fit stays while a point moves");
+    }
+    session.apply(Command::Settle).unwrap();
+    let middle = |session: &Session| {
+        let frames = &session.main_outcome().unwrap().motion.ground_frames;
+        frames[frames.len() / 2].shift.x
+    };
+    assert!(middle(&session) > 0.3, "{}", middle(&session));
+    assert!(path(&session).is_edited);
+    // The link alone brings it back.
+    let other = open(&session.query());
+    let clip = |session: &Session| Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    assert_eq!(clip(&other).root_translations(), clip(&session).root_translations());
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.query(), before);
+    assert!(middle(&session).abs() < 0.1);
+    session.apply(Command::Redo).unwrap();
+    assert!(middle(&session) > 0.3);
+}
+
+#[test]
+fn where_a_character_stands_is_where_its_clip_has_it() {
+    for link in ["keep=speed", "keep=duration", "keep=whole", "path_facing=world", "foot_lock=on"] {
+        let mut session = open(&format!("lab=path&a=walk_left&{link}"));
+        let value = moved(&session, 3, DVec2::new(0.4, -0.3));
+        set(&mut session, Key::Path, value);
+        let made = &session.main_outcome().unwrap().motion;
+        let measured = segue_motion::clip::character_frames(&made.clip, &made.roles);
+        for (frame, (told, measured)) in made.ground_frames.iter().zip(&measured).enumerate() {
+            let apart = told.shift.distance(measured.shift);
+            let turned = segue_motion::math::wrap_angle(told.yaw - measured.yaw).abs();
+            // Planted feet pull at the hips a little.
+            let tolerance = if link == "foot_lock=on" { 0.05 } else { 0.003 };
+            assert!(apart < tolerance && turned < 0.02, "{link}, frame {frame}: {apart} m, {turned} rad");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_path_says_so_and_loses_nothing() {
+    let session = open("lab=path&a=idle");
+    assert!(
+        session.panes()[0].problem.as_ref().unwrap().contains("stays within"),
+        "{:?}",
+        session.panes()[0].problem
+    );
+    let session = open("lab=path&a=walk&path=nonsense!");
+    assert!(session.panes()[0].problem.as_ref().unwrap().contains("not a path from a link"));
+    assert_eq!(session.params().text(Key::Path), "nonsense!");
+    // All points in one place: no direction.
+    let code = GroundSpline::uniform(vec![DVec2::ONE; 6]).unwrap().to_code();
+    let mut session = open(&format!("lab=path&a=walk&path={code}"));
+    assert!(session.panes()[0].problem.as_ref().unwrap().contains("no direction"));
+    session.apply(Command::Reset(Key::Path)).unwrap();
+    assert!(!path(&session).is_edited);
+    // Closed and crossing itself is fine.
+    let eight = [
+        (0.0, 0.0),
+        (2.0, 1.0),
+        (2.0, -1.0),
+        (-2.0, 1.0),
+        (-2.0, -1.0),
+        (-1.0, 0.5),
+        (0.0, 0.0),
+    ];
+    let eight = GroundSpline::uniform(eight.map(DVec2::from).to_vec()).unwrap();
+    let closed = eight.edited(&PathEdit::Close, Pins::default()).unwrap();
+    set(&mut session, Key::Path, Value::Text(closed.to_code()));
+    assert!(path(&session).road.spline().is_closed());
+    assert!(metric(&session, "path_m") > 5.0);
+}
+
+#[test]
+fn more_control_points_fit_better_side_by_side() {
+    let session = open("lab=path&a=walk_left&compare=control_points:4,8,16");
+    let errors: Vec<f64> = session
+        .panes()
+        .iter()
+        .map(|pane| pane.outcome.as_ref().unwrap().path.as_ref().unwrap().fitted.error().rms_cm)
+        .collect();
+    assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+}
+
+#[test]
+fn a_hairpin_is_told_in_place_and_time() {
+    let mut session = open("lab=path&a=walk&keep=duration");
+    assert!(path(&session).hard_turns.is_empty());
+    let value = moved(&session, 4, DVec2::new(0.2, -2.5));
+    set(&mut session, Key::Path, value);
+    assert!(!path(&session).hard_turns.is_empty());
+    assert!(metric(&session, "hard_turns") >= 1.0);
+    assert!(path(&session).hard_turns[0].turn_dps > path(&session).hard_turns[0].limit_dps);
+}
+
+#[test]
+fn characters_on_paths_of_their_own_play_together_from_a_link() {
+    let mut session = open("lab=path&a=walk&play=off");
+    let alone = session.query();
+    let value = moved(&session, 4, DVec2::new(1.0, 0.0));
+    set(&mut session, Key::Path, value);
+    session.apply(Command::Settle).unwrap();
+    let first = session.params().text(Key::Path).to_owned();
+    session.apply(Command::Company(CompanyChange::JoinResult(0))).unwrap();
+    let id = format!("path(a:walk,path:{first})");
+    assert_eq!(session.company()[0].id, id);
+    assert!(session.library().find(&id).is_some(), "kept, too");
+    session.apply(Command::Company(CompanyChange::Join("run".into()))).unwrap();
+    let value = moved(&session, 2, DVec2::new(-0.8, 0.0));
+    set(&mut session, Key::Path, value);
+    session.apply(Command::Settle).unwrap();
+
+    let other = open(&session.query());
+    let names = |session: &Session| session.company().iter().map(|one| one.id.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&other), [id.clone(), "run".to_owned()]);
+    for (one, two) in session.company().iter().zip(other.company()) {
+        let [one, two] = [one, two].map(|companion| Arc::clone(&companion.motion.as_ref().unwrap().clip));
+        assert_eq!(one.root_translations(), two.root_translations());
+    }
+    assert!(other.duration_secs() >= other.company()[1].duration_secs().unwrap());
+
+    // The first one is edited again, and the present one waits in its place.
+    let second = session.params().text(Key::Path).to_owned();
+    session.apply(Command::Company(CompanyChange::Edit(0))).unwrap();
+    assert_eq!(session.params().text(Key::Path), first);
+    assert_eq!(names(&session), [format!("path(a:walk,path:{second})"), "run".to_owned()]);
+    session.apply(Command::Company(CompanyChange::Leave(1))).unwrap();
+    assert_eq!(session.company().len(), 1);
+    // Who is thrown out of the library leaves the stage, and comes back with undo.
+    session.apply(Command::Remove(names(&session)[0].clone())).unwrap();
+    assert!(session.company().is_empty());
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.company().len(), 1);
+    for _ in 0..6 {
+        session.apply(Command::Undo).unwrap();
+    }
+    assert_eq!(session.query(), alone);
+    // In another lab nobody plays along.
+    let elsewhere = open(&format!("lab=view&others={id}"));
+    assert!(elsewhere.company().is_empty());
+}
+
+#[test]
+fn whoever_is_not_here_is_named() {
+    let session = open("lab=path&a=walk&others=somebody~0123456789ab,walk");
+    assert!(session.company()[0].motion.as_ref().unwrap_err().contains("somebody"));
+    assert!(session.company()[1].motion.is_ok());
+}
+
+#[test]
+fn a_kept_path_is_a_clip_for_every_other_lab() {
+    let mut session = open("lab=path&a=run&foot_lock=on&keep=whole");
+    let value = moved(&session, 3, DVec2::new(0.5, 0.0));
+    set(&mut session, Key::Path, value);
+    session.apply(Command::Keep(0)).unwrap();
+    let code = session.params().text(Key::Path).to_owned();
+    let id = format!("path(a:run,foot_lock:on,keep:whole,path:{code})");
+    assert!(session.library().find(&id).is_some(), "{:?}", session.library().entries().last());
+    let other = open(&format!("lab=path&a={id}&control_points=6"));
+    assert_eq!(
+        path(&other).fitted.motion().clip.root_translations(),
+        session.main_outcome().unwrap().motion.clip.root_translations()
+    );
+}
+
+#[test]
+fn feet_of_a_short_clip_are_held_on_its_own_ground() {
+    let session = open("lab=path&a=run&foot_lock=on&ground=4");
+    let free = open("lab=path&a=run&ground=4");
+    let carried = &free.main_outcome().unwrap().motion;
+    let options = segue_motion::transition::FootLockOptions {
+        ground_m: Some(0.04),
+        ..Default::default()
+    };
+    let locked = segue_motion::transition::foot_lock(&carried.clip, &carried.roles, &carried.contacts, &options).unwrap();
+    let clip = &session.main_outcome().unwrap().motion.clip;
+    assert!((0..clip.frames()).all(|frame| clip.rotations(frame) == locked.rotations(frame)));
+    assert!(!path(&session).awaits_feet);
+}
+
+/// A walk longer than what is planted while a hand moves.
+const LONG: &str = "walk(make_seconds:12)";
+
+#[test]
+fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
+    let mut session = Session::new();
+    let open = |session: &mut Session, query: &str| session.apply(Command::OpenLink(query.to_owned())).unwrap();
+    open(&mut session, &format!("lab=path&a={LONG}&foot_lock=on"));
+    assert!(path(&session).awaits_feet);
+    assert!(session.jobs().iter().any(|job| job.name == "holding feet"));
+    let value = moved(&session, 3, DVec2::new(0.8, 0.0));
+    set(&mut session, Key::Path, value);
+    assert!(path(&session).awaits_feet, "at once, without");
+    let free = metric(&session, "foot_slide_cm");
+    while session.work() {}
+    assert!(!path(&session).awaits_feet);
+    assert!((metric(&session, "foot_slide_before_cm") - free).abs() < 1e-9);
+    assert!(
+        metric(&session, "foot_slide_cm") < 0.5 * free,
+        "{} of {free}",
+        metric(&session, "foot_slide_cm")
+    );
+    assert!(session.jobs().is_empty());
+    // The same as done at once.
+    let known = path(&session).fitted.motion();
+    let roles = &known.roles;
+    let now = Arc::clone(session.main_outcome().unwrap());
+    let mut free = Session::new();
+    open(&mut free, &session.query().replace("foot_lock=on&", ""));
+    let carried = &free.main_outcome().unwrap().motion;
+    let locked = segue_motion::transition::foot_lock(
+        &carried.clip,
+        roles,
+        &carried.contacts,
+        &segue_motion::transition::FootLockOptions::default(),
+    )
+    .unwrap();
+    assert_eq!(locked.rotations(300), now.motion.clip.rotations(300));
+
+    // Who keeps it before that keeps what will come of it.
+    let value = moved(&session, 3, DVec2::new(0.8, 0.3));
+    set(&mut session, Key::Path, value);
+    session.apply(Command::Company(CompanyChange::JoinResult(0))).unwrap();
+    assert!(session.company()[0].motion.is_err());
+    while session.work() {}
+    let kept = session.company()[0].motion.as_ref().unwrap();
+    assert_eq!(kept.clip.rotations(300), session.main_outcome().unwrap().motion.clip.rotations(300));
+}

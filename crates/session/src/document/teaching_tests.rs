@@ -1,0 +1,185 @@
+//! Lessons, by commands.
+
+use super::*;
+use crate::lesson::Source;
+
+const PAGE: &str = "# One\n\n[Begin](?lab=blend&a=walk&b=run&blend_window=30)\n\n## Try\n\n- [Ten](?blend_window=10) Short.\n- [Loop](?lab=loop&a=walk_left) A loop.\n\n# Two\n\n[Next](?lab=make&gait=run)\n";
+const ADDRESS: &str = "https://example.org/steps.md";
+
+fn set(session: &mut Session, values: &[(Key, &str)]) {
+    let values = values.iter().map(|(key, text)| (*key, key.param().parse(text).unwrap())).collect();
+    session.apply(Command::Set(values)).unwrap();
+    session.apply(Command::Settle).unwrap();
+}
+
+/// Answers what is asked for.
+fn deliver(session: &mut Session) -> Vec<Source> {
+    let mut asked = Vec::new();
+    for request in session.take_requests() {
+        if let Request::Lesson(source) = request {
+            session.finish_lesson(&source, Ok(PAGE.as_bytes()));
+            asked.push(source);
+        }
+    }
+    asked
+}
+
+fn opened() -> Session {
+    let mut session = Session::new();
+    set(&mut session, &[(Key::Lesson, ADDRESS)]);
+    deliver(&mut session);
+    session
+}
+
+fn number_of(session: &Session) -> usize {
+    match session.lesson() {
+        Some(Lesson::Page(page)) => page.number,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_lesson_that_is_chosen_sets_the_document_up_in_one_step() {
+    let mut session = Session::new();
+    let before = session.query();
+    set(&mut session, &[(Key::Lesson, ADDRESS)]);
+    assert!(matches!(session.lesson(), Some(Lesson::Waiting)));
+    assert_eq!(deliver(&mut session), [Source::Web(ADDRESS.to_owned())]);
+    assert_eq!(
+        session.query(),
+        format!("lesson={ADDRESS}&lab=blend"),
+        "the state of the page is that of the table"
+    );
+    // The second page is in the same file.
+    let Some(Lesson::Page(page)) = session.lesson() else { panic!() };
+    assert_eq!((page.number, page.of, page.previous), (1, 2, None));
+    let next = page.next.unwrap();
+    set(&mut session, &[(Key::Lesson, &next)]);
+    assert_eq!(session.take_requests(), []);
+    assert_eq!(number_of(&session), 2);
+    assert_eq!(session.params().text(Key::Lab), "make");
+    session.apply(Command::Undo).unwrap();
+    assert_eq!((number_of(&session), session.params().text(Key::Lab)), (1, "blend"));
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.query(), before);
+    assert!(session.lesson().is_none());
+}
+
+#[test]
+fn a_link_with_a_state_keeps_it_beside_the_lesson() {
+    for (link, window) in [
+        (format!("lesson={ADDRESS}&blend_window=77"), 77.0),
+        (format!("lesson={ADDRESS}&theme=dark&lang=en"), 30.0),
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.clone())).unwrap();
+        deliver(&mut session);
+        assert_eq!(session.params().number(Key::BlendWindow), window, "{link}");
+        assert_eq!(number_of(&session), 1);
+        let again = session.query();
+        session.apply(Command::OpenLink(again.clone())).unwrap();
+        assert_eq!(session.query(), again, "a link reproduces itself");
+    }
+}
+
+#[test]
+fn a_link_to_what_is_there_does_not_set_the_page_up() {
+    let mut session = Session::new();
+    set(&mut session, &[(Key::Lesson, &format!("{ADDRESS}#2"))]);
+    deliver(&mut session);
+    assert_eq!(session.params().text(Key::Lab), "make");
+    // All as in the table, but for the lesson.
+    set(&mut session, &[(Key::Lab, "blend"), (Key::Gait, "walk")]);
+    let link = session.query();
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(link.clone())).unwrap();
+    deliver(&mut other);
+    assert_eq!(
+        (other.query(), number_of(&other), other.params().text(Key::Lab)),
+        (link, 2, "blend")
+    );
+}
+
+#[test]
+fn a_try_lays_its_link_over_the_page_and_is_one_step() {
+    let mut session = opened();
+    set(&mut session, &[(Key::Theme, "light"), (Key::Align, "off"), (Key::Look, "bones")]);
+    let before = session.query();
+    assert!(!session.is_tried("blend_window=10") && !session.is_tried(""));
+    session.apply(Command::Try("blend_window=10".into())).unwrap();
+    assert!(session.is_tried("blend_window=10") && !session.is_tried(""));
+    let params = session.params();
+    assert_eq!(params.number(Key::BlendWindow), 10.0);
+    assert!(params.is_on(Key::Align), "what no link names is as on the page");
+    assert_eq!((params.text(Key::Theme), params.text(Key::Look)), ("light", "bones"));
+    assert_eq!(params.text(Key::Lesson), ADDRESS);
+    session.apply(Command::Try("lab=loop&a=walk_left".into())).unwrap();
+    assert_eq!(
+        (session.params().text(Key::Lab), session.params().number(Key::BlendWindow)),
+        ("loop", 30.0)
+    );
+    session.apply(Command::Try(String::new())).unwrap();
+    assert!(session.is_tried(""));
+    for _ in 0..3 {
+        session.apply(Command::Undo).unwrap();
+    }
+    assert_eq!(session.query(), before);
+}
+
+#[test]
+fn clips_of_the_user_stay_where_no_link_names_others() {
+    let bare = "# Any\n\n[Begin](?lab=blend&blend_window=12)\n\n## Try\n\n- [Long](?blend_window=50) Long.\n";
+    let mut session = Session::new();
+    set(&mut session, &[(Key::A, "jump"), (Key::B, "spin")]);
+    set(&mut session, &[(Key::Lesson, ADDRESS)]);
+    session.finish_lesson(&Source::Web(ADDRESS.to_owned()), Ok(bare.as_bytes()));
+    session.apply(Command::Try("blend_window=50".into())).unwrap();
+    let params = session.params();
+    assert_eq!((params.text(Key::A), params.text(Key::B)), ("jump", "spin"));
+    assert_eq!(params.number(Key::BlendWindow), 50.0);
+}
+
+#[test]
+fn a_link_to_another_lesson_opens_it() {
+    let mut session = opened();
+    session.apply(Command::Try("lesson=half_life".into())).unwrap();
+    assert_eq!(session.params().text(Key::Lesson), "half_life");
+    assert_eq!(deliver(&mut session), [Source::BuiltIn("en/04-half_life.md".to_owned())]);
+    session.read_lessons_in("zh-Hant");
+    assert!(matches!(session.lesson(), Some(Lesson::Waiting)));
+    assert_eq!(deliver(&mut session), [Source::BuiltIn("zh-Hant/04-half_life.md".to_owned())]);
+    let Some(Lesson::Page(page)) = session.lesson() else { panic!() };
+    assert_eq!(
+        (page.number, page.previous.as_deref(), page.next.as_deref()),
+        (4, Some("blend_window"), Some("loops"))
+    );
+}
+
+#[test]
+fn what_goes_wrong_is_said_and_can_be_asked_for_again() {
+    let mut session = Session::new();
+    assert!(session.apply(Command::Try("blend_window=10".into())).is_err(), "no lesson is open");
+    let source = Source::Web(ADDRESS.to_owned());
+    set(&mut session, &[(Key::Lesson, ADDRESS)]);
+    session.take_requests();
+    session.finish_lesson(&source, Err("The host cannot be reached.".to_owned()));
+    assert!(matches!(session.lesson(), Some(Lesson::Failed(reason)) if reason.contains("reached")));
+    set(&mut session, &[(Key::Lesson, "")]);
+    set(&mut session, &[(Key::Lesson, ADDRESS)]);
+    assert_eq!(session.take_requests(), [Request::Lesson(source.clone())]);
+    session.finish_lesson(&source, Ok(b"nothing"));
+    assert!(matches!(session.lesson(), Some(Lesson::Failed(reason)) if reason.contains("begins with its title")));
+    for (lesson, said) in [("cooking", "expected contents"), (&format!("{ADDRESS}#9"), "page 9")] {
+        set(&mut session, &[(Key::Lesson, lesson)]);
+        deliver(&mut session);
+        assert!(
+            matches!(session.lesson(), Some(Lesson::Failed(reason)) if reason.contains(said)),
+            "{lesson}"
+        );
+    }
+    // What a link of a lesson says wrongly is told, and the rest is used.
+    let mut session = opened();
+    session.apply(Command::Try("blend_window=10&weight_law=steep".into())).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 10.0);
+    assert!(session.notices().list().iter().any(|notice| notice.text.contains("steep")));
+}

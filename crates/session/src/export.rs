@@ -1,0 +1,286 @@
+//! A motion as the bytes of a file.
+
+use super::motion::{Motion, curve_kind, joint_of};
+use super::params::{Key, Params};
+use super::recipe::{Outcome, Source};
+use segue_formats::bvh::{self, RotationOrder};
+use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
+use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
+use segue_motion::clip::{Clip, CurveKind, joint_curve};
+use segue_motion::skin::{Character, Drive};
+
+/// A kind of file that motions are saved as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// Skeleton and motion as text: what most programs read.
+    #[default]
+    Bvh,
+    /// A table for spreadsheets and scripts.
+    Csv,
+    /// A scene with skeleton, body and animation.
+    Glb,
+}
+
+impl ExportFormat {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Bvh, Self::Csv, Self::Glb];
+
+    /// Its name in the API, and the ending of its files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bvh => "bvh",
+            Self::Csv => "csv",
+            Self::Glb => "glb",
+        }
+    }
+
+    /// The format of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.name() == name)
+    }
+
+    /// Its media type.
+    #[must_use]
+    pub const fn mime(self) -> &'static str {
+        match self {
+            Self::Bvh => "text/plain",
+            Self::Csv => "text/csv",
+            Self::Glb => "model/gltf-binary",
+        }
+    }
+}
+
+/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all of it but the body, GLB frame rate and
+/// body, CSV nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExportOptions {
+    /// The kind of file.
+    pub format: ExportFormat,
+    /// Metres per unit of length; those of the file that the clip came from where `None`.
+    pub metres_per_unit: Option<f64>,
+    /// One order for the rotations of all joints; those of the file where `None`.
+    pub rotation_order: Option<RotationOrder>,
+    /// Frames per second; the clip's own where `None`.
+    pub fps: Option<f64>,
+    /// Whose body the file has, where the format has bodies.
+    pub body: ExportBody,
+}
+
+/// Whose body a file has beside its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExportBody {
+    /// That of the character on the stage, on its own skeleton, in its own size; where there is none that the motion can move, the plain one.
+    #[default]
+    Character,
+    /// One made around the clip's own skeleton.
+    Plain,
+}
+
+impl ExportBody {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Character, Self::Plain];
+
+    /// Its name in the API.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Character => "character",
+            Self::Plain => "plain",
+        }
+    }
+
+    /// The body of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|body| body.name() == name)
+    }
+}
+
+/// A number per frame that goes into a table beside the joints, under its name.
+pub type Column = (String, Vec<f32>);
+
+/// Writes a motion as a file. `columns` go into a table only. `character` is who is on the stage in place of a plain body: see [`ExportBody`].
+///
+/// # Errors
+/// [`GlbError`] when the motion is too large for the format.
+pub fn export(motion: &Motion, character: Option<&Character>, columns: &[Column], options: &ExportOptions) -> Result<Vec<u8>, GlbError> {
+    match options.format {
+        ExportFormat::Bvh => {
+            let how = bvh::WriteOptions {
+                metres_per_unit: options.metres_per_unit,
+                rotation_order: options.rotation_order,
+                fps: options.fps,
+                ..bvh::WriteOptions::default()
+            };
+            Ok(bvh::write(&motion.clip, &how).into_bytes())
+        }
+        ExportFormat::Csv => {
+            let inputs = CsvInputs {
+                clip: &motion.clip,
+                contacts: Some(&motion.contacts),
+                columns,
+            };
+            Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
+        }
+        ExportFormat::Glb => {
+            let how = GlbOptions {
+                fps: options.fps,
+                smooth: true,
+            };
+            let character = character.filter(|_| options.body == ExportBody::Character);
+            match character.and_then(|character| Some((led(motion, character)?, character))) {
+                Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
+                None => write_glb(&motion.clip, &how),
+            }
+        }
+    }
+}
+
+/// The motion as the character on the stage has it; `None` where it moves no joint of the character.
+fn led(motion: &Motion, character: &Character) -> Option<Clip> {
+    Drive::new(&motion.clip, &motion.roles, character)?.clip(&motion.clip).ok()
+}
+
+/// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the clip has no such joint.
+#[must_use]
+pub fn plotted_of_clip(motion: &Motion, params: &Params) -> Vec<Column> {
+    plotted(motion, "", params).into_iter().collect()
+}
+
+/// The curves that are plotted of a result: its own, and those of what it was made from, each at the result's time; no numbers where they do not play.
+#[must_use]
+pub fn plotted_of_result(outcome: &Outcome, params: &Params) -> Vec<Column> {
+    let own = plotted(&outcome.motion, "", params);
+    let sources = outcome.sources.iter().filter_map(|source| {
+        let (name, values) = plotted(&source.motion, &format!("{} ", source.slot.label()), params)?;
+        Some((name, in_time_of(&outcome.motion, source, &values)))
+    });
+    own.into_iter().chain(sources).collect()
+}
+
+fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
+    let name = params.text(Key::Joint);
+    let kind = curve_kind(params.text(Key::Curve));
+    let quantity = match kind {
+        CurveKind::Speed => "speed_m_per_s",
+        CurveKind::Height => "height_m",
+        CurveKind::Angle => "angle_deg",
+        CurveKind::AngularSpeed => "turn_deg_per_s",
+    };
+    let joint = joint_of(motion, name)?;
+    Some((format!("{whose}{name}.{quantity}"), joint_curve(&motion.clip, joint, kind)))
+}
+
+/// The values of a source's frames at the frames of the result.
+fn in_time_of(result: &Motion, source: &Source, values: &[f32]) -> Vec<f32> {
+    let fps = source.motion.clip.fps();
+    let at = |frame: usize| ((result.clip.time_of(frame) - source.starts_at_secs) * fps).round();
+    (0..result.clip.frames())
+        .map(|frame| {
+            // A frame before the first is no index; a cast alone would make it 0.
+            let inside = Some(at(frame)).filter(|at| *at >= 0.0);
+            inside.and_then(|at| values.get(at as usize).copied()).unwrap_or(f32::NAN)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Command, Session, Value};
+    use segue_formats::{ImportOptions, import};
+
+    fn blend() -> Session {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink("lab=blend&joint=left%20foot".into())).unwrap();
+        while session.work() {}
+        session
+    }
+
+    fn read_back(bytes: &[u8], name: &str) -> segue_motion::clip::Clip {
+        import(name, bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip
+    }
+
+    #[test]
+    fn every_format_has_the_motion() {
+        let session = blend();
+        let motion = &session.main_outcome().unwrap().motion;
+        for format in ExportFormat::ALL {
+            assert_eq!(ExportFormat::from_name(format.name()), Some(format));
+            let bytes = export(
+                motion,
+                None,
+                &[],
+                &ExportOptions {
+                    format,
+                    ..ExportOptions::default()
+                },
+            )
+            .unwrap();
+            if format == ExportFormat::Csv {
+                let text = String::from_utf8(bytes).unwrap();
+                assert_eq!(text.lines().count(), motion.clip.frames() + 1);
+                assert!(text.lines().next().unwrap().ends_with("left_foot_contact,right_foot_contact"));
+            } else {
+                let clip = read_back(&bytes, &format!("x.{}", format.name()));
+                assert_eq!(
+                    (clip.frames(), clip.skeleton().len()),
+                    (motion.clip.frames(), motion.clip.skeleton().len())
+                );
+            }
+        }
+        assert_eq!(ExportFormat::from_name("fbx"), None);
+    }
+
+    #[test]
+    fn what_is_chosen_is_written() {
+        let session = blend();
+        let motion = &session.main_outcome().unwrap().motion;
+        let options = ExportOptions {
+            metres_per_unit: Some(1.0),
+            rotation_order: Some(RotationOrder::Xyz),
+            fps: Some(30.0),
+            ..ExportOptions::default()
+        };
+        let text = String::from_utf8(export(motion, None, &[], &options).unwrap()).unwrap();
+        assert!(text.contains("Xrotation Yrotation Zrotation") && !text.contains("Zrotation Xrotation"));
+        let clip = read_back(text.as_bytes(), "x.bvh");
+        assert_eq!(clip.fps().round(), 30.0);
+        assert_eq!(clip.provenance().metres_per_unit, 1.0);
+        let glb = ExportOptions {
+            format: ExportFormat::Glb,
+            ..options
+        };
+        assert_eq!(read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(), 30.0);
+    }
+
+    #[test]
+    fn the_table_has_the_plotted_curves_in_the_results_time() {
+        let mut session = blend();
+        let outcome = session.main_outcome().unwrap().clone();
+        let columns = plotted_of_result(&outcome, session.params());
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["left foot.speed_m_per_s", "A left foot.speed_m_per_s", "B left foot.speed_m_per_s"]
+        );
+        assert!(columns.iter().all(|(_, values)| values.len() == outcome.motion.clip.frames()));
+        let (a, b) = (&columns[1].1, &columns[2].1);
+        // Outside of the transition the result is the source: B plays to the end, and not before it was begun.
+        let fps = outcome.motion.clip.fps();
+        let transition = outcome.transition.unwrap();
+        let before = (transition.start_secs * fps).round() as usize / 2;
+        assert!((columns[0].1[before] - a[before]).abs() < 1e-3);
+        let last = b.len() - 2;
+        assert!((columns[0].1[last] - b[last]).abs() < 1e-3);
+        let began = outcome.sources[1].starts_at_secs;
+        assert_eq!(b[0].is_nan(), began > 0.0);
+        let values = vec![(Key::Curve, Value::Choice("height"))];
+        session.apply(Command::Set(values)).unwrap();
+        assert_eq!(plotted_of_clip(&outcome.motion, session.params())[0].0, "left foot.height_m");
+        session.apply(Command::Set(vec![(Key::Joint, Value::Text("tail".into()))])).unwrap();
+        assert_eq!(plotted_of_clip(&outcome.motion, session.params()), []);
+    }
+}

@@ -1,0 +1,115 @@
+//! Which lessons there are, where their texts are, and which texts are here.
+
+use super::page::Page;
+use crate::outside::short;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The lessons that come with Segue, in their order.
+pub const LESSONS: [&str; 14] = [
+    "alignment",
+    "slerp",
+    "blend_window",
+    "half_life",
+    "loops",
+    "time_warp",
+    "distance_matrix",
+    "segment_size",
+    "edge_weights",
+    "atan",
+    "first_frame",
+    "path_editing",
+    "motion_matching",
+    "foot_skate",
+];
+
+/// What the list of these lessons is called, in place of a lesson.
+pub const CONTENTS: &str = "contents";
+
+/// Where the text of a lesson is.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// A file among those that come with Segue, as in `en/01-alignment.md`.
+    BuiltIn(String),
+    /// An address on the web.
+    Web(String),
+}
+
+/// The file of a lesson that comes with Segue, as in `01-alignment.md`; of the list of all for [`CONTENTS`].
+#[must_use]
+pub fn file_name(lesson: &str) -> Option<String> {
+    if lesson == CONTENTS {
+        return Some("index.md".to_owned());
+    }
+    let at = LESSONS.iter().position(|name| *name == lesson)?;
+    Some(format!("{:02}-{lesson}.md", at + 1))
+}
+
+/// The lesson that a file of that name holds.
+pub(super) fn lesson_of_file(name: &str) -> Option<&'static str> {
+    let (_, lesson) = name.strip_suffix(".md")?.split_once('-')?;
+    let lesson = LESSONS.iter().find(|known| **known == lesson)?;
+    (file_name(lesson)? == name).then_some(lesson)
+}
+
+/// Where the text of what the parameter `lesson` names is, in a language, and which page of it, counted from 0.
+///
+/// # Errors
+/// What was found in place of a lesson, and what there is.
+pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), String> {
+    if lesson.starts_with("https://") || lesson.starts_with("http://") {
+        let (address, page) = lesson.split_once('#').unwrap_or((lesson, "1"));
+        let page = page.parse::<usize>().unwrap_or(1).max(1) - 1;
+        return Ok((Source::Web(address.to_owned()), page));
+    }
+    match file_name(lesson) {
+        Some(file) => Ok((Source::BuiltIn(format!("{lang}/{file}")), 0)),
+        None => Err(format!(
+            "lesson: found `{}`, expected {CONTENTS}, {}, or an address that starts with https://.",
+            short(lesson),
+            LESSONS.join(", ")
+        )),
+    }
+}
+
+/// A text that was asked for.
+#[derive(Clone, Debug)]
+pub(crate) enum Text {
+    /// It is under way.
+    Asked,
+    /// It is here.
+    Here(Arc<[Page]>),
+    /// It did not come, or is no lesson: why.
+    Failed(String),
+}
+
+/// The texts that were asked for, by where they are.
+#[derive(Clone, Debug)]
+pub(crate) struct Shelf {
+    /// The folder of the lessons that come with Segue.
+    pub(crate) language: &'static str,
+    /// See the type.
+    pub(crate) texts: BTreeMap<Source, Text>,
+    /// The lesson that is to set the document up once its text is here.
+    pub(crate) to_set_up: Option<String>,
+}
+
+impl Default for Shelf {
+    fn default() -> Self {
+        Self {
+            language: "en",
+            texts: BTreeMap::new(),
+            to_set_up: None,
+        }
+    }
+}
+
+impl Shelf {
+    /// The pages of a text that is here.
+    pub(crate) fn pages(&self, source: &Source) -> Option<&Arc<[Page]>> {
+        match self.texts.get(source)? {
+            Text::Here(pages) => Some(pages),
+            Text::Asked | Text::Failed(_) => None,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The document: the library, the parameters, what is made from them, and everything that can be done to it.
+//!
+//! # The idea
+//!
+//! There is one way in and one way out, and both are data:
+//!
+//! ```text
+//! link, slider, API → Command → Session::apply → recipe (inputs → clip, numbers) → panes → scene
+//! ```
+//!
+//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps, defaults and help. Sliders, link, API,
+//! comparison and undo come from it. A *recipe* is a pure function of clips and parameters; its inputs are remembered with its result, so
+//! that what did not change is not computed again. Picture a spreadsheet: a cell is touched, and only what hangs on it is reckoned anew.
+//!
+//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs from outside, a file or an address, it
+//! asks for ([`Request`]) and is handed; nothing here knows a screen, a file system or a clock. Time comes in by [`Session::tick`].
+//!
+//! # Example
+//!
+//! ```
+//! use segue_session::{Command, Key, Session, Value};
+//!
+//! // What a first visitor sees: one blend in three panes, with windows of 30, 15 and 10 frames.
+//! let mut session = Session::new();
+//! while session.work() {}
+//! assert_eq!(session.panes().len(), 3);
+//! assert_eq!(session.query(), "compare=blend_window:30,15,10");
+//!
+//! let window = |frames| Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]);
+//! session.apply(Command::OpenLink("blend_window=24".into()))?;
+//! session.apply(window(12.0))?;
+//! let transition = session.main_outcome().and_then(|outcome| outcome.transition);
+//! assert_eq!(transition.map(|transition| transition.window_frames), Some(12));
+//! assert_eq!(session.query(), "blend_window=12");
+//!
+//! // What does not fit is refused with a sentence, and changes nothing.
+//! let error = session.apply(window(1000.0)).err().ok_or("it was taken")?;
+//! assert!(error.to_string().contains("1 to 240") && session.query() == "blend_window=12");
+//!
+//! // The link is the state: another session makes the same motion of it. And there is a way back.
+//! let mut other = Session::new();
+//! other.apply(Command::OpenLink(session.query()))?;
+//! let clip = |session: &Session| session.main_outcome().map(|made| made.motion.clip.clone());
+//! assert!(clip(&session).is_some() && clip(&session) == clip(&other));
+//! session.apply(Command::Undo)?;
+//! assert_eq!(session.query(), "blend_window=24");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy and cost
+//!
+//! The same link gives the same motion; numbers in it are whole multiples of their parameter's step. A change costs what the recipe costs
+//! that depends on it: a camera that turns makes nothing anew.
+//!
+//! # What it does not do
+//!
+//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it
+//! names a file, with the first digits of its SHA-256, and who opens the link must have that file.
+
+mod clip_sets;
+mod command;
+mod compare;
+mod document;
+pub mod export;
+pub mod lesson;
+mod library;
+pub mod link;
+mod memory;
+mod motion;
+mod notice;
+mod numbers;
+pub mod outside;
+mod params;
+pub mod reading;
+mod recipe;
+mod report;
+mod samples;
+mod saved;
+pub mod transport;
+mod undo;
+
+pub use clip_sets::ClipSet;
+pub use command::{Command, CommandError, CompanyChange, Request};
+pub use compare::{Compare, MAX_PANES};
+pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
+pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
+pub use memory::{MemoryUse, PageMemory};
+pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
+pub use notice::{Level, Mend, Notice, Notices, sentence};
+pub use numbers::{NumberRow, NumberTable, digits};
+pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
+pub use recipe::write_ids;
+pub use recipe::{
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+};
+pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
+pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
+pub use recipe::{HandTag, own_words, write_tags};
+pub use recipe::{MOST_ALSO, weight_curve, write_also, write_pairs};
+pub use report::{ReportFacts, report};
+pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
+pub use saved::{Saved, SavedEntry, Storing};

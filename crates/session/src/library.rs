@@ -1,0 +1,316 @@
+//! The clips that there are: built in, dropped, or made here.
+
+use super::motion::Motion;
+use super::outside;
+use super::reading::{About, Companion, Content, LARGE_BYTES};
+use super::samples::Sample;
+use segue_formats::{FileKind, ImportOptions};
+use segue_motion::skeleton::Roles;
+use segue_motion::skin::{Character, SkinnedMesh};
+use std::sync::Arc;
+
+/// Where a clip comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin {
+    /// The synthesiser, by a preset's id.
+    Preset,
+    /// A take that is bundled with the app and loaded when asked for.
+    Sample(&'static Sample),
+    /// A file that was dropped, opened or fetched.
+    File(SourceFile),
+    /// Made in the Make lab; its id says from what.
+    Made,
+}
+
+/// A file as it came, kept so that it can be read again with other options and stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceFile {
+    /// The file's name.
+    pub name: String,
+    /// SHA-256 of its bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// Its bytes.
+    pub content: Content,
+    /// How many there are.
+    pub size: u64,
+    /// What it is.
+    pub kind: FileKind,
+    /// The skeleton file that it was read with.
+    pub companion: Option<Companion>,
+    /// Which of the clips in the file this is, from 0.
+    pub index: usize,
+    /// What the user says about unit, up axis and frame rate.
+    pub options: ImportOptions,
+}
+
+impl SourceFile {
+    /// Whether it takes too long to be read between two frames.
+    #[must_use]
+    pub fn is_large(&self) -> bool {
+        self.size > LARGE_BYTES || matches!(self.content, Content::Outside(_))
+    }
+}
+
+/// A clip in the library.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What links call it; unique.
+    pub id: String,
+    /// What a person calls it.
+    pub name: String,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet, and a file that is being read.
+    pub motion: Option<Arc<Motion>>,
+    /// The mesh that the file has for the clip's skeleton.
+    pub mesh: Option<Arc<SkinnedMesh>>,
+    /// Why there is no motion though the file is known: reading it failed or was stopped. It is read again when that is asked for.
+    pub unread: Option<String>,
+    /// How its file was read; `None` for what comes from no file, and until it is read.
+    pub about: Option<About>,
+    /// What was odd in the file, one sentence each.
+    pub warnings: Vec<String>,
+    /// The roles, where they were corrected by hand.
+    pub roles_by_hand: Option<Roles>,
+}
+
+impl Entry {
+    /// An entry that nothing is known of yet but where it comes from.
+    pub(super) fn new(id: impl Into<String>, name: impl Into<String>, origin: Origin) -> Self {
+        Self {
+            id: id.into(),
+            name: name.into(),
+            origin,
+            motion: None,
+            mesh: None,
+            unread: None,
+            about: None,
+            warnings: Vec::new(),
+            roles_by_hand: None,
+        }
+    }
+
+    /// The format in the API.
+    #[must_use]
+    pub fn format(&self) -> &'static str {
+        match &self.origin {
+            Origin::Preset | Origin::Made => "synth",
+            Origin::Sample(_) => "bvh",
+            Origin::File(file) => file.kind.name(),
+        }
+    }
+
+    /// Whether it is the motion of a skeleton that is not here.
+    #[must_use]
+    pub fn awaits_skeleton(&self) -> bool {
+        let motion_alone = |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
+        self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
+    }
+
+    /// The character that the file brought: its mesh on the clip's skeleton. `None` without a mesh, and until the file is read.
+    #[must_use]
+    pub fn character(&self) -> Option<Character> {
+        let motion = self.motion.as_ref()?;
+        Some(Character {
+            skeleton: Arc::clone(motion.clip.skeleton()),
+            roles: motion.roles.clone(),
+            mesh: Arc::clone(self.mesh.as_ref()?),
+        })
+    }
+
+    /// The whole SHA-256 of the file it came from, hexadecimal.
+    #[must_use]
+    pub fn sha256(&self) -> Option<&str> {
+        if let Origin::File(file) = &self.origin {
+            Some(&file.sha256)
+        } else {
+            None
+        }
+    }
+}
+
+/// The list of clips, in the order on screen.
+#[derive(Clone, Debug, Default)]
+pub struct Library {
+    entries: Vec<Arc<Entry>>,
+}
+
+impl FromIterator<Entry> for Library {
+    fn from_iter<I: IntoIterator<Item = Entry>>(entries: I) -> Self {
+        let mut library = Self::default();
+        for entry in entries {
+            library.put(entry);
+        }
+        library
+    }
+}
+
+/// How many hexadecimal digits of the SHA-256 stand in a link.
+const SHA_DIGITS: usize = 8;
+
+impl Library {
+    /// All clips in order.
+    #[must_use]
+    pub fn entries(&self) -> &[Arc<Entry>] {
+        &self.entries
+    }
+
+    /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name when only one has it.
+    #[must_use]
+    pub fn find(&self, reference: &str) -> Option<&Arc<Entry>> {
+        if let Some(entry) = self.get(reference) {
+            return Some(entry);
+        }
+        let (name, sha, index) = split_reference(reference);
+        let mut matching = self.entries.iter().filter(|entry| match &entry.origin {
+            Origin::File(file) if !sha.is_empty() => file.sha256.starts_with(sha) && file.index == index,
+            Origin::File(file) => file_stem(&file.name) == file_stem(name) && file.index == index,
+            _ => false,
+        });
+        let found = matching.next();
+        // Two files of one name are not told apart by it.
+        if sha.is_empty() && matching.next().is_some() { None } else { found }
+    }
+
+    /// The clip of exactly that id.
+    #[must_use]
+    pub fn get(&self, id: &str) -> Option<&Arc<Entry>> {
+        self.entries.iter().find(|entry| entry.id == id)
+    }
+
+    /// Adds a clip at the end, or puts it in the place of the one with the same id.
+    pub fn put(&mut self, entry: Entry) {
+        self.put_shared(Arc::new(entry));
+    }
+
+    /// As [`Library::put`], for one that another library holds as well.
+    pub fn put_shared(&mut self, entry: Arc<Entry>) {
+        match self.entries.iter_mut().find(|old| old.id == entry.id) {
+            Some(old) => *old = entry,
+            None => self.entries.push(entry),
+        }
+    }
+
+    /// Takes a clip out; says whether it was there.
+    pub fn remove(&mut self, id: &str) -> bool {
+        let before = self.entries.len();
+        self.entries.retain(|entry| entry.id != id);
+        self.entries.len() < before
+    }
+
+    /// Takes what is known of clips over that have no motion here, where the other library has them read in the same way.
+    pub fn take_motions_of(&mut self, other: &Self) {
+        for entry in self.entries.iter_mut().filter(|entry| entry.motion.is_none()) {
+            let known = other.get(&entry.id).filter(|known| {
+                let is_read_alike = match (&known.origin, &entry.origin) {
+                    (Origin::File(a), Origin::File(b)) => {
+                        (&a.sha256, a.index, a.options, &a.companion) == (&b.sha256, b.index, b.options, &b.companion)
+                    }
+                    (a, b) => a == b,
+                };
+                known.motion.is_some() && known.roles_by_hand == entry.roles_by_hand && is_read_alike
+            });
+            if let Some(known) = known {
+                *entry = Arc::new(Entry {
+                    name: entry.name.clone(),
+                    ..(**known).clone()
+                });
+            }
+        }
+    }
+
+    /// Changes a clip in place, when it is there.
+    pub fn change(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> bool {
+        let Some(slot) = self.entries.iter_mut().find(|entry| entry.id == id) else {
+            return false;
+        };
+        change(Arc::make_mut(slot));
+        true
+    }
+}
+
+/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second character in it. Of a long name it has the beginning.
+#[must_use]
+pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
+    let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
+    let suffix = if index == 0 { String::new() } else { format!(".{}", index + 1) };
+    format!("{}~{sha}{suffix}", outside::for_id(file_stem(name)))
+}
+
+/// Name, SHA-256 prefix (empty where there is none) and index of a reference.
+#[must_use]
+pub fn split_reference(reference: &str) -> (&str, &str, usize) {
+    let split = reference.rsplit_once('~').and_then(|(name, rest)| {
+        let (sha, index) = match rest.split_once('.') {
+            Some((sha, number)) => (sha, number.parse::<usize>().ok()?.saturating_sub(1)),
+            None => (rest, 0),
+        };
+        // The recipe of a result names files, too, and is none.
+        let is_sha = !sha.is_empty() && sha.bytes().all(|digit| digit.is_ascii_hexdigit());
+        is_sha.then_some((name, sha, index))
+    });
+    split.unwrap_or((reference, "", 0))
+}
+
+/// A file's name without folders and ending.
+#[must_use]
+pub(super) fn file_stem(name: &str) -> &str {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match name.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem,
+        _ => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dropped(name: &str, sha256: &str) -> Entry {
+        let file = SourceFile {
+            name: name.into(),
+            sha256: sha256.into(),
+            content: Content::Here(Arc::from([])),
+            size: 0,
+            kind: FileKind::Bvh,
+            companion: None,
+            index: 0,
+            options: ImportOptions::default(),
+        };
+        Entry {
+            id: file_id(name, sha256, 0),
+            name: name.into(),
+            origin: Origin::File(file),
+            motion: None,
+            mesh: None,
+            unread: None,
+            about: None,
+            warnings: vec![],
+            roles_by_hand: None,
+        }
+    }
+
+    #[test]
+    fn a_reference_finds_the_file_by_id_sha_or_name() {
+        let mut library = Library::default();
+        library.put(dropped("a/01_01.bvh", "3fa9c1d2aa"));
+        library.put(dropped("walk.bvh", "11111111aa"));
+        library.put(dropped("walk.bvh", "22222222aa"));
+        assert_eq!(library.entries()[0].id, "01_01~3fa9c1d2");
+        for reference in ["01_01~3fa9c1d2", "renamed~3fa9c1d2", "x~3fa9", "01_01", "01_01.bvh"] {
+            assert_eq!(library.find(reference).map(|e| e.name.as_str()), Some("a/01_01.bvh"), "{reference}");
+        }
+        assert_eq!(library.find("walk").map(|e| &e.id), None, "two files have that name");
+        assert_eq!(library.find("walk~2222").map(|e| e.id.as_str()), Some("walk~22222222"));
+        assert!(library.find("01_01~3fa9c1d2.2").is_none());
+    }
+
+    #[test]
+    fn references_come_apart() {
+        assert_eq!(split_reference("a~b~12.3"), ("a~b", "12", 2));
+        for whole in ["walk", "blend(a:walk,b:spider~12ab34cd.2,enter_b:0.5)", "tilde~", "a~2 b~x"] {
+            assert_eq!(split_reference(whole), (whole, "", 0));
+        }
+        assert_eq!(file_stem("x/y.z/.hidden"), ".hidden");
+    }
+}

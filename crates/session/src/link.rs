@@ -1,0 +1,147 @@
+//! The link: what a query string can carry of the state, and back.
+
+use super::outside::short;
+use super::params::{Key, Params, Value};
+use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+
+/// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every browser takes them as they are.
+const ESCAPED: &AsciiSet = &CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b'&')
+    .add(b'+')
+    .add(b'<')
+    .add(b'>')
+    .add(b'=')
+    .add(b'`');
+
+/// What a link says, and what of it could not be used.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// The values that were understood, in the order of the link.
+    pub values: Vec<(Key, Value)>,
+    /// One sentence for each key that is unknown and each value that does not fit.
+    pub problems: Vec<String>,
+}
+
+/// Keys that belong to the page's loader, not to the state.
+const LOADER_KEYS: &[&str] = &["backend"];
+
+/// Reads a query string, with or without its `?`.
+#[must_use]
+pub fn read(query: &str) -> Link {
+    let mut link = Link::default();
+    for (name, text) in form_urlencoded::parse(query.trim_start_matches('?').as_bytes()) {
+        match Key::from_name(&name) {
+            Some(key) => match key.param().parse(&text) {
+                Ok(value) => link.values.push((key, value)),
+                Err(error) => link.problems.push(error.to_string()),
+            },
+            None if LOADER_KEYS.contains(&name.as_ref()) => {}
+            None => link.problems.push(format!("`{}` is not a parameter of this version", short(&name))),
+        }
+    }
+    link
+}
+
+/// Writes the query string without `?`: what differs from the defaults, in the order of the table. The playhead is left out while `playing`.
+#[must_use]
+pub fn write(params: &Params) -> String {
+    let mut query = String::new();
+    let playing = params.is_on(Key::Play);
+    for (param, value) in params.changed() {
+        if param.key == Key::Time && playing {
+            continue;
+        }
+        if !query.is_empty() {
+            query.push('&');
+        }
+        query.push_str(param.name);
+        query.push('=');
+        query.extend(utf8_percent_encode(&param.format(value), ESCAPED));
+    }
+    query
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::{Kind, PARAMS};
+    use proptest::prelude::*;
+
+    fn any_value(row: usize) -> BoxedStrategy<(Key, Value)> {
+        let param = &PARAMS[row];
+        let key = param.key;
+        match param.kind {
+            Kind::Number { min, max, auto, .. } => (any::<bool>(), min..=max)
+                .prop_map(move |(left_to_segue, number)| {
+                    (
+                        key,
+                        if auto && left_to_segue {
+                            Value::Auto
+                        } else {
+                            key.param().check(Value::Number(number)).unwrap()
+                        },
+                    )
+                })
+                .boxed(),
+            Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
+            Kind::Choice(choices) => (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed(),
+            Kind::Clip | Kind::Text => "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed(),
+            Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
+                .prop_map(move |(x, y)| (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap()))
+                .boxed(),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_state_survives_its_link(values in (0..PARAMS.len()).map(any_value).collect::<Vec<_>>()) {
+            let mut params = Params::default();
+            for (key, value) in values {
+                params.set(key, value).unwrap();
+            }
+            params.set(Key::Play, Value::Switch(false)).unwrap();
+            let link = read(&write(&params));
+            prop_assert_eq!(&link.problems, &Vec::<String>::new());
+            let mut back = Params::default();
+            for (key, value) in link.values {
+                back.set(key, value).unwrap();
+            }
+            prop_assert_eq!(back, params);
+        }
+
+        #[test]
+        fn no_query_panics(query in ".{0,200}") {
+            let _link = read(&query);
+        }
+    }
+
+    #[test]
+    fn links_are_short_and_readable() {
+        let mut params = Params::default();
+        assert_eq!(write(&params), "");
+        params.set(Key::BlendWindow, Value::Number(24.0)).unwrap();
+        params.set(Key::Compare, Value::Text("blend_window:30,15,10".into())).unwrap();
+        params.set(Key::A, Value::Text("01_01~3fa9c1d2".into())).unwrap();
+        assert_eq!(write(&params), "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10");
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named_and_the_rest_is_used() {
+        let link = read("?blend_window=24&colour=red&weight_law=steep&align=off");
+        assert_eq!(
+            link.values,
+            [(Key::BlendWindow, Value::Number(24.0)), (Key::Align, Value::Switch(false))]
+        );
+        assert_eq!(
+            link.problems,
+            [
+                "`colour` is not a parameter of this version",
+                "weight_law: found `steep`, expected smooth, linear, smoother"
+            ]
+        );
+    }
+}

@@ -1,0 +1,170 @@
+//! The numbers of all panes side by side.
+
+use super::document::{Pane, Session};
+use super::outside::markdown;
+use segue_formats::csv;
+use segue_motion::metrics::{Better, Metric};
+use std::fmt::Write as _;
+
+/// What stands above a result that is not compared to another one.
+const RESULT: &str = "result";
+
+/// A row of numbers, one for each pane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberRow {
+    /// What is measured.
+    pub label: &'static str,
+    /// The unit, as written behind the number.
+    pub unit: &'static str,
+    /// What it means and how it is measured.
+    pub help: &'static str,
+    /// Which way it should go.
+    pub better: Better,
+    /// The values, pane by pane; `None` where there is nothing to measure.
+    pub values: Vec<Option<f64>>,
+}
+
+/// The numbers of all panes, to be read and to be copied.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NumberTable {
+    /// What each pane is called: the value in which it differs.
+    pub panes: Vec<String>,
+    /// The numbers.
+    pub rows: Vec<NumberRow>,
+}
+
+impl NumberTable {
+    /// The table of what is shown now.
+    #[must_use]
+    pub fn of(session: &Session) -> Self {
+        let panes = session.panes();
+        let name = |pane: &Pane| session.variant_name(pane).unwrap_or_else(|| RESULT.to_owned());
+        let of_pane = |pane: &Pane, id: &str| {
+            let made = pane.result().ok()?;
+            made.outcome.metrics.iter().find(|metric| metric.id == id)?.value
+        };
+        let first = panes.iter().find_map(|pane| pane.result().ok());
+        let metrics = first.map_or(&[][..], |made| made.outcome.metrics.as_slice());
+        let row = |metric: &Metric| NumberRow {
+            label: metric.label,
+            unit: metric.unit,
+            help: metric.help,
+            better: metric.better,
+            values: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
+        };
+        let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
+        let walk = |pane: &Pane| pane.result().ok()?.outcome.walk.clone();
+        if panes.iter().any(|pane| walk(pane).is_some()) {
+            let built = panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();
+            rows.push(NumberRow {
+                label: "Build time",
+                unit: "s",
+                help: "What it took here to compare the clips, as far as that was not done before, and to make the graph.",
+                better: Better::Neutral,
+                values: built,
+            });
+        }
+        Self {
+            panes: panes.iter().map(name).collect(),
+            rows,
+        }
+    }
+
+    /// The table in Markdown.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let names: Vec<String> = self.panes.iter().map(|name| markdown(name)).collect();
+        let mut out = format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(self.panes.len()));
+        for row in &self.rows {
+            let values: Vec<String> = row.values.iter().map(|value| digits(*value)).collect();
+            let written = writeln!(out, "| {} | {} |", row.heading(), values.join(" | "));
+            debug_assert!(written.is_ok(), "a string takes all");
+        }
+        out
+    }
+
+    /// The table as comma-separated values, in full precision. No cell is one that a spreadsheet computes ([`csv::cell`]).
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let head: Vec<String> = ["", "unit"]
+            .into_iter()
+            .map(str::to_owned)
+            .chain(self.panes.iter().map(|pane| csv::cell(pane)))
+            .collect();
+        let mut out = head.join(",") + "\n";
+        for row in &self.rows {
+            let values: Vec<String> = row
+                .values
+                .iter()
+                .map(|value| value.map_or_else(String::new, |value| value.to_string()))
+                .collect();
+            let written = writeln!(out, "{},{},{}", csv::cell(row.label), csv::cell(row.unit), values.join(","));
+            debug_assert!(written.is_ok(), "a string takes all");
+        }
+        out
+    }
+}
+
+impl NumberRow {
+    /// What is measured, and in which unit.
+    #[must_use]
+    pub fn heading(&self) -> String {
+        if self.unit.is_empty() {
+            self.label.to_owned()
+        } else {
+            format!("{}, {}", self.label, self.unit)
+        }
+    }
+
+    /// The best and the worst value; none where they are alike, and where none is better.
+    #[must_use]
+    pub fn ends(&self) -> [Option<f64>; 2] {
+        let values = || self.values.iter().flatten().copied();
+        let (low, high) = (values().min_by(f64::total_cmp), values().max_by(f64::total_cmp));
+        match (low, high, self.better) {
+            (Some(low), Some(high), Better::Lower) if high - low > 0.05 * high.abs() => [Some(low), Some(high)],
+            (Some(low), Some(high), Better::Higher) if high - low > 0.05 * high.abs() => [Some(high), Some(low)],
+            _ => [None, None],
+        }
+    }
+}
+
+/// A number with about three digits; a dash where there is none.
+#[must_use]
+pub fn digits(value: Option<f64>) -> String {
+    let Some(value) = value else { return "–".to_owned() };
+    let decimals = match value.abs() {
+        large if large >= 100.0 => 0,
+        middle if middle >= 10.0 => 1,
+        _ => 2,
+    };
+    let digits = format!("{value:.decimals$}");
+    let digits = if digits.contains('.') {
+        digits.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &digits
+    };
+    digits.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_written_twice() {
+        let table = NumberTable {
+            panes: vec!["=1+1".into(), "a|b".into()],
+            rows: vec![NumberRow {
+                label: "Lag",
+                unit: "s",
+                help: "",
+                better: Better::Lower,
+                values: vec![Some(0.416), None],
+            }],
+        };
+        assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Lag, s | 0.42 | – |\n");
+        assert_eq!(table.csv(), ",unit,'=1+1,a|b\nLag,s,0.416,\n");
+        assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
+    }
+}

@@ -1,0 +1,711 @@
+//! A report on its way from a worker: a head of JSON, and the long arrays as bytes in pieces, so that neither side copies for longer than a
+//! frame lasts.
+
+use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
+use crate::memory::motion_bytes;
+use crate::motion::{FeetReading, Motion};
+use glam::{DVec2, Quat, Vec3};
+use segue_formats::{FileKind, ImportError};
+use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
+use segue_motion::math::Planar;
+use segue_motion::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use serde::{Deserialize, Serialize};
+use std::collections::TryReserveError;
+use std::sync::Arc;
+
+/// The length of a piece, bytes: a whole number of every kind of value below, and copied in well under a millisecond.
+const PIECE_BYTES: usize = 48 << 14;
+
+/// Why pieces do not make a report.
+#[derive(Debug, thiserror::Error)]
+pub enum WireError {
+    /// The head is not one.
+    #[error("the head of a report cannot be read: {0}")]
+    Head(#[from] serde_json::Error),
+    /// More or fewer bytes than the head tells of.
+    #[error("a report of {expected} bytes came with {found}")]
+    Length {
+        /// What the head says.
+        expected: usize,
+        /// What came.
+        found: usize,
+    },
+    /// There is no memory for it.
+    #[error("there is no memory for its {} MB: remove clips that you do not need", .bytes.div_ceil(1_000_000))]
+    NoRoom {
+        /// How many bytes it has.
+        bytes: usize,
+    },
+    /// The arrays make no clip.
+    #[error(transparent)]
+    Clip(#[from] ClipError),
+    /// The joints make no skeleton.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+}
+
+#[derive(Serialize, Deserialize)]
+struct Head {
+    files: Vec<FileHead>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileHead {
+    name: String,
+    sha256: String,
+    size: u64,
+    kind: FileKind,
+    /// How many bytes of the file itself come along.
+    unpacked: Option<usize>,
+    result: Result<ClipsHead, ImportError>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ClipsHead {
+    clips: Vec<ClipHead>,
+    #[serde(default)]
+    meshes: Vec<MeshHead>,
+    warnings: Vec<String>,
+    companion: Option<Companion>,
+    awaits_skeleton: bool,
+}
+
+/// A clip without its arrays.
+#[derive(Serialize, Deserialize)]
+struct ClipHead {
+    name: String,
+    joints: Vec<Joint>,
+    #[serde(default)]
+    above: Option<Above>,
+    fps: f64,
+    frames: usize,
+    provenance: Provenance,
+    /// The joints that have translations.
+    moving: Vec<usize>,
+    roles: Roles,
+    #[serde(default)]
+    ground_m: f32,
+    about: About,
+    /// Which of the file's meshes is its own.
+    #[serde(default)]
+    mesh: Option<usize>,
+}
+
+/// A mesh without its arrays.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct MeshHead {
+    vertices: usize,
+    triangles: usize,
+    joints: usize,
+    /// Vertices with a colour: all or none.
+    colors: usize,
+}
+
+/// A report that is ready to travel.
+#[derive(Debug)]
+pub struct Parcel {
+    head: String,
+    report: ReadReport,
+}
+
+impl Parcel {
+    /// Packs a report.
+    ///
+    /// # Errors
+    /// [`WireError::Head`] when JSON cannot hold it.
+    pub fn new(report: ReadReport) -> Result<Self, WireError> {
+        let head = Head {
+            files: report.files.iter().map(FileHead::of).collect(),
+            notes: report.notes.clone(),
+        };
+        Ok(Self {
+            head: serde_json::to_string(&head)?,
+            report,
+        })
+    }
+
+    /// Everything but the arrays.
+    #[must_use]
+    pub fn head(&self) -> &str {
+        &self.head
+    }
+
+    /// Hands out the arrays, piece by piece, in the order in which [`Unpacker::push`] wants them.
+    pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
+        let mut piece = Piece {
+            bytes: Vec::with_capacity(PIECE_BYTES),
+            send: &mut send,
+        };
+        for file in &self.report.files {
+            for part in file.unpacked.as_deref().unwrap_or_default().chunks(PIECE_BYTES) {
+                piece.put(part);
+            }
+            let clips = file.result.as_ref().map_or(&[][..], |read| &read.clips);
+            for clip in clips {
+                put_motion(&mut piece, &clip.motion);
+            }
+            for mesh in meshes(clips) {
+                put_mesh(&mut piece, mesh);
+            }
+        }
+        piece.flush();
+    }
+}
+
+fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
+    let clip = &motion.clip;
+    for frame in 0..clip.frames() {
+        piece.put_each(clip.rotations(frame), |q| q.to_array().map(f32::to_le_bytes));
+    }
+    piece.put_each(clip.root_translations(), |v| v.to_array().map(f32::to_le_bytes));
+    for track in clip.translations() {
+        piece.put_each(&track.values, |v| v.to_array().map(f32::to_le_bytes));
+    }
+    piece.put_each(&motion.ground_frames, |place| {
+        [place.yaw, place.shift.x, place.shift.y].map(f64::to_le_bytes)
+    });
+    for frame in 0..clip.frames() {
+        piece.put(&Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame))));
+    }
+}
+
+/// The meshes of clips, each once.
+fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
+    let mut meshes: Vec<&Arc<SkinnedMesh>> = Vec::new();
+    for mesh in clips.iter().filter_map(|clip| clip.mesh.as_ref()) {
+        if !meshes.iter().any(|known| Arc::ptr_eq(known, mesh)) {
+            meshes.push(mesh);
+        }
+    }
+    meshes
+}
+
+fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
+    for v in mesh.positions.iter().chain(&mesh.normals) {
+        piece.put(v.to_array().map(f32::to_le_bytes).as_flattened());
+    }
+    for joints in &mesh.joints {
+        piece.put(joints.map(u16::to_le_bytes).as_flattened());
+    }
+    for numbers in mesh.weights.iter().chain(&mesh.colors) {
+        piece.put(numbers.map(f32::to_le_bytes).as_flattened());
+    }
+    for triangle in &mesh.triangles {
+        piece.put(triangle.map(u32::to_le_bytes).as_flattened());
+    }
+    for RigidTransform { rotation, translation } in &mesh.bind {
+        piece.put(rotation.to_array().map(f32::to_le_bytes).as_flattened());
+        piece.put(translation.to_array().map(f32::to_le_bytes).as_flattened());
+    }
+}
+
+/// Gathers values up to the length of a piece; no value is cut.
+struct Piece<'a> {
+    bytes: Vec<u8>,
+    send: &'a mut dyn FnMut(&[u8]),
+}
+
+impl Piece<'_> {
+    fn put(&mut self, value: &[u8]) {
+        if self.bytes.len() + value.len() > PIECE_BYTES {
+            self.flush();
+        }
+        self.bytes.extend_from_slice(value);
+    }
+
+    /// Puts the bytes of one value after the other: `N` numbers of `M` bytes each.
+    // Not inlined: browsers optimise a function from one call to its next.
+    #[inline(never)]
+    fn put_each<T, const N: usize, const M: usize>(&mut self, mut values: &[T], bytes_of: impl Fn(&T) -> [[u8; M]; N]) {
+        while !values.is_empty() {
+            if PIECE_BYTES - self.bytes.len() < N * M {
+                self.flush();
+            }
+            let start = self.bytes.len();
+            let (now, later) = values.split_at(values.len().min((PIECE_BYTES - start) / (N * M)));
+            self.bytes.resize(start + now.len() * N * M, 0);
+            let room = self.bytes.get_mut(start..).unwrap_or_default().as_chunks_mut().0.as_chunks_mut().0;
+            for (room, value) in room.iter_mut().zip(now) {
+                *room = bytes_of(value);
+            }
+            values = later;
+        }
+    }
+
+    fn flush(&mut self) {
+        if !self.bytes.is_empty() {
+            (self.send)(&self.bytes);
+            self.bytes.clear();
+        }
+    }
+}
+
+impl FileHead {
+    fn of(file: &ReadFile) -> Self {
+        Self {
+            name: file.name.clone(),
+            sha256: file.sha256.clone(),
+            size: file.size,
+            kind: file.kind,
+            unpacked: file.unpacked.as_ref().map(Vec::len),
+            result: match &file.result {
+                Ok(read) => Ok(ClipsHead {
+                    clips: read.clips.iter().map(|clip| ClipHead::of(clip, &meshes(&read.clips))).collect(),
+                    meshes: meshes(&read.clips).into_iter().map(|mesh| MeshHead::of(mesh)).collect(),
+                    warnings: read.warnings.clone(),
+                    companion: read.companion.clone(),
+                    awaits_skeleton: read.awaits_skeleton,
+                }),
+                Err(error) => Err(error.clone()),
+            },
+        }
+    }
+
+    fn clips(&self) -> &[ClipHead] {
+        self.result.as_ref().map_or(&[], |read| &read.clips)
+    }
+
+    fn meshes(&self) -> &[MeshHead] {
+        self.result.as_ref().map_or(&[], |read| &read.meshes)
+    }
+
+    /// How many bytes of arrays come with it.
+    fn bytes(&self) -> usize {
+        let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
+        let meshes = self.meshes().iter().fold(0usize, |sum, mesh| sum.saturating_add(mesh.bytes()));
+        clips.saturating_add(meshes).saturating_add(self.unpacked.unwrap_or(0))
+    }
+}
+
+impl ClipHead {
+    fn of(clip: &ReadClip, meshes: &[&Arc<SkinnedMesh>]) -> Self {
+        let motion = &clip.motion;
+        Self {
+            name: motion.clip.name().to_owned(),
+            joints: motion.clip.skeleton().joints().to_vec(),
+            above: motion.clip.skeleton().above().cloned(),
+            fps: motion.clip.fps(),
+            frames: motion.clip.frames(),
+            provenance: motion.clip.provenance(),
+            moving: motion.clip.translations().iter().map(|track| track.joint).collect(),
+            roles: motion.roles.clone(),
+            ground_m: motion.ground_m,
+            about: clip.about.clone(),
+            mesh: clip
+                .mesh
+                .as_ref()
+                .and_then(|mesh| meshes.iter().position(|known| Arc::ptr_eq(known, mesh))),
+        }
+    }
+}
+
+impl MeshHead {
+    fn of(mesh: &SkinnedMesh) -> Self {
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            joints: mesh.bind.len(),
+            colors: mesh.colors.len(),
+        }
+    }
+
+    /// How many bytes its arrays take.
+    fn bytes(&self) -> usize {
+        let vertices = self
+            .vertices
+            .saturating_mul(12 + 12 + 8 + 16)
+            .saturating_add(self.colors.saturating_mul(16));
+        vertices
+            .saturating_add(self.triangles.saturating_mul(12))
+            .saturating_add(self.joints.saturating_mul(28))
+    }
+
+    /// A mesh with the memory that its arrays need.
+    fn room(&self) -> Result<SkinnedMesh, TryReserveError> {
+        let mut mesh = SkinnedMesh::default();
+        mesh.positions.try_reserve_exact(self.vertices)?;
+        mesh.normals.try_reserve_exact(self.vertices)?;
+        mesh.joints.try_reserve_exact(self.vertices)?;
+        mesh.weights.try_reserve_exact(self.vertices)?;
+        mesh.colors.try_reserve_exact(self.colors)?;
+        mesh.triangles.try_reserve_exact(self.triangles)?;
+        mesh.bind.try_reserve_exact(self.joints)?;
+        Ok(mesh)
+    }
+
+    /// Takes what the mesh still needs from the front of `bytes`.
+    fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
+        let vector = |b: &[u8; 12]| Vec3::from_array(floats(b));
+        fill(&mut mesh.positions, self.vertices, bytes, vector);
+        fill(&mut mesh.normals, self.vertices, bytes, vector);
+        fill(&mut mesh.joints, self.vertices, bytes, |b: &[u8; 8]| {
+            std::array::from_fn(|at| u16::from_le_bytes([b[2 * at], b[2 * at + 1]]))
+        });
+        fill(&mut mesh.weights, self.vertices, bytes, |b: &[u8; 16]| floats(b));
+        fill(&mut mesh.colors, self.colors, bytes, |b: &[u8; 16]| floats(b));
+        fill(&mut mesh.triangles, self.triangles, bytes, |b: &[u8; 12]| {
+            std::array::from_fn(|at| u32::from_le_bytes(std::array::from_fn(|i| b[4 * at + i])))
+        });
+        fill(&mut mesh.bind, self.joints, bytes, |b: &[u8; 28]| {
+            let [x, y, z, w, translation @ ..] = floats::<28, 7>(b);
+            RigidTransform {
+                rotation: Quat::from_xyzw(x, y, z, w),
+                translation: Vec3::from_array(translation),
+            }
+        });
+    }
+}
+
+/// The arrays of one clip, while they come in.
+#[derive(Default)]
+struct Arrays {
+    rotations: Vec<Quat>,
+    /// The root's, then those of each joint that moves.
+    translations: Vec<Vec<Vec3>>,
+    ground_frames: Vec<Planar>,
+    contacts: [Vec<bool>; 2],
+}
+
+impl Arrays {
+    /// Takes the memory that a clip needs.
+    fn with_room_for(head: &ClipHead) -> Result<Self, TryReserveError> {
+        let mut arrays = Self::default();
+        arrays.rotations.try_reserve_exact(head.frames.saturating_mul(head.joints.len()))?;
+        arrays.translations.resize_with(head.moving.len() + 1, Vec::new);
+        for values in &mut arrays.translations {
+            values.try_reserve_exact(head.frames)?;
+        }
+        arrays.ground_frames.try_reserve_exact(head.frames)?;
+        for flags in &mut arrays.contacts {
+            flags.try_reserve_exact(head.frames)?;
+        }
+        Ok(arrays)
+    }
+
+    /// Takes what it still needs from the front of `bytes`.
+    fn take(&mut self, head: &ClipHead, bytes: &mut &[u8]) {
+        let frames = head.frames;
+        fill(
+            &mut self.rotations,
+            frames.saturating_mul(head.joints.len()),
+            bytes,
+            |b: &[u8; 16]| {
+                let [x, y, z, w] = floats(b);
+                Quat::from_xyzw(x, y, z, w)
+            },
+        );
+        for values in &mut self.translations {
+            fill(values, frames, bytes, |b: &[u8; 12]| Vec3::from_array(floats(b)));
+        }
+        fill(&mut self.ground_frames, frames, bytes, |b: &[u8; 24]| {
+            let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|i| b[8 * at + i]));
+            Planar {
+                yaw: number(0),
+                shift: DVec2::new(number(1), number(2)),
+            }
+        });
+        let mut pairs: Vec<[bool; 2]> = Vec::new();
+        fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |b: &[u8; 2]| {
+            b.map(|flag| flag != 0)
+        });
+        for pair in pairs {
+            self.contacts[0].push(pair[0]);
+            self.contacts[1].push(pair[1]);
+        }
+    }
+
+    fn into_clip(self, head: ClipHead, meshes: &[Arc<SkinnedMesh>]) -> Result<ReadClip, WireError> {
+        let mesh = head.mesh.and_then(|mesh| meshes.get(mesh)).cloned();
+        let skeleton = Arc::new(Skeleton::new(head.joints)?.with_above(head.above));
+        let mut translations = self.translations.into_iter();
+        let root = translations.next().unwrap_or_default();
+        let tracks = head.moving.into_iter().zip(translations);
+        let tracks = tracks.map(|(joint, values)| JointTranslations { joint, values }).collect();
+        let clip = Clip::new(head.name, skeleton, head.fps, self.rotations, root)?;
+        Ok(ReadClip {
+            motion: Motion {
+                clip: Arc::new(clip.with_translations(tracks)?.with_provenance(head.provenance)),
+                roles: head.roles,
+                contacts: Contacts::from_flags(self.contacts),
+                ground_frames: self.ground_frames,
+                seams: Vec::new(),
+                ground_m: head.ground_m,
+                feet: FeetReading::default(),
+            },
+            about: head.about,
+            mesh,
+        })
+    }
+}
+
+/// Moves values from the front of `bytes` to `values` until there are `wanted` or no more bytes.
+fn fill<T, const N: usize>(values: &mut Vec<T>, wanted: usize, bytes: &mut &[u8], read: impl Fn(&[u8; N]) -> T) {
+    let missing = wanted.saturating_sub(values.len());
+    let (all, _) = bytes.as_chunks::<N>();
+    let coming = &all[..missing.min(all.len())];
+    values.extend(coming.iter().map(read));
+    *bytes = &bytes[coming.len() * N..];
+}
+
+fn floats<const N: usize, const M: usize>(bytes: &[u8; N]) -> [f32; M] {
+    std::array::from_fn(|at| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * at + i])))
+}
+
+/// Puts the pieces of a report together again.
+pub struct Unpacker {
+    head: Head,
+    files: Vec<Incoming>,
+    /// How many bytes are expected.
+    bytes: usize,
+    /// The file that comes in; those before it are complete.
+    at: usize,
+    found: usize,
+}
+
+/// A file that comes in.
+#[derive(Default)]
+struct Incoming {
+    unpacked: Vec<u8>,
+    clips: Vec<Arrays>,
+    meshes: Vec<SkinnedMesh>,
+}
+
+impl std::fmt::Debug for Unpacker {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Unpacker")
+            .field("files", &self.files.len())
+            .field("found", &self.found)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Unpacker {
+    /// Begins with the head, and takes all the memory that the arrays will need, up to `room` bytes: nothing grows when the pieces come.
+    ///
+    /// # Errors
+    /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for what it tells of.
+    pub fn new(head: &str, room: u64) -> Result<Self, WireError> {
+        let head: Head = serde_json::from_str(head)?;
+        let bytes = (head.files.iter().map(FileHead::bytes)).fold(0, usize::saturating_add);
+        let no_room = || WireError::NoRoom { bytes };
+        if bytes as u64 > room {
+            return Err(no_room());
+        }
+        let mut files = Vec::new();
+        for file in &head.files {
+            files.push(Incoming::with_room_for(file).map_err(|_| no_room())?);
+        }
+        Ok(Self {
+            head,
+            files,
+            bytes,
+            at: 0,
+            found: 0,
+        })
+    }
+
+    /// How many bytes the arrays take.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes as u64
+    }
+
+    /// Takes the next piece.
+    pub fn push(&mut self, piece: &[u8]) {
+        self.found += piece.len();
+        let mut rest = piece;
+        while let (Some(head), Some(file)) = (self.head.files.get(self.at), self.files.get_mut(self.at)) {
+            file.take(head, &mut rest);
+            if rest.is_empty() {
+                // There may be more of this one.
+                return;
+            }
+            self.at += 1;
+        }
+    }
+
+    /// The report, once all pieces are in.
+    ///
+    /// # Errors
+    /// [`WireError`] when something is missing or makes no clip.
+    pub fn finish(self) -> Result<ReadReport, WireError> {
+        if self.found != self.bytes {
+            return Err(WireError::Length {
+                expected: self.bytes,
+                found: self.found,
+            });
+        }
+        let files = self.head.files.into_iter().zip(self.files);
+        let files: Result<Vec<ReadFile>, WireError> = files.map(|(head, file)| file.into_file(head)).collect();
+        Ok(ReadReport {
+            files: files?,
+            notes: self.head.notes,
+        })
+    }
+}
+
+impl Incoming {
+    /// Takes the memory that a file needs.
+    fn with_room_for(head: &FileHead) -> Result<Self, TryReserveError> {
+        let mut unpacked = Vec::new();
+        unpacked.try_reserve_exact(head.unpacked.unwrap_or(0))?;
+        let clips: Result<Vec<Arrays>, TryReserveError> = head.clips().iter().map(Arrays::with_room_for).collect();
+        let meshes: Result<Vec<SkinnedMesh>, TryReserveError> = head.meshes().iter().map(MeshHead::room).collect();
+        Ok(Self {
+            unpacked,
+            clips: clips?,
+            meshes: meshes?,
+        })
+    }
+
+    fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
+        fill(&mut self.unpacked, head.unpacked.unwrap_or(0), bytes, |&[byte]| byte);
+        for (head, clip) in head.clips().iter().zip(&mut self.clips) {
+            clip.take(head, bytes);
+        }
+        for (head, mesh) in head.meshes().iter().zip(&mut self.meshes) {
+            head.take(mesh, bytes);
+        }
+    }
+
+    fn into_file(self, head: FileHead) -> Result<ReadFile, WireError> {
+        let result = match head.result {
+            Ok(read) => {
+                let clips = read.clips.into_iter().zip(self.clips);
+                let meshes: Vec<Arc<SkinnedMesh>> = self.meshes.into_iter().map(Arc::new).collect();
+                let clips: Result<Vec<ReadClip>, WireError> = clips.map(|(head, arrays)| arrays.into_clip(head, &meshes)).collect();
+                Ok(ReadClips {
+                    clips: clips?,
+                    warnings: read.warnings,
+                    companion: read.companion,
+                    awaits_skeleton: read.awaits_skeleton,
+                })
+            }
+            Err(error) => Err(error),
+        };
+        Ok(ReadFile {
+            name: head.name,
+            sha256: head.sha256,
+            size: head.size,
+            kind: head.kind,
+            unpacked: head.unpacked.map(|_| self.unpacked),
+            result,
+        })
+    }
+}
+
+impl ClipHead {
+    /// How many bytes its arrays take.
+    fn bytes(&self) -> usize {
+        usize::try_from(motion_bytes(self.frames, self.joints.len(), self.moving.len())).unwrap_or(usize::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::{ReadSetup, read};
+    use segue_formats::bvh;
+    use segue_motion::synth::{Action, Params, synthesize};
+
+    impl Unpacker {
+        /// How many values its arrays have room for.
+        fn room(&self) -> Vec<usize> {
+            let of_clip = |clip: &Arrays| {
+                let translations: usize = clip.translations.iter().map(Vec::capacity).sum();
+                let contacts: usize = clip.contacts.iter().map(Vec::capacity).sum();
+                [clip.rotations.capacity(), translations, clip.ground_frames.capacity(), contacts]
+            };
+            let of_mesh = |mesh: &SkinnedMesh| {
+                let vertices = mesh.positions.capacity() + mesh.normals.capacity() + mesh.joints.capacity() + mesh.weights.capacity();
+                [vertices, mesh.colors.capacity(), mesh.triangles.capacity(), mesh.bind.capacity()]
+            };
+            let of_file = |file: &Incoming| {
+                let clips = file.clips.iter().flat_map(of_clip);
+                clips
+                    .chain(file.meshes.iter().flat_map(of_mesh))
+                    .chain([file.unpacked.capacity()])
+                    .collect::<Vec<_>>()
+            };
+            self.files.iter().flat_map(of_file).collect()
+        }
+    }
+
+    fn report(secs: f32) -> ReadReport {
+        let made = synthesize(&Params {
+            duration_secs: secs,
+            ..Params::new(Action::Walk)
+        });
+        let text = bvh::write(&made.unwrap().clip, &bvh::WriteOptions::default());
+        read("walk.bvh", text.as_bytes(), &ReadSetup::default(), &mut |_| true).unwrap()
+    }
+
+    fn sent(report: &ReadReport) -> ReadReport {
+        let parcel = Parcel::new(report.clone()).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
+        let room = unpacker.room();
+        parcel.pieces(|piece| unpacker.push(piece));
+        assert_eq!(unpacker.room(), room, "nothing grows on the way");
+        unpacker.finish().unwrap()
+    }
+
+    #[test]
+    fn a_report_that_no_memory_holds_is_refused_at_its_head() {
+        let mut report = report(1.0);
+        report.files[0].unpacked = Some(vec![7; 7]);
+        let parcel = Parcel::new(report).unwrap();
+        let head = parcel.head().replace("\"unpacked\":7", "\"unpacked\":1125899906842624");
+        assert_ne!(head, parcel.head());
+        let Err(error) = Unpacker::new(&head, u64::MAX) else {
+            panic!("there is no petabyte");
+        };
+        assert!(matches!(error, WireError::NoRoom { .. }), "{error}");
+        assert!(error.to_string().contains("remove clips"), "{error}");
+        // What there is room for is a matter of bytes.
+        let bytes = Unpacker::new(parcel.head(), u64::MAX).unwrap().bytes();
+        assert!(Unpacker::new(parcel.head(), bytes).is_ok());
+        assert!(matches!(Unpacker::new(parcel.head(), bytes - 1), Err(WireError::NoRoom { .. })));
+    }
+
+    #[test]
+    fn what_is_sent_arrives_as_it_was() {
+        // Long enough for several pieces.
+        let mut long = report(60.0);
+        long.files.push(ReadFile {
+            unpacked: Some((0..=255).collect()),
+            ..report(1.0).files.remove(0)
+        });
+        let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
+        let mesh = Arc::new(SkinnedMesh {
+            colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
+            ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0)
+        });
+        for file in &mut long.files {
+            let read = file.result.as_mut().unwrap();
+            read.clips.push(read.clips[0].clone());
+            read.clips.iter_mut().for_each(|clip| clip.mesh = Some(Arc::clone(&mesh)));
+        }
+        long.notes.push("two".into());
+        let mut pieces = 0;
+        Parcel::new(long.clone()).unwrap().pieces(|_| pieces += 1);
+        assert!(pieces > 1, "{pieces}");
+        let arrived = sent(&long);
+        assert_eq!(arrived, long);
+        let clips = &arrived.files[0].result.as_ref().unwrap().clips;
+        assert!(Arc::ptr_eq(clips[0].mesh.as_ref().unwrap(), clips[1].mesh.as_ref().unwrap()));
+        let refused = read("no.bvh", b"HIERARCHY x", &ReadSetup::default(), &mut |_| true).unwrap();
+        assert!(refused.files[0].result.is_err());
+        assert_eq!(sent(&refused), refused);
+    }
+
+    #[test]
+    fn what_is_lost_on_the_way_is_noticed() {
+        let parcel = Parcel::new(report(2.0)).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
+        parcel.pieces(|piece| unpacker.push(&piece[..piece.len() - 2]));
+        assert!(matches!(unpacker.finish(), Err(WireError::Length { .. })));
+        assert!(Unpacker::new("{}", u64::MAX).is_err());
+    }
+}

@@ -1,0 +1,447 @@
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::pair::Pair;
+use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
+use segue_motion::clip::{Clip, Contacts};
+use segue_motion::math::{Decay, Planar};
+use segue_motion::metrics::{Subject, TransitionMetrics, foot_slide_cm};
+use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights};
+use segue_motion::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// What a blend depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct BlendInputs {
+    pair: Arc<Pair>,
+    place: Place,
+    options: TransitionOptions,
+    mistake: Option<Mistake>,
+    foot_lock: Option<Lock>,
+}
+
+impl PartialEq for BlendInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && self.place == other.place
+            && self.options == other.options
+            && self.mistake == other.mistake
+            && self.foot_lock == other.foot_lock
+    }
+}
+
+/// Where A is left and B entered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    leave: usize,
+    enter: usize,
+    distance_cm: f32,
+    search: Option<MatchSearch>,
+    /// Whether one of the frames only stands for the best match, which is being looked for.
+    is_guess: bool,
+}
+
+/// What a match depends on, besides the two clips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wanted {
+    window: usize,
+    /// Frames that must be left of a clip at a frame that is set by hand, that frame among them.
+    behind: usize,
+    leave: Option<usize>,
+    enter: Option<usize>,
+    /// Single poses are compared by these, else windows.
+    weights: Option<PoseWeights>,
+}
+
+/// The mistake that the Transition lab is to make.
+fn mistake_of(params: &Params) -> Option<Mistake> {
+    match params.text(Key::Mistake) {
+        "hemisphere" => Some(Mistake::NoHemisphereCheck),
+        "euler" => Some(Mistake::EulerLerp),
+        "degrees" => Some(Mistake::DegreesForRadians),
+        "atan" => Some(Mistake::AtanForAtan2),
+        "transform_degrees" => Some(Mistake::DegreesInTransform),
+        "facing" => Some(Mistake::WrongFacingAxis),
+        "alignment" => Some(Mistake::NoAlignment),
+        "velocity" => Some(Mistake::VelocityDividedTwice),
+        "world_root" => Some(Mistake::WorldRoot),
+        _ => None,
+    }
+}
+
+/// Whether the method of the Transition lab gives the mistake that it is to make an opportunity. `true` where it is to make none.
+#[must_use]
+pub fn mistake_shows(params: &Params) -> bool {
+    mistake_of(params).is_none_or(|mistake| mistake.concerns(&method_of(params, params.number(Key::BlendWindow) as usize)))
+}
+
+/// How the weight moves from A to B.
+pub(super) fn weight_law(params: &Params) -> WeightLaw {
+    match params.text(Key::WeightLaw) {
+        "linear" => WeightLaw::Linear,
+        "smoother" => WeightLaw::Smoother,
+        _ => WeightLaw::Smooth,
+    }
+}
+
+/// By what B is laid on A.
+pub(super) fn align_by(params: &Params) -> AlignBy {
+    match params.text(Key::AlignBy) {
+        "first" => AlignBy::FirstPose,
+        _ => AlignBy::Window,
+    }
+}
+
+/// How the way over the ground is made.
+pub(super) fn root_blend(params: &Params) -> RootBlend {
+    if params.is_on(Key::RootBlend) {
+        RootBlend::Velocity
+    } else {
+        RootBlend::World
+    }
+}
+
+/// The method of the Transition lab; `window` is that of its dissolves.
+fn method_of(params: &Params, window: usize) -> Method {
+    let blend_secs = params.number(Key::BlendTime);
+    match params.text(Key::Method) {
+        "cut" => Method::Cut,
+        "linear" => Method::Dissolve {
+            window,
+            law: WeightLaw::Linear,
+        },
+        "smooth" => Method::Dissolve {
+            window,
+            law: WeightLaw::Smooth,
+        },
+        "cubic" => Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs })),
+        "quintic" => Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs })),
+        "dead" => Method::Inertialize(Inertialization::DeadBlend {
+            blend_secs,
+            extrapolation_half_life_secs: params.number(Key::ExtrapolationHalfLife),
+        }),
+        _ => Method::Inertialize(Inertialization::Offset(Decay::Spring {
+            half_life_secs: params.number(Key::HalfLife),
+        })),
+    }
+}
+
+/// Where to look for what is left to Segue: A is left in its second half, B entered in its first, and no seam of a kept clip is left out. The window fits
+/// behind the last one of A.
+fn open_search(pair: &Pair, window: usize) -> SearchOptions {
+    let mut options = SearchOptions::new(window);
+    let share = |frame: f64, motion: &Motion| frame / motion.clip.frames().max(1) as f64;
+    if !pair.a.seams.is_empty() {
+        let (frames, behind) = (pair.a.clip.frames(), pair.a.behind_seams());
+        let half = frames.div_ceil(2);
+        let from = if half + window <= frames { behind.max(half) } else { behind };
+        options.leave.from = share(from as f64 - 0.5, &pair.a);
+    }
+    if !pair.incoming.seams.is_empty() {
+        options.enter.to = options
+            .enter
+            .to
+            .min(share(pair.incoming.before_seams() as f64 + 0.5, &pair.incoming));
+    }
+    options
+}
+
+fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
+    let skeleton = pair.a.clip.skeleton();
+    let search = PoseSearch::new(
+        (&pair.a.clip, &pair.a.ground_frames),
+        (&pair.incoming.clip, &pair.incoming.ground_frames),
+        &limb_weights(skeleton),
+        pair.a.roles.body_height(skeleton).into(),
+    );
+    search.map_err(|error| error.to_string())
+}
+
+/// Makes blends, and keeps what does not change from one to the next: the pair of clips and the distances between their frames.
+#[derive(Debug, Default)]
+pub(crate) struct Blender {
+    pair: Option<Arc<Pair>>,
+    search: Option<TransitionSearch>,
+    /// Begun when a lab asks for it.
+    poses: Option<PoseSearch>,
+    /// The last matches that were found, and what was asked: panes share one, or have one each, and most changes leave them as they are.
+    found: VecDeque<(Wanted, Place)>,
+    progress: f32,
+}
+
+/// Rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
+const ROWS_PER_SLICE: usize = 16;
+/// Rows that are compared at once when the clips change: a few seconds of motion need no second slice.
+const ROWS_AT_ONCE: usize = 160;
+
+impl Blender {
+    /// Brings everything to the point where the blend itself is a pure function: finds the place, makes the clips fit each other.
+    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params, match_window: usize) -> Result<BlendInputs, String> {
+        self.meet(pair)?;
+        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        let in_transition = params.text(Key::Lab) == "transition";
+        let fps = pair.a.clip.fps();
+        let given = if in_transition {
+            [
+                params.optional(Key::MixFrameA),
+                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip.fps() * fps),
+            ]
+        } else {
+            [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
+        };
+        // Left to Segue, A is left behind its last seam.
+        let room_in_a = if given[0].is_none() {
+            frames_a - pair.a.behind_seams().min(frames_a)
+        } else {
+            frames_a
+        };
+        let most = room_in_a.min(frames_b);
+        let window = (params.number(Key::BlendWindow) as usize).min(most);
+        let method = if in_transition {
+            method_of(params, window)
+        } else {
+            let law = weight_law(params);
+            Method::Dissolve { window, law }
+        };
+        let match_window = match_window.min(most);
+        // A dissolve needs its window behind both frames, the widest one where several stand side by side, so that all show the same place. The other
+        // methods need one frame of B.
+        let behind = if let Method::Dissolve { window, .. } = method {
+            match_window.max(window)
+        } else {
+            1
+        };
+        let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)]
+            .map(|(frame, frames)| frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind))));
+        let weights = (in_transition && params.text(Key::MatchBy) == "pose").then(|| PoseWeights {
+            position: params.number(Key::MatchPosition),
+            rotation: params.number(Key::MatchRotation),
+            velocity: params.number(Key::MatchVelocity),
+        });
+        let wanted = Wanted {
+            window: match_window,
+            behind,
+            leave,
+            enter,
+            weights,
+        };
+        let place = self.place(pair, wanted)?;
+        Ok(BlendInputs {
+            pair: Arc::clone(pair),
+            place,
+            mistake: in_transition.then(|| mistake_of(params)).flatten(),
+            foot_lock: Lock::of(params),
+            options: TransitionOptions {
+                method,
+                align: params.is_on(Key::Align),
+                align_by: align_by(params),
+                root: root_blend(params),
+            },
+        })
+    }
+
+    /// Begins to compare the frames of two clips that were not the last ones.
+    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), String> {
+        if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
+            return Ok(());
+        }
+        let weights = limb_weights(pair.a.clip.skeleton());
+        let body_height = pair.a.roles.body_height(pair.a.clip.skeleton());
+        let search = TransitionSearch::new(
+            Arc::clone(&pair.a.clip),
+            Arc::clone(&pair.incoming.clip),
+            &weights,
+            body_height.into(),
+        );
+        self.search = Some(search.map_err(|error| error.to_string())?);
+        self.pair = Some(Arc::clone(pair));
+        self.poses = None;
+        self.found.clear();
+        self.compare_rows(ROWS_AT_ONCE);
+        Ok(())
+    }
+
+    fn compare_rows(&mut self, rows: usize) {
+        // The windows first; where poses are asked for, they follow.
+        let windows = self.search.as_mut().map(|search| search.advance(rows));
+        let poses = match (&windows, &mut self.poses) {
+            (Some(progress), Some(search)) if progress.is_complete() => Some(search.advance(rows)),
+            _ => None,
+        };
+        let share = |done: usize, total: usize| done as f32 / total.max(1) as f32;
+        self.progress = match (windows, poses) {
+            (Some(progress), None) | (_, Some(progress)) if !progress.is_complete() => share(progress.done, progress.total),
+            _ => 1.0,
+        };
+    }
+
+    /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
+    fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, String> {
+        if wanted.weights.is_some() && self.poses.is_none() {
+            self.poses = Some(pose_search(pair)?);
+            self.compare_rows(ROWS_AT_ONCE);
+        }
+        let Wanted { window, leave, enter, .. } = wanted;
+        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        if self.is_searching() {
+            return Ok(Place {
+                leave: leave.unwrap_or((frames_a * 3 / 4).max(pair.a.behind_seams()).min(frames_a.saturating_sub(window))),
+                enter: enter.unwrap_or(0),
+                distance_cm: f32::NAN,
+                search: None,
+                is_guess: leave.is_none() || enter.is_none(),
+            });
+        }
+        if let Some((_, place)) = self.found.iter().find(|(asked, _)| *asked == wanted) {
+            return Ok(*place);
+        }
+        let mut options = open_search(pair, window);
+        if let Some(frame) = leave {
+            options = options.leaving_at(frame, frames_a);
+        }
+        if let Some(frame) = enter {
+            options = options.entering_at(frame, frames_b);
+        }
+        let (leave, enter, distance_cm, is_widened) = match (wanted.weights, &self.poses, &self.search) {
+            (Some(weights), Some(search), _) => {
+                let best = search.best(weights, &options).map_err(|error| error.to_string())?;
+                (best.leave, best.enter, best.position_cm, best.grown)
+            }
+            (_, _, Some(search)) => {
+                let best = search.best(&options).map_err(|error| error.to_string())?;
+                (best.leave, best.enter, best.rms_cm, best.grown)
+            }
+            _ => return Err("there are no clips to match".to_owned()),
+        };
+        let latest = |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
+        let place = Place {
+            leave,
+            enter,
+            distance_cm: distance_cm as f32,
+            search: Some(MatchSearch {
+                by_pose: wanted.weights.is_some(),
+                window_frames: options.window,
+                is_shortened: options.window < window,
+                is_widened,
+                latest_secs: [latest(frames_a), latest(frames_b)],
+            }),
+            is_guess: false,
+        };
+        self.found.truncate(MAX_PANES - 1);
+        self.found.push_front((wanted, place));
+        Ok(place)
+    }
+
+    /// One slice of comparing frames. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self) -> bool {
+        let searching = self.is_searching();
+        if searching {
+            self.compare_rows(ROWS_PER_SLICE);
+        }
+        searching
+    }
+
+    /// Whether the distances between the clips' frames are still being computed.
+    pub(crate) fn is_searching(&self) -> bool {
+        self.search.is_some() && self.progress < 1.0
+    }
+
+    /// How much of the comparison is done, 0 to 1; `None` when there is none under way.
+    pub(crate) fn progress(&self) -> Option<f32> {
+        self.is_searching().then_some(self.progress)
+    }
+}
+
+impl BlendInputs {
+    /// Whether the best match is still being looked for.
+    pub(crate) fn awaits_place(&self) -> bool {
+        self.place.is_guess
+    }
+
+    /// The blend.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let Self {
+            pair,
+            place,
+            options,
+            mistake,
+            foot_lock,
+        } = self;
+        let [a, b] = &pair.profiles;
+        let (from, to) = (a.source(), b.source());
+        let made = match *mistake {
+            Some(mistake) => concatenate_mistaken(from, place.leave, to, place.enter, options, mistake),
+            None => concatenate(from, place.leave, to, place.enter, options),
+        };
+        let made = made.map_err(|error| error.to_string())?;
+        let fps = made.clip.fps();
+        let secs = |frame: usize| frame as f64 / fps;
+        let window = made.transition.clone();
+        let transition = Transition {
+            start_secs: secs(window.start),
+            end_secs: secs(window.end.max(window.start)),
+            leave_a_secs: secs(place.leave),
+            enter_b_secs: secs(place.enter),
+            window_frames: window.len(),
+            distance_cm: place.distance_cm,
+            search: place.search,
+        };
+        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, made.handover);
+        let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
+        let roles = pair.a.roles.clone();
+        let free = Arc::new(made.clip.with_name(name));
+        let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *foot_lock)?;
+        let motion = Motion {
+            clip,
+            roles,
+            contacts,
+            ground_frames: made.frames,
+            seams: pair.a.seams_joined(&window, &pair.incoming, place.enter),
+            ground_m: pair.ground_m(),
+            feet: pair.a.feet,
+        };
+        let slid = |clip: &Clip| foot_slide_cm(clip, &motion.roles, &motion.contacts);
+        let mut metrics = vec![slide(slid(&motion.clip))];
+        if foot_lock.is_some() {
+            metrics.push(slide_before(slid(&free)));
+        }
+        let at_seam = TransitionMetrics::measure(&Subject {
+            result: &motion.clip,
+            start: window.start,
+            end: window.end,
+            handover: made.handover,
+            enter: place.enter,
+            a,
+            b,
+            roles: &motion.roles,
+            ground_m: pair.ground_m(),
+        });
+        metrics.extend(at_seam.list());
+        let sources = vec![
+            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            Source::new(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
+        ];
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources,
+            transition: Some(transition),
+            cycle: None,
+            retargeted: pair.retargeted.clone(),
+            layer: None,
+            registered: None,
+            path: None,
+            walk: None,
+            driven: None,
+            metrics,
+            beside: pair.clips(),
+            measured: Measured::Motion,
+            is_measured: false,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,332 @@
+//! Builds databases and plays recorded input, slice by slice.
+
+use super::tagging::{HandTag, tagged};
+use super::trace::Tracer;
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use crate::recipe::Outcome;
+use segue_motion::matching::{
+    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError,
+    Normalisation, Recording, TagFilter, made_clip, made_params,
+};
+use segue_motion::math::Planar;
+use std::sync::Arc;
+
+/// Ticks in one slice: about 2 ms in a browser.
+const TICKS: usize = 20;
+
+/// What a database is made of.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    /// The clips; those of the synthesiser where there are none.
+    clips: Vec<Arc<Motion>>,
+    options: DatabaseOptions,
+}
+
+impl Source {
+    /// These clips, as the parameters say.
+    pub(crate) fn new(clips: Vec<Arc<Motion>>, params: &Params) -> Self {
+        let trajectory_secs = [Key::AheadNear, Key::AheadMiddle, Key::AheadFar]
+            .map(|key| params.number(key))
+            .to_vec();
+        Self {
+            clips,
+            options: DatabaseOptions {
+                features: FeatureOptions {
+                    trajectory_secs,
+                    normalisation: match params.text(Key::Normalisation) {
+                        "dimension" => Normalisation::Dimension,
+                        _ => Normalisation::Block,
+                    },
+                },
+                mirrored: params.is_on(Key::Mirrored),
+                cycles: params.is_on(Key::MatchCycles),
+            },
+        }
+    }
+
+    /// Whether only the features differ.
+    fn has_clips_of(&self, other: &Self) -> bool {
+        (self.options.mirrored, self.options.cycles) == (other.options.mirrored, other.options.cycles)
+            && self.clips.len() == other.clips.len()
+            && self.clips.iter().zip(&other.clips).all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+}
+
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        self.has_clips_of(other) && self.options == other.options
+    }
+}
+
+/// What a replay depends on.
+#[derive(Clone, Debug)]
+struct Script {
+    database: Arc<Database>,
+    options: ControllerOptions,
+    recording: Recording,
+    filter: TagFilter,
+}
+
+impl PartialEq for Script {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.database, &other.database)
+            && self.options == other.options
+            && self.filter == other.filter
+            && self.recording == other.recording
+    }
+}
+
+/// The result of recorded input. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct ReplayInputs(Arc<Outcome>);
+
+impl PartialEq for ReplayInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl ReplayInputs {
+    /// The motion.
+    pub(crate) fn run(&self) -> Outcome {
+        Outcome::clone(&self.0)
+    }
+}
+
+/// Input on its way.
+#[derive(Debug)]
+struct Playing {
+    tracer: Tracer,
+    controls: Vec<Control>,
+    next: usize,
+}
+
+/// A database with tags by hand.
+#[derive(Debug)]
+struct Tagged {
+    /// What they were put on, and the ids of the clips that it was built from.
+    base: Arc<Database>,
+    ids: Vec<String>,
+    tags: Vec<HandTag>,
+    made: Arc<Database>,
+}
+
+/// Builds databases and plays recordings, and keeps the last ones.
+#[derive(Debug, Default)]
+pub(crate) struct Driver {
+    made: Vec<MatchClip>,
+    databases: Vec<(Source, Result<Arc<Database>, String>)>,
+    tagged: Vec<Tagged>,
+    building: Option<(Source, Box<DatabaseBuilder>)>,
+    wanted: Vec<Source>,
+    replays: Vec<(Script, Result<Arc<Outcome>, String>)>,
+    playing: Option<(Script, Box<Playing>)>,
+    scripts: Vec<Script>,
+    is_ready: bool,
+}
+
+impl Driver {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(crate) fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.scripts.clear();
+        self.is_ready = false;
+    }
+
+    /// A database. `None` while it is built: [`work`](Self::work), then ask again.
+    pub(crate) fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, String> {
+        if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
+            return known.clone().map(Some);
+        }
+        self.wanted.push(source.clone());
+        Ok(None)
+    }
+
+    /// A database with tags by hand; `ids` are the clips that it was built from, none for the synthesiser's set.
+    pub(crate) fn tagged(&mut self, database: Arc<Database>, ids: Vec<String>, tags: Vec<HandTag>) -> Arc<Database> {
+        if tags.is_empty() {
+            return database;
+        }
+        let is_it = |known: &&Tagged| Arc::ptr_eq(&known.base, &database) && known.ids == ids && known.tags == tags;
+        if let Some(known) = self.tagged.iter().find(is_it) {
+            return Arc::clone(&known.made);
+        }
+        let made = Arc::new(tagged(&database, &ids, &tags));
+        if self.tagged.len() >= MAX_PANES {
+            drop(self.tagged.remove(0));
+        }
+        self.tagged.push(Tagged {
+            base: database,
+            ids,
+            tags,
+            made: Arc::clone(&made),
+        });
+        made
+    }
+
+    /// What recorded input gives. `None` while it is played.
+    pub(crate) fn replay(
+        &mut self,
+        database: Arc<Database>,
+        options: ControllerOptions,
+        recording: Recording,
+        filter: TagFilter,
+    ) -> Result<Option<ReplayInputs>, String> {
+        let script = Script {
+            database,
+            options,
+            recording,
+            filter,
+        };
+        if let Some((_, known)) = self.replays.iter().find(|(known, _)| *known == script) {
+            return known.clone().map(|outcome| Some(ReplayInputs(outcome)));
+        }
+        self.scripts.push(script);
+        Ok(None)
+    }
+
+    /// Whether what somebody waits for is there, so that it should be asked for again.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    /// How much is done of what is worked on, 0 to 1, and its name; `None` when there is nothing.
+    pub(crate) fn progress(&self) -> Option<(&'static str, f64)> {
+        if let Some(source) = self.next_source() {
+            let built = match &self.building {
+                Some((of, builder)) if of == source => {
+                    let progress = builder.progress();
+                    progress.done as f64 / progress.total.max(1) as f64
+                }
+                _ => 0.0,
+            };
+            let all = made_params().len().max(1) as f64;
+            let made = if source.clips.is_empty() {
+                self.made.len() as f64 / all
+            } else {
+                1.0
+            };
+            return Some(("building the database", 0.4 * made + 0.6 * built));
+        }
+        let script = self.next_script()?;
+        let done = match &self.playing {
+            Some((of, playing)) if of == script => playing.next as f64 / playing.controls.len().max(1) as f64,
+            _ => 0.0,
+        };
+        Some(("driving", done))
+    }
+
+    fn next_source(&self) -> Option<&Source> {
+        let is_known = |source: &&Source| self.databases.iter().any(|(known, _)| known == *source);
+        self.wanted.iter().find(|source| !is_known(source))
+    }
+
+    fn next_script(&self) -> Option<&Script> {
+        let is_known = |script: &&Script| self.replays.iter().any(|(known, _)| known == *script);
+        self.scripts.iter().find(|script| !is_known(script))
+    }
+
+    /// One slice of what panes wait for. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self) -> bool {
+        if self.is_ready {
+            return false;
+        }
+        if let Some(source) = self.next_source().cloned() {
+            let built = self.build(&source);
+            if let Some(built) = built.map_err(|error| sentence(&error)).transpose() {
+                if self.databases.len() >= 2 * MAX_PANES {
+                    drop(self.databases.remove(0));
+                }
+                self.databases.push((source, built.map(Arc::new)));
+                self.is_ready = true;
+            }
+            return true;
+        }
+        let Some(script) = self.next_script().cloned() else {
+            return false;
+        };
+        if let Some(played) = self.play(&script).transpose() {
+            if self.replays.len() >= 2 * MAX_PANES {
+                drop(self.replays.remove(0));
+            }
+            self.replays.push((script, played.map(Arc::new)));
+            self.is_ready = true;
+        }
+        true
+    }
+
+    fn build(&mut self, source: &Source) -> Result<Option<Database>, MatchError> {
+        let under_way = self.building.take().filter(|(of, _)| of == source);
+        let mut builder = if let Some((_, builder)) = under_way {
+            builder
+        } else {
+            let alike = self.databases.iter().find(|(known, _)| known.has_clips_of(source));
+            if let Some((_, Ok(database))) = alike {
+                Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
+            } else if !source.clips.is_empty() {
+                let clip = |motion: &Arc<Motion>| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone());
+                Box::new(DatabaseBuilder::new(source.clips.iter().map(clip).collect(), &source.options)?)
+            } else if let Some(params) = made_params().get(self.made.len()) {
+                let roles = self.made.first().map(|first| first.roles.clone());
+                self.made.push(made_clip(params, roles)?);
+                return Ok(None);
+            } else {
+                Box::new(DatabaseBuilder::new(self.made.clone(), &source.options)?)
+            }
+        };
+        if builder.advance()?.is_complete() {
+            return builder.finish().map(Some);
+        }
+        self.building = Some((source.clone(), builder));
+        Ok(None)
+    }
+
+    fn play(&mut self, script: &Script) -> Result<Option<Outcome>, String> {
+        let under_way = self.playing.take().filter(|(of, _)| of == script);
+        let mut playing = if let Some((_, playing)) = under_way {
+            playing
+        } else {
+            let controller = Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
+            Box::new(Playing {
+                tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
+                controls: script
+                    .recording
+                    .controls()
+                    .map(|control| filtered(control, script.filter))
+                    .collect(),
+                next: 0,
+            })
+        };
+        let end = (playing.next + TICKS).min(playing.controls.len());
+        for control in playing.controls.get(playing.next..end).unwrap_or(&[]) {
+            playing.tracer.tick(control);
+        }
+        playing.next = end;
+        if end < playing.controls.len() {
+            self.playing = Some((script.clone(), playing));
+            return Ok(None);
+        }
+        let mut outcome = playing.tracer.outcome(false)?;
+        outcome.metrics = playing.tracer.metrics(&outcome.motion);
+        Ok(Some(outcome))
+    }
+}
+
+/// Input under the filter that is set; what was recorded under another one keeps it where none is set.
+fn filtered(control: Control, filter: TagFilter) -> Control {
+    if filter == TagFilter::default() {
+        control
+    } else {
+        control.with_filter(filter)
+    }
+}
+
+/// An error as a sentence.
+fn sentence(error: &MatchError) -> String {
+    let text = error.to_string();
+    let mut letters = text.chars();
+    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
+    format!("{first}{}.", letters.as_str())
+}

@@ -1,0 +1,105 @@
+//! From parameters to what the controller is told.
+
+use super::tagging::clip_name;
+use crate::outside::short;
+use crate::params::{Key, Params};
+use crate::recipe::read_ids;
+use segue_motion::matching::{
+    ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights,
+};
+use segue_motion::math::Decay;
+use segue_motion::transition::Inertialization;
+
+/// How the character searches, goes over, and follows.
+pub(crate) fn options_of(params: &Params) -> ControllerOptions {
+    let number = |key| params.number(key);
+    let usual = ControllerOptions::default();
+    let blocks = [
+        Key::WeightPath,
+        Key::WeightFacing,
+        Key::WeightFeet,
+        Key::WeightFootSpeed,
+        Key::WeightHipSpeed,
+    ];
+    ControllerOptions {
+        weights: Weights(blocks.map(|key| number(key) as f32)),
+        search_interval_secs: number(Key::SearchInterval),
+        method: match params.text(Key::SearchBy) {
+            "tree" => SearchMethod::Tree,
+            "scan" => SearchMethod::Scan,
+            _ => SearchMethod::Boxes,
+        },
+        hysteresis: match params.text(Key::Hysteresis) {
+            "none" => Hysteresis::None,
+            "time" => Hysteresis::MinimumTime {
+                secs: number(Key::MinimumTime),
+            },
+            "votes" => Hysteresis::ThreeVotes,
+            "clip_votes" => Hysteresis::ThreeVotesForAnotherClip,
+            _ => Hysteresis::ContinuingBias {
+                share: number(Key::BiasShare) as f32,
+                constant: number(Key::BiasConstant) as f32,
+            },
+        },
+        prefer_current: number(Key::PreferCurrent) as f32,
+        prefer_source: None,
+        transition: match params.text(Key::JumpMethod) {
+            "dead" => Inertialization::DeadBlend {
+                blend_secs: number(Key::BlendTime),
+                extrapolation_half_life_secs: number(Key::ExtrapolationHalfLife),
+            },
+            _ => Inertialization::Offset(Decay::Spring {
+                half_life_secs: number(Key::JumpHalfLife),
+            }),
+        },
+        steering: Steering {
+            velocity_half_life_secs: number(Key::VelocityHalfLife),
+            facing_half_life_secs: number(Key::FacingHalfLife),
+        },
+        following: params.is_on(Key::Adjust).then(|| Following {
+            half_life_secs: number(Key::AdjustHalfLife),
+            most_share: number(Key::AdjustShare),
+            most_m: number(Key::ClampDistance),
+            most_radians: number(Key::ClampTurn).to_radians(),
+        }),
+        planting: usual.planting.filter(|_: &FootPlanting| params.is_on(Key::PlantFeet)),
+        candidates: number(Key::ShownCandidates) as usize,
+    }
+}
+
+/// The same with the clip of a database that is preferred while the input is still.
+pub(crate) fn options_in(database: &Database, params: &Params) -> Result<ControllerOptions, String> {
+    let options = options_of(params);
+    let name = params.text(Key::PreferClip);
+    if name.is_empty() {
+        return Ok(options);
+    }
+    let ids = read_ids(params.text(Key::MatchClips)).unwrap_or_default();
+    let named = database.motions().iter().find(|motion| clip_name(motion, &ids) == name);
+    let source = named.map(|motion| motion.source()).ok_or_else(|| {
+        format!(
+            "`{}` is not among the clips to choose frames from: choose another clip to prefer, or none.",
+            short(name)
+        )
+    })?;
+    Ok(ControllerOptions {
+        prefer_source: Some(source),
+        ..options
+    })
+}
+
+/// The input that is played; `None` where the user drives.
+pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, String> {
+    if let Some(scenario) = Scenario::find(params.text(Key::Scenario)) {
+        return Ok(Some(scenario.recording()));
+    }
+    let text = params.text(Key::Drive);
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let recording = Recording::from_text(text).map_err(|error| format!("The recorded input cannot be played: {error}."))?;
+    if recording.ticks() == 0 {
+        return Err("The recorded input holds nothing: drive anew.".to_owned());
+    }
+    Ok(Some(recording))
+}

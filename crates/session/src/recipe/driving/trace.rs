@@ -1,0 +1,221 @@
+//! What a character did, tick by tick: its motion, and why it went where it went.
+
+use crate::motion::{FeetReading, Motion};
+use crate::recipe::Outcome;
+use segue_motion::clip::{Clip, Contacts};
+use segue_motion::matching::{Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering};
+use segue_motion::math::Planar;
+use segue_motion::metrics::Metric;
+use segue_motion::skeleton::Pose;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// One tick of a driven character.
+#[derive(Clone, Debug)]
+pub struct DriveMoment {
+    /// The frame that played.
+    pub place: Place,
+    /// Where the character stood: `world_from_character`.
+    pub root: Planar,
+    /// The simulation object.
+    pub simulation: Simulation,
+    /// The last search by then.
+    pub search: Option<Arc<SearchRecord>>,
+    /// Whether it went over to another frame in this tick.
+    pub jumped: bool,
+}
+
+/// How a motion came to be: one moment for each of its frames.
+#[derive(Clone, Debug)]
+pub struct Driven {
+    /// Where its frames were chosen from.
+    pub database: Arc<Database>,
+    /// How the simulation object was steered.
+    pub steering: Steering,
+    /// Tick by tick.
+    pub moments: Vec<Arc<DriveMoment>>,
+    /// Whether it goes on: the motion is what was seen last.
+    pub is_live: bool,
+}
+
+impl Driven {
+    /// The moment at a time of the motion, seconds.
+    #[must_use]
+    pub fn at(&self, secs: f64) -> Option<&DriveMoment> {
+        let last = self.moments.len().checked_sub(1)?;
+        // The clamp turns what lies before, and NaN, into the first.
+        let frame = (secs * RATE as f64).round().max(0.0).min(last as f64) as usize;
+        self.moments.get(frame).map(|moment| &**moment)
+    }
+
+    /// How far ahead trajectories are compared, seconds.
+    #[must_use]
+    pub fn horizon_secs(&self) -> f64 {
+        self.database.features().layout().horizon() as f64 / RATE as f64
+    }
+
+    /// Where the simulation object will be, as asked for at that moment, `steps` and one places from now to the horizon.
+    #[must_use]
+    pub fn asked_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
+        let horizon = self.horizon_secs();
+        let secs = |step: usize| horizon * step as f64 / steps.max(1) as f64;
+        (0..=steps)
+            .map(|step| moment.simulation.after(secs(step), &self.steering).place())
+            .collect()
+    }
+
+    /// Where the clip that plays would lead, likewise.
+    #[must_use]
+    pub fn matched_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
+        let Some(motion) = self.database.motion(moment.place.motion) else {
+            return Vec::new();
+        };
+        let horizon = self.database.features().layout().horizon();
+        let world_from_clip = moment.root.after(&motion.root(moment.place.frame).inverse());
+        (0..=steps)
+            .map(|step| world_from_clip.after(&motion.root(moment.place.frame + horizon * step / steps.max(1))))
+            .collect()
+    }
+
+    /// The times of its jumps, seconds.
+    pub fn jumps_secs(&self) -> impl Iterator<Item = f64> + '_ {
+        let jumps = self.moments.iter().enumerate().filter(|(_, moment)| moment.jumped);
+        jumps.map(|(frame, _)| frame as f64 / RATE as f64)
+    }
+}
+
+/// A controller, and what it has done: all of it, or the last of it.
+#[derive(Debug)]
+pub(super) struct Tracer {
+    pub(super) controller: Controller,
+    poses: VecDeque<Pose>,
+    planted: VecDeque<[bool; 2]>,
+    moments: VecDeque<Arc<DriveMoment>>,
+    /// At most so many frames are kept.
+    most: usize,
+    search: Option<Arc<SearchRecord>>,
+}
+
+impl Tracer {
+    /// Nothing was done yet.
+    pub(super) fn new(controller: Controller, most: usize) -> Self {
+        Self {
+            controller,
+            poses: VecDeque::new(),
+            planted: VecDeque::new(),
+            moments: VecDeque::new(),
+            most,
+            search: None,
+        }
+    }
+
+    /// Goes on by a tick.
+    pub(super) fn tick(&mut self, control: &Control) {
+        let jumps = self.controller.jumps();
+        self.controller.tick(control);
+        let is_new = |search: &&SearchRecord| search.tick + 1 == self.controller.ticks();
+        if let Some(search) = self.controller.last_search().filter(is_new) {
+            self.search = Some(Arc::new(search.clone()));
+        }
+        self.note(self.controller.jumps() > jumps);
+    }
+
+    /// Remembers how it stands now.
+    pub(super) fn note(&mut self, jumped: bool) {
+        if self.poses.len() >= self.most {
+            self.poses.pop_front();
+            self.planted.pop_front();
+            self.moments.pop_front();
+        }
+        self.poses.push_back(self.controller.pose().clone());
+        self.planted.push_back(self.controller.planted());
+        self.moments.push_back(Arc::new(DriveMoment {
+            place: self.controller.place(),
+            root: self.controller.root(),
+            simulation: *self.controller.simulation(),
+            search: self.search.clone(),
+            jumped,
+        }));
+    }
+
+    /// Frames that are kept.
+    pub(super) fn frames(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// The motion with all that is known of it but its numbers.
+    pub(super) fn outcome(&self, is_live: bool) -> Result<Outcome, String> {
+        let database = self.controller.database();
+        let clip = Clip::from_poses("drive", Arc::clone(database.skeleton()), RATE as f64, self.poses.iter().cloned());
+        let motion = Motion {
+            clip: Arc::new(clip.map_err(|error| error.to_string())?),
+            roles: database.roles().clone(),
+            contacts: self.contacts(),
+            ground_frames: self.moments.iter().map(|moment| moment.root).collect(),
+            seams: Vec::new(),
+            ground_m: database.ground_m(),
+            feet: FeetReading::default(),
+        };
+        let driven = Driven {
+            database: Arc::clone(database),
+            steering: self.controller.options().steering,
+            moments: self.moments.iter().cloned().collect(),
+            is_live,
+        };
+        Ok(Outcome {
+            driven: Some(Arc::new(driven)),
+            beside: database.motions().iter().map(|motion| Arc::clone(motion.clip())).collect(),
+            ..Outcome::plain(Arc::new(motion))
+        })
+    }
+
+    fn contacts(&self) -> Contacts {
+        Contacts::from_flags([0, 1].map(|side| self.planted.iter().map(|feet: &[bool; 2]| feet[side]).collect()))
+    }
+
+    /// The numbers of what is kept.
+    pub(super) fn metrics(&self, motion: &Motion) -> Vec<Metric> {
+        let database = self.controller.database();
+        let (mut jumps, mut searches, mut visited, mut last) = (Vec::new(), 0, 0, None);
+        for (frame, moment) in self.moments.iter().enumerate() {
+            let Some(search) = moment.search.as_ref().filter(|search| last != Some(search.tick)) else {
+                continue;
+            };
+            last = Some(search.tick);
+            searches += 1;
+            visited += search.visited;
+            if let (true, Some(to)) = (moment.jumped, search.winner) {
+                jumps.push(Jump {
+                    frame,
+                    reason: search.reason,
+                    from: search.current,
+                    to,
+                });
+            }
+        }
+        let drive = Drive {
+            clip: Clip::clone(&motion.clip),
+            contacts: motion.contacts.clone(),
+            roots: motion.ground_frames.clone(),
+            desired: self.moments.iter().map(|moment| moment.simulation.place()).collect(),
+            goals: self.moments.iter().map(|moment| moment.simulation.goal_yaw).collect(),
+            jumps,
+            searches,
+            visited,
+        };
+        let mut metrics = drive.metrics(database).list();
+        // A turn that was never made has no time.
+        for metric in &mut metrics {
+            metric.value = metric.value.filter(|value| value.is_finite());
+        }
+        let mean = visited as f64 / searches.max(1) as f64;
+        metrics.push(Metric::fact(
+            "match_visited",
+            "frames visited",
+            (searches > 0).then_some(mean),
+            "frames",
+            "How many frames a search looked at, on average.",
+        ));
+        metrics
+    }
+}

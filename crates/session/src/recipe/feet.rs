@@ -1,0 +1,152 @@
+//! Planted feet: held where they stand, and how far they slide.
+
+use crate::params::{Key, Params};
+use segue_motion::clip::{Clip, Contacts};
+use segue_motion::metrics::Metric;
+use segue_motion::skeleton::Roles;
+use segue_motion::transition::{FootLockError, FootLockOptions, FootLocking};
+use std::sync::Arc;
+
+/// How planted feet are held on whatever ground a clip has: [`FootLockOptions`] without the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lock {
+    blend_secs: f64,
+    max_shift_m: f32,
+    clearance_m: Option<f32>,
+}
+
+impl Lock {
+    /// Returns what the parameters ask for; `None` where feet are not held.
+    pub(super) fn of(params: &Params) -> Option<Self> {
+        let metres = |key| (params.number(key) / 100.0) as f32;
+        params.is_on(Key::FootLock).then(|| Self {
+            blend_secs: params.number(Key::LockBlend),
+            max_shift_m: metres(Key::LockReach),
+            clearance_m: Some(metres(Key::LockClearance)).filter(|&clearance_m| clearance_m > 0.0),
+        })
+    }
+
+    /// Returns the options on ground of a height, metres.
+    pub(super) fn on_ground(self, ground_m: f32) -> FootLockOptions {
+        let Self {
+            blend_secs,
+            max_shift_m,
+            clearance_m,
+        } = self;
+        FootLockOptions {
+            blend_secs,
+            max_shift_m,
+            ground_m: Some(ground_m),
+            clearance_m,
+        }
+    }
+}
+
+/// Begins to hold the planted feet of a clip above ground of a height, metres. `None` for a body without legs, which stays as it is: what cannot be held
+/// is no reason to have no result.
+pub(super) fn locking(
+    clip: Arc<Clip>,
+    roles: &Roles,
+    contacts: &Contacts,
+    ground_m: f32,
+    lock: Lock,
+) -> Result<Option<FootLocking>, String> {
+    match FootLocking::new(clip, roles, contacts, &lock.on_ground(ground_m)) {
+        Ok(locking) => Ok(Some(locking)),
+        Err(FootLockError::NoLegs) => Ok(None),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// Returns a result as it is, or with its planted feet held as [`locking`] does.
+pub(super) fn with_feet(
+    free: &Arc<Clip>,
+    roles: &Roles,
+    contacts: &Contacts,
+    ground_m: f32,
+    lock: Option<Lock>,
+) -> Result<Arc<Clip>, String> {
+    let Some(lock) = lock else {
+        return Ok(Arc::clone(free));
+    };
+    match locking(Arc::clone(free), roles, contacts, ground_m, lock)? {
+        Some(locking) => Ok(Arc::new(locking.finish().map_err(|error| error.to_string())?)),
+        None => Ok(Arc::clone(free)),
+    }
+}
+
+/// How far the feet of a whole result slide: in all labs as [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) has it.
+pub(super) fn slide(cm: Option<f64>) -> Metric {
+    Metric::lower(
+        "foot_slide_cm",
+        "Foot slide",
+        cm,
+        "cm",
+        "How far a planted foot slides in the worst stance.",
+    )
+}
+
+/// How far the feet of a result would slide if they were not held.
+pub(super) fn slide_before(cm: Option<f64>) -> Metric {
+    Metric::fact(
+        "foot_slide_before_cm",
+        "Foot slide before the lock",
+        cm,
+        "cm",
+        "How far a planted foot slides in the worst stance without the foot lock.",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Value;
+    use segue_motion::registration::fixtures::Walk;
+
+    /// The parameters with the foot lock on.
+    fn locked() -> Params {
+        let mut params = Params::default();
+        params.set(Key::FootLock, Value::Switch(true)).unwrap();
+        params
+    }
+
+    #[test]
+    fn unchanged_parameters_are_the_usual_options() {
+        assert_eq!(Lock::of(&Params::default()), None);
+        let lock = Lock::of(&locked()).unwrap();
+        assert_eq!(lock.on_ground(0.0), FootLockOptions::default());
+        assert_eq!(lock.on_ground(0.3).ground_m, Some(0.3));
+    }
+
+    #[test]
+    fn every_parameter_is_one_option() {
+        let mut params = locked();
+        for (key, value) in [(Key::LockBlend, 0.5), (Key::LockReach, 12.0), (Key::LockClearance, 6.0)] {
+            params.set(key, Value::Number(value)).unwrap();
+        }
+        let options = FootLockOptions {
+            blend_secs: 0.5,
+            max_shift_m: 0.12,
+            ground_m: Some(0.0),
+            clearance_m: Some(0.06),
+        };
+        assert_eq!(Lock::of(&params).unwrap().on_ground(0.0), options);
+        params.set(Key::LockClearance, Value::Number(0.0)).unwrap();
+        assert_eq!(
+            Lock::of(&params).unwrap().on_ground(0.0).clearance_m,
+            None,
+            "swings stay as they are"
+        );
+    }
+
+    #[test]
+    fn body_without_legs_stays_as_it_is() {
+        let clip = Arc::new(Walk::default().clip());
+        let roles = Roles::default();
+        let contacts = Contacts::from_flags([vec![true; clip.frames()], vec![true; clip.frames()]]);
+        assert!(Arc::ptr_eq(
+            &with_feet(&clip, &roles, &contacts, 0.0, Lock::of(&locked())).unwrap(),
+            &clip
+        ));
+    }
+}

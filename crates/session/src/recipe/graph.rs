@@ -1,0 +1,72 @@
+//! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it plays.
+
+mod built;
+mod cast;
+mod grapher;
+mod maker;
+mod plan;
+mod walk;
+mod wanted;
+
+pub use built::{Built, Distances, Field};
+pub use cast::Cast;
+pub(crate) use grapher::Grapher;
+pub use walk::{At, Passed, Trace, Walk, WalkGhost};
+pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
+pub(crate) use wanted::{clips_of, read_path, read_visits};
+
+use super::{Measured, Outcome, Slot, Source, Transition};
+use std::sync::Arc;
+
+/// What a walk's result depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct GraphInputs(pub(super) Arc<Walk>);
+
+impl PartialEq for GraphInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl GraphInputs {
+    /// Whether it goes the best way that was found so far, while a better one is searched for.
+    pub(crate) fn awaits_path(&self) -> bool {
+        self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
+    }
+
+    /// The walk as a result. A single transition has its two clips as sources.
+    pub(crate) fn run(&self) -> Outcome {
+        let walk = &self.0;
+        let (mut sources, mut transition) = (Vec::new(), None);
+        if let (true, [left, entered]) = (walk.is_jump, walk.passed.as_slice())
+            && let Some(seam) = entered.seam
+        {
+            let fps = walk.motion.clip.fps();
+            let secs = |frame: usize| frame as f64 / fps;
+            let clips = [(Slot::A, left), (Slot::B, entered)];
+            sources.extend(clips.into_iter().filter_map(|(slot, part)| {
+                let motion = walk.built.cast.motions().get(part.stay.clip)?;
+                let starts_at = secs(part.start) - secs(part.stay.from);
+                Some(Source::new(slot, motion, starts_at, part.world_from_clip))
+            }));
+            transition = Some(Transition {
+                start_secs: secs(entered.start),
+                end_secs: secs(entered.start + seam.frames),
+                leave_a_secs: secs(seam.leave.frame),
+                enter_b_secs: secs(seam.enter.frame),
+                window_frames: seam.frames,
+                distance_cm: walk.jump_cm(entered).unwrap_or(f64::NAN) as f32,
+                search: None,
+            });
+        }
+        Outcome {
+            sources,
+            transition,
+            walk: Some(Arc::clone(walk)),
+            metrics: walk.metrics.clone(),
+            beside: walk.built.cast.motions().iter().map(|motion| Arc::clone(&motion.clip)).collect(),
+            measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
+            ..Outcome::plain(Arc::clone(&walk.motion))
+        }
+    }
+}

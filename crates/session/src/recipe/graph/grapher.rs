@@ -1,0 +1,468 @@
+use super::built::Building;
+use super::cast::Fitted;
+use super::maker::Maker;
+use super::wanted::{GraphKey, Wanted, sentence};
+use super::{Built, Cast, Field, GraphInputs};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::Params;
+use crate::recipe::pair::fitted;
+use segue_motion::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions, PausedAllSweep};
+use segue_motion::registration::Progress;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Pairs of frames in one slice, about a millisecond for 31 joints.
+const PAIRS: usize = 100_000;
+/// Cells of the matrix in one slice.
+const CELLS: usize = 250_000;
+/// Of more frames the matrix is not held: 300 MB.
+const MOST_FRAMES: usize = 6_000;
+/// Cells of all fields that are kept: 160 MB.
+const MOST_CELLS: usize = 40_000_000;
+/// Places to go over that are kept for other thresholds: 50 MB.
+const MOST_FOUND: usize = 800_000;
+
+/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of frames for a new window, places to go over for a new threshold, the
+/// graph for another walk.
+#[derive(Debug, Default)]
+pub(crate) struct Grapher {
+    /// What is asked for: the clips' names and motions.
+    clips: Vec<(String, Arc<Motion>)>,
+    fitted: Vec<Fitted>,
+    /// The clips, while they are measured.
+    casting: Option<Box<Cast>>,
+    cast: Option<Result<Arc<Cast>, String>>,
+    all: Option<AllPairs>,
+    sweep: Option<PausedAllSweep>,
+    /// Distances that are counted, and how far.
+    counting: Option<(Field, CountedTo)>,
+    /// One for each window that was asked for last.
+    fields: Vec<Arc<Field>>,
+    /// By the options whose threshold they look as far as.
+    search: Option<(GraphOptions, Search)>,
+    /// What was found last, by these options.
+    found: Vec<(GraphOptions, Arc<Candidates>)>,
+    building: Option<(GraphKey, Building)>,
+    built: Vec<(GraphKey, Result<Arc<Built>, String>)>,
+    makers: Vec<(Wanted, Result<Maker, String>)>,
+    /// What panes show or wait for, the first pane's first.
+    wanted: Vec<Wanted>,
+    now_secs: f64,
+    /// There is something new to show.
+    is_ready: bool,
+    stopped: bool,
+    /// The parameters of the walk that the others go like.
+    guide: Option<Params>,
+    /// Seconds of work, by what it was for.
+    took: Vec<(GraphKey, f64)>,
+    worked_for: Option<GraphKey>,
+    /// The last slice was one of the last maker's.
+    stepped: bool,
+}
+
+/// The options by which places to go over are looked for: so far beyond the threshold that is asked for that it can be dragged up a good deal, too, and
+/// nobody looks again. Those that lie beyond are left aside when a graph is made, and there are as many as are held at most.
+fn reaching(options: &GraphOptions) -> GraphOptions {
+    let most = GraphOptions::MOST_THRESHOLD_CM.max(options.edge_threshold_cm);
+    GraphOptions {
+        edge_threshold_cm: (1.5 * options.edge_threshold_cm + 4.0).min(most),
+        ..*options
+    }
+}
+
+/// Whether what is found by some options serves others.
+fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
+    let alike = GraphOptions {
+        edge_threshold_cm: known.edge_threshold_cm,
+        most_ways_out: known.most_ways_out,
+        ..*options
+    };
+    alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
+}
+
+/// Where one may go over, on the way.
+#[derive(Debug)]
+enum Search {
+    Held(Box<CandidateSearch>),
+    Streamed(Box<CandidateStream>),
+}
+
+impl Grapher {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(crate) fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.is_ready = false;
+    }
+
+    /// Walks that are asked for from now on go like the one of these parameters, where their graphs allow it.
+    pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
+        self.guide = params.cloned();
+    }
+
+    /// A walk as far as it is made; `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
+    pub(crate) fn inputs(&mut self, clips: Vec<(String, Arc<Motion>)>, params: &Params) -> Result<Option<GraphInputs>, String> {
+        self.meet(clips);
+        let wanted = Wanted::guided(params, self.guide.as_ref(), self.clips.len())?;
+        let known = self.makers.iter().find(|(known, _)| *known == wanted);
+        let found = match (known, &self.cast) {
+            (_, Some(Err(problem))) | (Some((_, Err(problem))), _) => Err(problem.clone()),
+            (Some((_, Ok(maker))), _) => Ok(maker.walk().map(|walk| GraphInputs(Arc::clone(walk)))),
+            (None, _) => Ok(None),
+        };
+        if found.is_ok() {
+            self.wanted.push(wanted);
+        }
+        match found {
+            Ok(None) if self.stopped => Err("Stopped. Change anything, or go on.".to_owned()),
+            found => found,
+        }
+    }
+
+    /// The clips, where they are ready.
+    pub(crate) fn cast(&self) -> Option<&Arc<Cast>> {
+        self.cast.as_ref()?.as_ref().ok()
+    }
+
+    /// The distances that the first pane asks for; the last ones that there are while it waits.
+    pub(crate) fn field(&self) -> Option<&Arc<Field>> {
+        let window = self.wanted.first().map(|wanted| wanted.graph.options.blend_window);
+        let asked = self.fields.iter().find(|field| Some(field.window()) == window);
+        asked.or(self.fields.last())
+    }
+
+    /// The graph that the first pane asks for, where it is made.
+    pub(crate) fn built(&self) -> Option<&Arc<Built>> {
+        let key = self.wanted.first()?.graph;
+        self.known(key)?.as_ref().ok()
+    }
+
+    fn known(&self, key: GraphKey) -> Option<&Result<Arc<Built>, String>> {
+        self.built.iter().find(|(known, _)| *known == key).map(|(_, built)| built)
+    }
+
+    /// How long it took to make a graph, seconds; `None` where nobody measured it.
+    pub(crate) fn build_secs(&self, built: &Built) -> Option<f64> {
+        self.took.iter().find(|(key, _)| *key == built.key).map(|(_, secs)| *secs)
+    }
+
+    /// How long the last slice took, seconds.
+    pub(crate) fn took(&mut self, secs: f64) {
+        if let (true, Some((_, Ok(maker)))) = (self.stepped, self.makers.last_mut()) {
+            maker.took(secs);
+        }
+        self.stepped = false;
+        let Some(key) = self.worked_for.take() else { return };
+        match self.took.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, sum)) => *sum += secs,
+            None => self.took.push((key, secs)),
+        }
+        let extra = self.took.len().saturating_sub(16);
+        self.took.drain(..extra);
+    }
+
+    /// Gives up what is under way, or goes on with it.
+    pub(crate) fn stop(&mut self, stopped: bool) {
+        self.stopped = stopped;
+    }
+
+    /// Whether it was given up.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// One slice of what panes wait for, and of walks that the playhead comes near the end of. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self, now_secs: f64) -> bool {
+        self.now_secs = now_secs;
+        (self.worked_for, self.stepped) = (None, false);
+        let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
+        let Some(wanted) = next else { return false };
+        if let Err(problem) = self.step(&wanted) {
+            self.settle(&wanted, Err(problem));
+            self.is_ready = true;
+        }
+        true
+    }
+
+    /// Whether there is something new, so that panes should ask again.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, String>> {
+        self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
+    }
+
+    fn next(&self) -> Option<&Wanted> {
+        let maker = |wanted: &Wanted| self.maker(wanted);
+        let short = |wanted: &&Wanted| match maker(wanted) {
+            Some(Ok(maker)) => maker.is_short(self.now_secs),
+            Some(Err(_)) => false,
+            None => true,
+        };
+        let begins = |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
+        // What is seen for the first time goes before what gets longer.
+        let first = self.wanted.iter().filter(short).find(begins);
+        first.or_else(|| self.wanted.iter().find(short))
+    }
+
+    /// How much is done of what panes wait for, 0 to 1; `None` when they wait for nothing.
+    pub(crate) fn progress(&self) -> Option<f64> {
+        if self.stopped {
+            return None;
+        }
+        let wanted = self.next()?;
+        let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
+        match self.makers.iter().find(|(known, _)| known == wanted) {
+            // That a walk gets longer is nothing to wait for.
+            Some((_, Ok(maker))) if maker.walk().is_some() && !maker.is_searching() => return None,
+            Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
+            _ if self.known(wanted.graph).is_some() => return Some(0.85),
+            _ => {}
+        }
+        let fitted = self.fitted.len() as f64 / self.clips.len().max(1) as f64;
+        let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
+        let window = wanted.graph.options.blend_window;
+        let swept = if self.fields.iter().any(|field| field.window() == window) {
+            1.0
+        } else {
+            match (&self.sweep, &self.all) {
+                _ if self.counting.is_some() => 1.0,
+                (Some(sweep), Some(all)) if sweep.window() == window => share(sweep.progress(all)),
+                _ => 0.0,
+            }
+        };
+        let is_found = self.places(&wanted.graph.options).is_some();
+        let searched = match &self.search {
+            _ if is_found => return Some(0.85),
+            Some((known, search)) if serves(known, &wanted.graph.options) => match search {
+                Search::Held(search) => share(search.progress()),
+                Search::Streamed(stream) => return Some(0.1 * fitted + 0.75 * share(stream.progress())),
+            },
+            // There the distances are seen when one looks for places to go over, and not before.
+            _ if self.is_streamed() => return Some(0.1 * fitted),
+            _ => 0.0,
+        };
+        Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
+    }
+
+    /// Other clips: nothing of what was made holds any more.
+    fn meet(&mut self, clips: Vec<(String, Arc<Motion>)>) {
+        let same = clips.len() == self.clips.len() && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
+        if !same {
+            *self = Self {
+                clips,
+                guide: self.guide.take(),
+                ..Self::default()
+            };
+        }
+    }
+
+    /// Does a slice of what is needed next.
+    fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
+        if let Some(guide) = &wanted.guide {
+            // Without it a walk would go by chance. One that cannot be made has told so: then there is nothing to go like.
+            let is_to_be_made = match self.maker(guide) {
+                Some(Ok(maker)) => maker.is_short(self.now_secs),
+                Some(Err(_)) => false,
+                None => true,
+            };
+            if is_to_be_made {
+                if let Err(problem) = self.step(guide) {
+                    self.settle(guide, Err(problem));
+                }
+                return Ok(());
+            }
+        }
+        if let Some(at) = self.makers.iter().position(|(known, _)| known == wanted) {
+            let entry = self.makers.remove(at);
+            self.makers.push(entry);
+            self.stepped = true;
+            if let Some(((_, Ok(maker)), others)) = self.makers.split_last_mut() {
+                let guide = wanted
+                    .guide
+                    .as_deref()
+                    .and_then(|guide| others.iter_mut().find(|(known, _)| known == guide));
+                let guide = guide.and_then(|(_, guide)| Some(guide.as_mut().ok()?.plan()));
+                self.is_ready |= maker.step(self.now_secs, guide)?;
+            }
+            return Ok(());
+        }
+        let Some(cast) = self.ready_cast()? else { return Ok(()) };
+        wanted.graph.options.check(cast.set()).map_err(|error| sentence(&error))?;
+        if let Some(built) = self.known(wanted.graph) {
+            let built = Arc::clone(built.as_ref().map_err(String::clone)?);
+            let like = self.makers.iter().filter_map(|(_, maker)| maker.as_ref().ok());
+            let maker = Maker::new(&built, wanted, like);
+            self.settle(wanted, maker);
+            return Ok(());
+        }
+        self.worked_for = Some(wanted.graph);
+        let key = wanted.graph;
+        let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
+            let found = self.search_slice(&cast, key).map_err(|error| sentence(&error))?;
+            self.building = found.map(|found| (key, Building::Found(found)));
+            return Ok(());
+        };
+        let found = match building.advance(&cast, key) {
+            Ok(ControlFlow::Continue(building)) => {
+                self.building = Some((key, building));
+                return Ok(());
+            }
+            Ok(ControlFlow::Break(built)) => Ok(Arc::new(built)),
+            Err(error) => Err(sentence(&error)),
+        };
+        if self.built.len() >= 2 * MAX_PANES {
+            drop(self.built.remove(0));
+        }
+        self.built.push((wanted.graph, found));
+        Ok(())
+    }
+
+    /// The clips on one skeleton, one more in each slice.
+    fn ready_cast(&mut self) -> Result<Option<Arc<Cast>>, String> {
+        if let Some(cast) = &self.cast {
+            return cast.clone().map(Some);
+        }
+        if let (Some((name, next)), Some((_, first))) = (self.clips.get(self.fitted.len()), self.clips.first()) {
+            match fitted(first, next) {
+                Ok(ready) => self.fitted.push(ready),
+                Err(problem) => self.cast = Some(Err(format!("{name}: {problem}"))),
+            }
+            return Ok(None);
+        }
+        if let Some(mut casting) = self.casting.take() {
+            if casting.advance() {
+                self.cast = Some(Ok(Arc::from(casting)));
+            } else {
+                self.casting = Some(casting);
+            }
+            return Ok(None);
+        }
+        let names = self.clips.iter().map(|(name, _)| name.clone()).collect();
+        // Still as many as the clips: so far it has come.
+        match Cast::new(names, self.fitted.clone()) {
+            Ok(cast) => self.casting = Some(Box::new(cast)),
+            Err(problem) => self.cast = Some(Err(problem)),
+        }
+        Ok(None)
+    }
+
+    /// A slice of the way to the places where one may go over; these where they are found.
+    fn search_slice(&mut self, cast: &Arc<Cast>, key: GraphKey) -> Result<Option<Arc<Candidates>>, GraphError> {
+        if let Some(found) = self.places(&key.options) {
+            return Ok(Some(Arc::clone(found)));
+        }
+        if self.is_streamed() {
+            let (options, mut stream) = match self.search.take() {
+                Some((known, Search::Streamed(stream))) if serves(&known, &key.options) => (known, stream),
+                _ => {
+                    let options = reaching(&key.options);
+                    (options, Box::new(CandidateStream::new(cast.set(), &options)?))
+                }
+            };
+            if stream.advance(1)?.is_complete() {
+                let (found, overview) = stream.finish()?;
+                // The same for every threshold: what is drawn of it stays.
+                if self.fields.iter().all(|field| field.window() != overview.window()) {
+                    self.keep_field(Arc::new(Field::from_afar(overview)));
+                }
+                return Ok(Some(self.keep_found(options, found)));
+            }
+            self.search = Some((options, Search::Streamed(stream)));
+            return Ok(None);
+        }
+        let Some(all) = &mut self.all else {
+            self.all = Some(AllPairs::new(Arc::clone(cast.set()))?);
+            return Ok(None);
+        };
+        if !all.progress().is_complete() {
+            all.advance(PAIRS)?;
+            return Ok(None);
+        }
+        let window = key.options.blend_window;
+        let known = self
+            .fields
+            .iter()
+            .filter(|field| field.window() == window)
+            .find_map(|field| field.all());
+        let Some(distances) = known else {
+            if let Some((mut field, mut at)) = self.counting.take().filter(|(field, _)| field.window() == window) {
+                if field.count(&mut at, CELLS) {
+                    self.keep_field(Arc::new(field));
+                } else {
+                    self.counting = Some((field, at));
+                }
+                return Ok(None);
+            }
+            let mut sweep = match self.sweep.take().filter(|sweep| sweep.window() == window) {
+                Some(sweep) => sweep.resume(all),
+                None => all.sweep(window)?,
+            };
+            if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
+                self.counting = Some((Field::held(sweep.finish()?), CountedTo::default()));
+            } else {
+                self.sweep = Some(sweep.pause());
+            }
+            return Ok(None);
+        };
+        let (options, mut search) = match self.search.take() {
+            Some((known, Search::Held(search))) if serves(&known, &key.options) => (known, search),
+            _ => {
+                let options = reaching(&key.options);
+                (options, Box::new(CandidateSearch::new(distances, &options)?))
+            }
+        };
+        // What was found is sorted in a slice of its own.
+        if search.progress().is_complete() {
+            return Ok(Some(self.keep_found(options, search.finish())));
+        }
+        search.advance(all, distances, CELLS)?;
+        self.search = Some((options, Search::Held(search)));
+        Ok(None)
+    }
+
+    /// Whether the distances are not held.
+    fn is_streamed(&self) -> bool {
+        self.cast().is_some_and(|cast| cast.set().frames() > MOST_FRAMES)
+    }
+
+    /// The places to go over that are known and serve a graph, if the distances that are shown with it are there, too.
+    fn places(&self, options: &GraphOptions) -> Option<&Arc<Candidates>> {
+        let is_shown = self.fields.iter().any(|field| field.window() == options.blend_window);
+        let mut known = self.found.iter().filter(|(known, _)| is_shown && serves(known, options));
+        known.next().map(|(_, found)| found)
+    }
+
+    fn keep_found(&mut self, options: GraphOptions, found: Candidates) -> Arc<Candidates> {
+        let found = Arc::new(found);
+        // One that reaches farther serves for all that this one did.
+        self.found.retain(|(known, _)| !serves(&options, known));
+        self.found.push((options, Arc::clone(&found)));
+        let count = |found: &[(GraphOptions, Arc<Candidates>)]| found.iter().map(|(_, found)| found.found().len()).sum::<usize>();
+        while self.found.len() > 1 && (self.found.len() > MAX_PANES || count(&self.found) > MOST_FOUND) {
+            self.found.remove(0);
+        }
+        found
+    }
+
+    fn keep_field(&mut self, field: Arc<Field>) {
+        self.fields.push(field);
+        while self.fields.len() > MAX_PANES
+            || (self.fields.len() > 1 && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MOST_CELLS)
+        {
+            self.fields.remove(0);
+        }
+    }
+
+    fn settle(&mut self, wanted: &Wanted, maker: Result<Maker, String>) {
+        self.is_ready |= maker.is_err();
+        self.makers.retain(|(known, _)| known != wanted);
+        if self.makers.len() >= 2 * MAX_PANES {
+            // The one that waits longest, and not what a pane shows, or goes like.
+            let unwanted = self.makers.iter().position(|(known, _)| !self.wanted.contains(known));
+            drop(self.makers.remove(unwanted.unwrap_or(0)));
+        }
+        self.makers.push((wanted.clone(), maker));
+    }
+}

@@ -1,0 +1,146 @@
+use super::wanted::Wanted;
+use petgraph::graph::EdgeIndex;
+use petgraph::visit::EdgeRef;
+use segue_motion::graph::{Choices, GraphError, MotionGraph, Place, Stay, Walker};
+use std::sync::Arc;
+
+/// How far from another walk's transition one counts as the same, seconds at each end.
+const GUIDE_SECS: f64 = 0.3;
+/// Stays of that walk among which it is looked for.
+const GUIDE_STAYS: usize = 12;
+
+/// The stays of a walk, as far as anybody asked for them: found without a frame being made. A walk that goes like another one asks that one's plan for as much as it
+/// needs, so that it does not depend on how much of the other has been shown.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    graph: Arc<MotionGraph>,
+    walker: Walker,
+    stays: Vec<Stay>,
+    /// Frames of these stays.
+    frames: usize,
+    /// When to set off for which clip, and how many of these visits were begun.
+    visits: Vec<(f64, usize)>,
+    visited: usize,
+    /// Visits of clips to which no way led.
+    missed: Vec<(f64, usize)>,
+    /// Which stay of the walk that this one goes like plays now.
+    guided: usize,
+}
+
+impl Plan {
+    pub(super) fn new(graph: &Arc<MotionGraph>, choices: &Arc<Choices>, wanted: &Wanted) -> Result<Self, GraphError> {
+        let walker = Walker::new(Arc::clone(graph), Arc::clone(choices), wanted.seed);
+        Ok(Self {
+            graph: Arc::clone(graph),
+            walker: walker.with_visited_discount(wanted.discount)?,
+            stays: Vec::new(),
+            frames: 0,
+            visits: wanted.visits.clone(),
+            visited: 0,
+            missed: Vec::new(),
+            guided: 0,
+        })
+    }
+
+    /// Takes these edges first.
+    pub(super) fn take(&mut self, edges: Vec<EdgeIndex>) {
+        self.walker.take(edges);
+    }
+
+    /// A stay by its number; `None` behind the last one, where a walk comes to an end. `guide` is the walk that this one goes like, if any; it is the same in every call.
+    pub(super) fn stay(&mut self, number: usize, mut guide: Option<&mut Self>) -> Option<Stay> {
+        while self.stays.len() <= number {
+            if let Some(guide) = guide.as_deref_mut() {
+                self.go_like(guide);
+            }
+            let stay = self.next()?;
+            self.frames += stay.to - stay.from;
+            self.stays.push(stay);
+        }
+        self.stays.get(number).copied()
+    }
+
+    /// Visits that came to nothing so far: when, and which clip.
+    pub(super) fn missed(&self) -> &[(f64, usize)] {
+        &self.missed
+    }
+
+    /// The next stay, which ends early where a visit is due.
+    fn next(&mut self) -> Option<Stay> {
+        let fps = self.graph.set().fps();
+        let mut next = self.walker.clone();
+        let mut stay = next.next_stay()?;
+        while let Some(&(secs, clip)) = self.visits.get(self.visited) {
+            let due = (secs * fps).round() as usize;
+            if self.frames + (stay.to - stay.from) <= due {
+                break;
+            }
+            self.visited += 1;
+            // What plays before that has been seen: it stays.
+            self.walker.go_on_to(stay.from + due.saturating_sub(self.frames));
+            if self.walker.go_to_clip(clip) {
+                next = self.walker.clone();
+                stay = next.next_stay()?;
+            } else {
+                self.missed.push((secs, clip));
+            }
+        }
+        self.walker = next;
+        Some(stay)
+    }
+
+    /// The transition into a stay.
+    fn seam(&mut self, number: usize) -> Option<[Place; 2]> {
+        let stay = self.stay(number, None)?;
+        let jump = self.graph.jumps().get(stay.jump?)?;
+        Some([jump.leave, jump.enter])
+    }
+
+    /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
+    /// same clip.
+    fn go_like(&mut self, guide: &mut Self) {
+        // To a clip that it was sent to: that is where it goes.
+        if self.walker.has_way() {
+            return;
+        }
+        let graph = Arc::clone(&self.graph);
+        let Some(here) = graph.graph().node_weight(self.walker.node()).copied() else {
+            return;
+        };
+        let window = guide.graph.options().blend_window;
+        let middle = |place: Place, window: usize| place.frame + window / 2;
+        let mut ahead = (self.guided + 1..=self.guided + GUIDE_STAYS).filter_map(|number| Some((number, guide.seam(number)?)));
+        let next = ahead.find(|(_, [leave, _])| leave.clip == here.clip && middle(*leave, window) > here.start);
+        let Some((number, [leave, enter])) = next else { return };
+        let near = (GUIDE_SECS * graph.set().fps()).round() as usize;
+        let mut on = Vec::new();
+        let mut best: Option<(usize, Vec<EdgeIndex>)> = None;
+        let mut node = self.walker.node();
+        loop {
+            let mut onward = None;
+            for edge in graph.graph().edges(node) {
+                let Some(jump) = graph.jump(edge.id()) else {
+                    onward = Some((edge.id(), edge.target()));
+                    continue;
+                };
+                let apart = |a: Place, b: Place| (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)));
+                let off = apart(jump.leave, leave).zip(apart(jump.enter, enter));
+                let Some((left, entered)) = off.filter(|off| off.0 <= near && off.1 <= near) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|(least, _)| left + entered < *least) {
+                    let mut way: Vec<EdgeIndex> = on.clone();
+                    way.push(edge.id());
+                    best = Some((left + entered, way));
+                }
+            }
+            let Some((edge, target)) = onward else { break };
+            on.push(edge);
+            node = target;
+        }
+        if let Some((_, way)) = best {
+            self.walker.take(way);
+            self.guided = number;
+        }
+    }
+}

@@ -1,0 +1,189 @@
+use super::Built;
+use crate::motion::Motion;
+use glam::DVec2;
+use segue_motion::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Metric, MotionTrace};
+use std::sync::Arc;
+
+/// A stay in one clip, in the walk's time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passed {
+    /// The walk's frame at which it begins.
+    pub start: usize,
+    /// One past its last frame.
+    pub end: usize,
+    /// What plays.
+    pub stay: Stay,
+    /// The transition into it.
+    pub seam: Option<PieceSeam>,
+    /// Where its clip lies in the walk's world.
+    pub world_from_clip: Planar,
+}
+
+impl Passed {
+    pub(super) fn of(piece: &WalkPiece) -> Self {
+        Self {
+            start: piece.start,
+            end: piece.start + piece.clip.frames(),
+            stay: piece.stay,
+            seam: piece.seam,
+            world_from_clip: piece.world_from_piece,
+        }
+    }
+}
+
+/// What a walk shows at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct At {
+    /// The number of the stay.
+    pub stay: usize,
+    /// The frame of its clip.
+    pub place: Place,
+    /// The frame of the clip that is left, while the transition lasts.
+    pub left: Option<Place>,
+    /// How much of the transition is over, 0 to 1; 1 behind it.
+    pub share: f64,
+}
+
+/// A walk through a graph, as far as it is made.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// The graph.
+    pub built: Arc<Built>,
+    /// The probabilities by which it went.
+    pub choices: Arc<Choices>,
+    /// Seconds from one transition to the next in a long walk; `None` where a walk comes to an end, or never leaves its clip.
+    pub run_secs: Option<f64>,
+    /// The motion so far.
+    pub motion: Arc<Motion>,
+    /// What it is made of.
+    pub passed: Arc<Vec<Passed>>,
+    /// Visits of clips that no way leads to from where the walk is at that time: when, seconds, and the clip.
+    pub missed: Vec<(f64, usize)>,
+    /// Its artefacts.
+    pub metrics: Vec<Metric>,
+    /// What its joints, its hips and its feet do: of what was shown first, and `None` before that is measured.
+    pub trace: Option<Arc<MotionTrace>>,
+    /// It has come to a dead end.
+    pub ends: bool,
+    /// It is one transition, between a part of one clip and a part of another.
+    pub is_jump: bool,
+    /// It goes like the walk of another pane, where it can.
+    pub is_guided: bool,
+    /// The line that it follows, and how well: root of the mean square, and how far it came, metres.
+    pub followed: Option<Trace>,
+}
+
+/// A clip that a walk is made of, as a ghost.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkGhost<'a> {
+    /// The clip.
+    pub motion: &'a Arc<Motion>,
+    /// Its time, seconds.
+    pub secs: f64,
+    /// Where it lies in the walk's world.
+    pub world_from_clip: Planar,
+    /// How clear it is, 0 to 1.
+    pub clear: f64,
+}
+
+/// A line over the ground, and how a walk follows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Points, (x, z) in metres.
+    pub points: Vec<DVec2>,
+    /// How far off the walk is by the search, metres: the root of the mean square.
+    pub rms_m: f64,
+    /// How far along the line it comes, metres.
+    pub along_m: f64,
+    /// How long the line is, metres.
+    pub length_m: f64,
+    /// Nodes that were looked at.
+    pub looked_at: usize,
+    /// It is the best so far.
+    pub is_searching: bool,
+}
+
+impl Walk {
+    /// The frame of the walk at a time.
+    fn frame_at(&self, secs: f64) -> usize {
+        let last = self.motion.clip.frames().saturating_sub(1);
+        ((secs * self.motion.clip.fps()).max(0.0).round() as usize).min(last)
+    }
+
+    /// What it shows at a time; `None` for a walk without frames.
+    #[must_use]
+    pub fn at(&self, secs: f64) -> Option<At> {
+        let frame = self.frame_at(secs);
+        let stay = self.passed.partition_point(|passed| passed.start <= frame).checked_sub(1)?;
+        let passed = self.passed.get(stay)?;
+        let into = frame - passed.start;
+        let seam = passed.seam.filter(|seam| into < seam.frames);
+        Some(At {
+            stay,
+            place: Place {
+                clip: passed.stay.clip,
+                frame: passed.stay.from + into,
+            },
+            left: seam.map(|seam| Place {
+                frame: seam.leave.frame + into,
+                ..seam.leave
+            }),
+            share: seam.map_or(1.0, |seam| into as f64 / seam.frames.max(1) as f64),
+        })
+    }
+
+    /// The distance of the transition into a stay, centimetres.
+    #[must_use]
+    pub fn jump_cm(&self, passed: &Passed) -> Option<f64> {
+        let graph = if self.is_jump { self.built.whole() } else { self.built.graph() };
+        Some(graph.jumps().get(passed.stay.jump?)?.distance_cm)
+    }
+
+    /// The clips that play in the transition about a time, the one that is left first. They fade in before it and out behind it.
+    #[must_use]
+    pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
+        let fps = self.motion.clip.fps();
+        let near = |passed: &&Passed| {
+            let (Some(seam), start) = (passed.seam, passed.start as f64 / fps) else {
+                return false;
+            };
+            secs > start - fade_secs && secs < start + seam.frames as f64 / fps + fade_secs
+        };
+        let frame = self.frame_at(secs + fade_secs);
+        let last = self.passed.partition_point(|passed| passed.start <= frame);
+        let few = self.passed.get(last.saturating_sub(3)..last).unwrap_or_default();
+        let Some((passed, seam)) = few.iter().rev().find(near).and_then(|passed| Some((passed, passed.seam?))) else {
+            return [None, None];
+        };
+        let (start, length) = (passed.start as f64 / fps, seam.frames.max(1) as f64 / fps);
+        let inside = ((secs - start) / length).clamp(0.0, 1.0);
+        let before = 1.0 - ((start - secs) / fade_secs).clamp(0.0, 1.0);
+        let behind = 1.0 - ((secs - start - length) / fade_secs).clamp(0.0, 1.0);
+        // Where the walk meets its clips exactly: at the beginning the one that is left, at the end the one that is entered.
+        let end = (passed.start + seam.frames).min(self.motion.clip.frames().saturating_sub(1));
+        let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
+            let motion = self.built.cast().motions().get(place.clip)?;
+            let stands = motion.ground_frames.get(met)?;
+            let world_from_clip = self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
+            let secs = place.frame as f64 / fps + secs - start;
+            let there = (0.0..=motion.clip.duration_secs()).contains(&secs) && clear > 0.02;
+            there.then_some(WalkGhost {
+                motion,
+                secs,
+                world_from_clip,
+                clear,
+            })
+        };
+        [
+            laid(seam.leave, seam.leave.frame, passed.start, (2.0 * inside).min(1.0) * behind),
+            laid(
+                seam.enter,
+                seam.enter.frame + (end - passed.start),
+                end,
+                (2.0 * (1.0 - inside)).min(1.0) * before,
+            ),
+        ]
+    }
+}

@@ -1,0 +1,309 @@
+//! Results that are kept: their id is the recipe, and all that a link needs to make them again.
+
+use super::make::made_id;
+use super::{CycleMade, Outcome};
+use crate::params::{Group, Key, Kind, PARAMS, Param, Params, Value};
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+
+/// What would end a value, and what says that something is written otherwise.
+const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
+
+/// A result of a result of a result: deeper ids name nothing.
+const DEEPEST: usize = 6;
+
+/// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
+pub(crate) fn belongs_to(key: Key, lab: &str) -> bool {
+    let group = key.param().group;
+    match lab {
+        "view" => group == Group::View || is_of_feet(key),
+        "make" => group == Group::Make || is_of_feet(key),
+        "blend" => group == Group::Blend,
+        "transition" => matches!(group, Group::Blend | Group::Transition),
+        "speed" => group == Group::Speed || is_of_feet(key),
+        "loop" => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
+        "layers" => group == Group::Layers || is_of_feet(key),
+        "register" => group == Group::Register || key == Key::WeightLaw || is_of_feet(key),
+        "path" => group == Group::Path || is_of_feet(key),
+        "graph" => {
+            let of_blend = matches!(key, Key::BlendWindow | Key::WeightLaw | Key::AlignBy | Key::RootBlend);
+            group == Group::Graph || of_blend || matches!(key, Key::HalfLife | Key::Seed) || is_of_feet(key)
+        }
+        "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
+        _ => false,
+    }
+}
+
+/// Whether a parameter says how feet are read and held: every lab with clips has these.
+fn is_of_feet(key: Key) -> bool {
+    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed) || is_of_lock(key)
+}
+
+/// Whether a parameter says how planted feet are held.
+fn is_of_lock(key: Key) -> bool {
+    matches!(key, Key::LockBlend | Key::LockReach | Key::LockClearance)
+}
+
+/// Whether a parameter can change the result: how feet are held changes nothing while they are not.
+pub(super) fn counts(params: &Params, key: Key) -> bool {
+    params.is_on(Key::FootLock) || !is_of_lock(key)
+}
+
+/// Whether a parameter is part of what a lab's result is made from.
+fn is_ingredient(key: Key, lab: &str) -> bool {
+    match key {
+        Key::A => !matches!(lab, "graph" | "match"),
+        Key::B => !matches!(lab, "view" | "loop" | "path" | "graph" | "match"),
+        // Looked at or worked with, and not made from.
+        Key::MaskColors
+        | Key::PathGrid
+        | Key::PinStart
+        | Key::PinEnd
+        | Key::Others
+        | Key::WalkSpeed
+        | Key::RunSpeed
+        | Key::Strafe
+        | Key::ShownCandidates
+        | Key::SearchBy
+        | Key::Crowd => false,
+        _ => belongs_to(key, lab),
+    }
+}
+
+/// What a lab's result is made from, clips included.
+pub(crate) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = Key> {
+    PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
+}
+
+/// The id of what the parameters make: `run(turn_rate:20)` of the Make lab, `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
+///
+/// What was left to Segue is written down as it was found, so that the same comes out again, and at once. `fps` are the clips' own frame rates.
+pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
+    let lab = params.text(Key::Lab);
+    match lab {
+        "view" if is_as_it_is(params) => return None,
+        "make" => return Some(made_id(params)),
+        _ => {}
+    }
+    let mut params = params.clone();
+    if lab == "graph" {
+        // As long as it is by now, as far as a link can say it.
+        let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
+        params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
+    }
+    for (key, value) in found(lab, outcome, fps) {
+        if *params.get(key) == Value::Auto {
+            params.set(key, Value::Number(value)).ok()?;
+        }
+    }
+    let ingredients = PARAMS
+        .iter()
+        .filter(|param| is_ingredient(param.key, lab) && counts(&params, param.key));
+    let ingredients = ingredients.filter(|param| {
+        let named = matches!(param.kind, Kind::Clip);
+        named || *params.get(param.key) != param.default_value()
+    });
+    let list: Vec<String> = ingredients
+        .map(|param| format!("{}:{}", param.name, written(param, params.get(param.key))))
+        .collect();
+    Some(format!("{lab}({})", list.join(",")))
+}
+
+/// The parameters that an id stands for; `None` when it stands for none.
+pub(crate) fn recipe_params(id: &str) -> Option<Params> {
+    let (word, list) = id.strip_suffix(')')?.split_once('(')?;
+    let mut params = Params::default();
+    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
+    let is_lab = Key::Lab.param().parse(word).is_ok() && word != "make";
+    let lab = if is_lab { word } else { "make" };
+    set(Key::Lab, lab)?;
+    if !is_lab {
+        set(Key::Gait, word)?;
+    }
+    for pair in parts(list)? {
+        let (name, value) = pair.split_once(':')?;
+        let key = Key::from_name(name)?;
+        let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
+        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')') {
+            percent_decode_str(value).decode_utf8().ok()?
+        } else {
+            value.into()
+        };
+        set(Some(key).filter(|_| allowed)?, &value)?;
+    }
+    // A clip as it is has its own id.
+    (lab != "view" || !is_as_it_is(&params)).then_some(params)
+}
+
+/// Whether the View lab changes nothing of its clip.
+pub(crate) fn is_as_it_is(params: &Params) -> bool {
+    let matters = |key: Key| belongs_to(key, "view") && counts(params, key);
+    let changes = |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
+    !PARAMS.iter().any(changes)
+}
+
+/// What a person calls what the parameters make.
+pub(crate) fn recipe_name(params: &Params) -> String {
+    let [a, b] = [Key::A, Key::B].map(|key| match recipe_params(params.text(key)) {
+        Some(kept) => recipe_name(&kept),
+        None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
+    });
+    match params.text(Key::Lab) {
+        "make" => made_id(params),
+        "view" => {
+            let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
+                .iter()
+                .any(|&key| params.optional(key).is_some());
+            let held = if params.is_on(Key::FootLock) {
+                format!("{a}, feet held")
+            } else {
+                a
+            };
+            match params.text(Key::RootMotion) {
+                "in_place" => format!("{held}, in place"),
+                "residual" => format!("{held}, beside its path"),
+                _ if is_placed => format!("{held}, moved"),
+                _ => held,
+            }
+        }
+        "loop" => format!("{a}, looped"),
+        "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
+        "layers" => format!("{a} with {b}"),
+        "path" => format!("{a} on a path"),
+        "graph" => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
+        "match" => match params.text(Key::Scenario) {
+            "own" => "a drive".to_owned(),
+            _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
+        },
+        _ => format!("{a} to {b}"),
+    }
+}
+
+/// Several ids in one text: separated by commas.
+#[must_use]
+pub fn write_ids(ids: &[String]) -> String {
+    let written = |id: &String| match recipe_params(id) {
+        Some(_) => id.clone(),
+        None => utf8_percent_encode(id, RESERVED).to_string(),
+    };
+    ids.iter().map(written).collect::<Vec<_>>().join(",")
+}
+
+/// The ids of such a text; `None` when its brackets do not close.
+pub(crate) fn read_ids(text: &str) -> Option<Vec<String>> {
+    let id = |part: &str| {
+        if part.ends_with(')') {
+            part.to_owned()
+        } else {
+            percent_decode_str(part).decode_utf8_lossy().into_owned()
+        }
+    };
+    Some(parts(text)?.into_iter().map(id).collect())
+}
+
+/// What was found where it was left to Segue.
+fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
+    let mut found = Vec::new();
+    if let Some(transition) = &outcome.transition {
+        found.extend(match lab {
+            "transition" => [
+                (Key::MixFrameA, (transition.leave_a_secs * fps[0]).round()),
+                (Key::MixFrameB, (transition.enter_b_secs * fps[1]).round()),
+            ],
+            _ => [(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)],
+        });
+    }
+    match outcome.cycle.map(|cycle| cycle.made) {
+        Some(CycleMade::Cut { from_secs, to_secs, .. }) => found.extend([(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)]),
+        Some(CycleMade::Gait { asked_mps, .. }) => found.push((Key::Speed, asked_mps)),
+        None => {}
+    }
+    found
+}
+
+/// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
+fn written(param: &Param, value: &Value) -> String {
+    let text = param.format(value);
+    if matches!(param.kind, Kind::Clip | Kind::Text) && recipe_params(&text).is_none() {
+        utf8_percent_encode(&text, RESERVED).to_string()
+    } else {
+        text
+    }
+}
+
+/// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
+fn parts(list: &str) -> Option<Vec<&str>> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
+    for (at, letter) in list.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.checked_sub(1)?,
+            ',' if depth == 0 => {
+                parts.push(&list[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return None;
+        }
+    }
+    parts.push(&list[start..]);
+    parts.retain(|part| !part.is_empty());
+    (depth == 0).then_some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn named(a: &str, b: &str) -> Option<Params> {
+        let mut params = Params::default();
+        params.set(Key::Lab, Value::Choice("transition")).ok()?;
+        params.set(Key::A, Value::Text(a.to_owned())).ok()?;
+        params.set(Key::B, Value::Text(b.to_owned())).ok()?;
+        Some(params)
+    }
+
+    fn id_of(params: &Params) -> String {
+        let outcome = super::super::make(&Params::default()).expect("a walk");
+        recipe_id(params, &outcome, [60.0; 2]).expect("a recipe")
+    }
+
+    #[test]
+    fn ids_that_are_none_name_nothing() {
+        for id in [
+            "blend(a:walk",
+            "blend(a:walk))",
+            "blend(gait:run)",
+            "loop(a:walk,b:run)",
+            "view(a:walk)",
+            "view(a:walk,lock_blend:0.5)",
+            "view(a:walk,b:run,foot_lock:on)",
+            "make(gait:run)",
+            "blend(a:walk,blend_window:0)",
+            "blend((((((((((())))))))))))",
+        ] {
+            assert_eq!(recipe_params(id), None, "{id}");
+        }
+    }
+
+    #[test]
+    fn lists_stay_whole_inside_of_an_id() {
+        let mut params = Params::default();
+        params.set(Key::Lab, Value::Choice("register")).expect("a lab");
+        params.set(Key::Pins, Value::Text("12-30,50-71".into())).expect("a text");
+        assert_eq!(recipe_params(&id_of(&params)), Some(params));
+    }
+
+    proptest! {
+        #[test]
+        fn any_name_of_a_file_comes_back(a in ".{0,24}", b in "[a-z(),:%~ ]{0,16}") {
+            let params = named(&a, &b).expect("texts");
+            prop_assert_eq!(recipe_params(&id_of(&params)), Some(params.clone()));
+            // And once more inside of another.
+            let outer = named(&id_of(&params), &b).expect("texts");
+            prop_assert_eq!(recipe_params(&id_of(&outer)), Some(outer));
+        }
+    }
+}

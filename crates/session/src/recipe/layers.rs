@@ -1,0 +1,309 @@
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::pair::{Pair, source_of};
+use super::{Measured, Outcome, Slot, Source};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use segue_motion::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
+use segue_motion::clip::{Clip, Contacts, character_frames};
+use segue_motion::gait::{GaitCycle, strike_phases};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Profile, Subject, TransitionMetrics, deviations, foot_slide_cm};
+use segue_motion::transition::{Loop, LoopOptions, close_loop};
+use std::sync::Arc;
+
+/// How the layer's time goes with that of the clip below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayerFit {
+    /// One cycle of B is repeated so that its feet would strike when A's do.
+    InStep,
+    /// B begins again at its end; its ends are brought together.
+    Looped,
+    /// B is long enough to play once.
+    Once,
+    /// B stays in its last frame, and before its beginning in its first.
+    Held,
+}
+
+/// What is known of a layer that was laid over a clip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerFacts {
+    /// Each joint's share of B, 0 to 1.
+    pub shares: Vec<f32>,
+    /// How B's time goes.
+    pub fit: LayerFit,
+    /// B was to keep step, and one of the clips has no steps.
+    pub has_no_steps: bool,
+}
+
+/// What a layer depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct LayerInputs {
+    pair: Arc<Pair>,
+    timed: Arc<Timed>,
+    options: LayerOptions,
+    foot_lock: Option<Lock>,
+}
+
+impl PartialEq for LayerInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && Arc::ptr_eq(&self.timed, &other.timed)
+            && self.options == other.options
+            && self.foot_lock == other.foot_lock
+    }
+}
+
+/// B as it is read, and when.
+#[derive(Clone, Debug)]
+struct Reading {
+    over: Arc<Clip>,
+    /// One time for every frame of A, seconds.
+    times: Arc<Vec<f64>>,
+}
+
+/// B in A's time.
+#[derive(Debug)]
+struct Timed {
+    pair: Arc<Pair>,
+    /// The word of the parameter, and the start in seconds.
+    wanted: (&'static str, f64),
+    reading: Reading,
+    fit: LayerFit,
+    has_no_steps: bool,
+    /// All of B, frame by frame beside A.
+    shown: Arc<Motion>,
+    profile: Profile,
+}
+
+/// Makes layers, and keeps what does not change from one to the next: B in A's time.
+#[derive(Debug, Default)]
+pub(crate) struct Layerer {
+    /// B in step with A, where both have steps.
+    in_step: Option<(Arc<Pair>, Option<Reading>)>,
+    /// The last ones that were asked for, at most one for each pane.
+    timed: Vec<Arc<Timed>>,
+}
+
+impl Layerer {
+    /// Brings everything to the point where the layer itself is a pure function.
+    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<LayerInputs, String> {
+        Ok(LayerInputs {
+            pair: Arc::clone(pair),
+            timed: self.timed(pair, params)?,
+            options: options_of(params),
+            foot_lock: Lock::of(params),
+        })
+    }
+
+    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<Timed>, String> {
+        let word = match params.text(Key::LayerFit) {
+            "loop" => "loop",
+            "hold" => "hold",
+            _ => "step",
+        };
+        let wanted = (word, params.number(Key::LayerStart));
+        let known = self
+            .timed
+            .iter()
+            .find(|timed| Arc::ptr_eq(&timed.pair, pair) && timed.wanted == wanted);
+        if let Some(known) = known {
+            return Ok(Arc::clone(known));
+        }
+        let timed = Arc::new(self.read(pair, wanted)?);
+        if self.timed.len() >= MAX_PANES {
+            self.timed.remove(0);
+        }
+        self.timed.push(Arc::clone(&timed));
+        Ok(timed)
+    }
+
+    fn read(&mut self, pair: &Arc<Pair>, wanted: (&'static str, f64)) -> Result<Timed, String> {
+        let (a, b) = (&pair.a.clip, &pair.incoming.clip);
+        let times = || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
+        let plain = || Reading {
+            over: Arc::clone(b),
+            times: times(),
+        };
+        let (word, start) = wanted;
+        let in_step = if word == "step" { self.in_step(pair) } else { None };
+        let fits = start >= 0.0 && start + a.duration_secs() <= b.duration_secs();
+        let (reading, fit) = match (in_step, word) {
+            (Some(reading), _) => (reading, LayerFit::InStep),
+            (None, "hold") => (plain(), LayerFit::Held),
+            _ if fits => (plain(), LayerFit::Once),
+            _ => {
+                let over = closed(pair).unwrap_or_else(|| Arc::clone(b));
+                (Reading { over, times: times() }, LayerFit::Looped)
+            }
+        };
+        let roles = &pair.a.roles;
+        let whole = LayerOptions {
+            parts: vec![BodyPart::Whole],
+            feather: 0,
+            start_secs: start,
+            time: time_of(fit),
+            ..LayerOptions::default()
+        };
+        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times).map_err(|error| error.to_string())?;
+        let shown = Arc::new(Motion::analyze_feet(shown.with_name(b.name()), Some(roles.clone()), pair.b.feet));
+        let source = source_of(&shown);
+        Ok(Timed {
+            pair: Arc::clone(pair),
+            wanted,
+            reading,
+            fit,
+            has_no_steps: word == "step" && fit != LayerFit::InStep,
+            profile: Profile::new(Arc::new(source), roles, shown.contacts.clone()),
+            shown,
+        })
+    }
+
+    /// One cycle of B, and for every frame of A the time of that cycle at which B's feet are where A's are.
+    fn in_step(&mut self, pair: &Arc<Pair>) -> Option<Reading> {
+        if let Some((known, reading)) = &self.in_step
+            && Arc::ptr_eq(known, pair)
+        {
+            return reading.clone();
+        }
+        let reading = GaitCycle::find(pair.profiles[1].source(), &pair.incoming.roles, &pair.incoming.contacts)
+            .ok()
+            .and_then(|cycle| {
+                let phases = strike_phases(&pair.a.contacts, cycle.events().right_strike)?;
+                Some(Reading {
+                    over: once_more(cycle.looped())?,
+                    times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
+                })
+            });
+        self.in_step = Some((Arc::clone(pair), reading.clone()));
+        reading
+    }
+}
+
+/// All of B as a cycle.
+fn closed(pair: &Pair) -> Option<Arc<Clip>> {
+    let source = pair.profiles[1].source();
+    let last = source.clip().frames().checked_sub(1)?;
+    once_more(&close_loop(source, 0..last, &LoopOptions::default()).ok()?)
+}
+
+/// A cycle and its first frame again: where a layer loops, its last frame is its first.
+fn once_more(looped: &Loop) -> Option<Arc<Clip>> {
+    let twice = looped.repeat(2).ok()?;
+    twice.crop(0..looped.clip.frames() + 1).ok().map(Arc::new)
+}
+
+fn time_of(fit: LayerFit) -> LayerTime {
+    match fit {
+        LayerFit::InStep | LayerFit::Looped => LayerTime::Loop,
+        LayerFit::Once | LayerFit::Held => LayerTime::Hold,
+    }
+}
+
+/// What the lab is set to; how long the layer lasts is not known here.
+fn options_of(params: &Params) -> LayerOptions {
+    let parts = match params.text(Key::Mask) {
+        "arms" => vec![BodyPart::LeftArm, BodyPart::RightArm],
+        "left_arm" => vec![BodyPart::LeftArm],
+        "right_arm" => vec![BodyPart::RightArm],
+        "head" => vec![BodyPart::Head],
+        "spine" => vec![BodyPart::Spine],
+        "legs" => vec![BodyPart::LowerBody],
+        "whole" => vec![BodyPart::Whole],
+        _ => vec![BodyPart::UpperBody],
+    };
+    let reference = match params.text(Key::LayerReference) {
+        "rest" => Reference::Rest,
+        "first" => Reference::Frame(0),
+        _ => Reference::Mean,
+    };
+    LayerOptions {
+        parts,
+        feather: params.number(Key::Feather) as usize,
+        weight: params.number(Key::LayerWeight) as f32,
+        mode: match params.text(Key::LayerMode) {
+            "additive" => LayerMode::Additive(reference),
+            _ => LayerMode::Override,
+        },
+        time: LayerTime::default(),
+        start_secs: params.number(Key::LayerStart),
+        keep_orientation: params.is_on(Key::KeepOrientation),
+    }
+}
+
+impl LayerInputs {
+    /// The layer over the clip.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let (pair, timed) = (&self.pair, &self.timed);
+        let (a, roles) = (&pair.a, pair.a.roles.clone());
+        let options = LayerOptions {
+            time: time_of(timed.fit),
+            ..self.options.clone()
+        };
+        let Reading { over, times } = &timed.reading;
+        let made = layer_timed(&a.clip, &roles, over, &options, times).map_err(|error| error.to_string())?;
+        let free = Arc::new(made.with_name(format!("{} + {}", a.clip.name(), pair.b.clip.name())));
+        let shares: Vec<f32> = mask(a.clip.skeleton(), &roles, &options.parts, options.feather)
+            .into_iter()
+            .map(|share| share * options.weight)
+            .collect();
+        let root_share = shares.first().copied().unwrap_or(0.0);
+        let walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
+        let ground_m = if root_share == 0.0 { a.ground_m } else { pair.ground_m() };
+        // Legs that are not touched stand as they stood.
+        let contacts = if root_share == 0.0 {
+            a.contacts.clone()
+        } else {
+            Contacts::detect(&free, &roles, &a.feet.contacts)
+        };
+        let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
+        let slid = |clip: &Clip| foot_slide_cm(clip, &roles, &contacts);
+        let mut metrics = vec![slide(slid(&clip))];
+        if self.foot_lock.is_some() {
+            metrics.push(slide_before(slid(&free)));
+        }
+        let everywhere = TransitionMetrics::measure(&Subject {
+            result: &clip,
+            start: 0,
+            end: clip.frames(),
+            handover: if walks_as_b { 0 } else { usize::MAX },
+            enter: 0,
+            a: &pair.profiles[0],
+            b: &timed.profile,
+            roles: &roles,
+            ground_m,
+        });
+        metrics.extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        metrics.extend(deviations(&clip, &a.clip, &roles));
+        let motion = Motion {
+            ground_frames: character_frames(&clip, &roles),
+            clip,
+            roles,
+            contacts,
+            seams: a.seams.clone(),
+            ground_m,
+            feet: a.feet,
+        };
+        let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],
+            transition: None,
+            cycle: None,
+            retargeted: pair.retargeted.clone(),
+            layer: Some(LayerFacts {
+                shares,
+                fit: timed.fit,
+                has_no_steps: timed.has_no_steps,
+            }),
+            registered: None,
+            path: None,
+            walk: None,
+            driven: None,
+            metrics,
+            beside: vec![Arc::clone(&a.clip), Arc::clone(&timed.shown.clip)],
+            measured: Measured::Motion,
+            is_measured: false,
+        })
+    }
+}

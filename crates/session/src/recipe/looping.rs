@@ -1,0 +1,184 @@
+//! The Loop lab: a part of a clip becomes a cycle.
+
+use super::feet::Lock;
+use super::pair::source_of;
+use super::rounds::{Rounds, repeated, rounds};
+use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use segue_motion::blend;
+use segue_motion::math::Planar;
+use segue_motion::metrics::Metric;
+use segue_motion::transition::{CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle};
+use std::sync::Arc;
+
+/// What a loop depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct LoopInputs {
+    found: Arc<Found>,
+    options: LoopOptions,
+    foot_lock: Option<Lock>,
+}
+
+impl PartialEq for LoopInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.found, &other.found) && self.options == other.options && self.foot_lock == other.foot_lock
+    }
+}
+
+/// Where a clip is cut, and what was asked.
+#[derive(Debug)]
+struct Found {
+    motion: Arc<Motion>,
+    source: blend::Source,
+    /// The ends that the user named.
+    given: [Option<usize>; 2],
+    cut: CutPoints,
+}
+
+/// Finds where a clip repeats itself, and keeps that while nothing else is asked.
+#[derive(Debug, Default)]
+pub(crate) struct CycleFinder {
+    known: Option<Arc<Found>>,
+}
+
+impl CycleFinder {
+    /// What the parameters ask for, of this clip.
+    pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<LoopInputs, String> {
+        let fps = motion.clip.fps();
+        let last = motion.clip.frames().saturating_sub(1);
+        let mut given = [Key::LoopFrom, Key::LoopTo].map(|key| params.optional(key).map(|secs| ((secs * fps).round() as usize).min(last)));
+        if let [Some(from), Some(to)] = &mut given
+            && from > to
+        {
+            std::mem::swap(from, to);
+        }
+        Ok(LoopInputs {
+            found: self.found(motion, given)?,
+            options: options(params),
+            foot_lock: Lock::of(params),
+        })
+    }
+
+    fn found(&mut self, motion: &Arc<Motion>, given: [Option<usize>; 2]) -> Result<Arc<Found>, String> {
+        if let Some(found) = &self.known
+            && Arc::ptr_eq(&found.motion, motion)
+            && found.given == given
+        {
+            return Ok(Arc::clone(found));
+        }
+        let source = source_of(motion);
+        let search = CycleSearch {
+            start: given[0],
+            end: given[1],
+            ..CycleSearch::new(motion.clip.fps())
+        };
+        let body_height = motion.roles.body_height(motion.clip.skeleton());
+        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search).map_err(|error| error.to_string())?;
+        let found = Arc::new(Found {
+            motion: Arc::clone(motion),
+            source,
+            given,
+            cut,
+        });
+        self.known = Some(Arc::clone(&found));
+        Ok(found)
+    }
+}
+
+fn options(params: &Params) -> LoopOptions {
+    let half_life_secs = params.number(Key::HalfLife);
+    let ratio = params.number(Key::LoopRatio);
+    let classic = LoopMethod::Classic { half_life_secs };
+    let (method, ratio) = match params.text(Key::LoopMethod) {
+        "both" => (classic, ratio),
+        "crossed" => (LoopMethod::Crossed { half_life_secs }, ratio),
+        "start" => (classic, 1.0),
+        "end" => (classic, 0.0),
+        "linear" => (LoopMethod::Linear, ratio),
+        "cubic" => (LoopMethod::Cubic, ratio),
+        _ => (LoopMethod::Exact { half_life_secs }, ratio),
+    };
+    LoopOptions { method, ratio }
+}
+
+impl LoopInputs {
+    /// The loop.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let Found { motion, source, cut, .. } = &*self.found;
+        let looped = close_loop(source, cut.cycle.clone(), &self.options).map_err(|error| error.to_string())?;
+        let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
+        // One more, of which the first frame is the one behind the last.
+        let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
+        let three = three.map_err(|error| error.to_string())?;
+        let contacts = repeated(&motion.contacts, &cut.cycle, 3 * frames + 1);
+        let Rounds {
+            motion: played,
+            mut slides,
+        } = rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;
+        let secs = |frame: usize| frame as f64 / fps;
+        let step = looped
+            .frames
+            .first()
+            .map_or(Planar::IDENTITY, |first| first.inverse().after(&looped.cycle.after(first)));
+        let mut metrics = vec![
+            Metric::lower(
+                "loop_seam_deg",
+                "Seam",
+                looped.seam.turn_deg,
+                "°",
+                "The largest angle of a joint between the end of the cycle and its beginning.",
+            ),
+            Metric::lower(
+                "loop_seam_dps",
+                "Velocity seam",
+                looped.seam.turn_dps,
+                "°/s",
+                "The largest difference of a joint's angular velocities there.",
+            ),
+        ];
+        metrics.append(&mut slides);
+        metrics.extend([
+            Metric::fact(
+                "loop_before_deg",
+                "Seam of the bare cut",
+                looped.before.turn_deg,
+                "°",
+                "The angle that was to be bridged: the same number if nothing were done.",
+            ),
+            Metric::fact("cycle_s", "Cycle", secs(frames), "s", "How long one cycle takes."),
+            Metric::fact("cycle_frames", "Cycle", frames as f64, "frames", "The same in frames of A."),
+            Metric::fact("cycle_m", "Way of a cycle", step.shift.length(), "m", "How far one cycle goes."),
+            Metric::fact(
+                "cycle_turn_deg",
+                "Turn of a cycle",
+                step.yaw.to_degrees(),
+                "°",
+                "How far one cycle turns, to the left: the loop walks on in this curve.",
+            ),
+        ]);
+        Ok(Outcome {
+            motion: Arc::new(played),
+            sources: vec![Source::new(Slot::A, motion, -secs(cut.cycle.start), Planar::IDENTITY)],
+            transition: None,
+            cycle: Some(Cycle {
+                secs: secs(frames),
+                made: CycleMade::Cut {
+                    from_secs: secs(cut.cycle.start),
+                    to_secs: secs(cut.cycle.end),
+                    distance_cm: cut.rms_cm,
+                },
+            }),
+            retargeted: None,
+            layer: None,
+            registered: None,
+            path: None,
+            walk: None,
+            driven: None,
+            metrics,
+            beside: vec![Arc::clone(&motion.clip)],
+            measured: Measured::Motion,
+            is_measured: false,
+        })
+    }
+}

@@ -1,0 +1,145 @@
+use super::Outcome;
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::kept::{belongs_to, counts};
+use crate::motion::{FeetReading, Motion};
+use crate::outside::short;
+use crate::params::{Key, Kind, Params, Value};
+use segue_motion::metrics::foot_slide_cm;
+use segue_motion::synth::{self, Action};
+use std::sync::Arc;
+
+/// The action that the Make lab is set to.
+pub(crate) fn synth_action(params: &Params) -> Action {
+    match params.text(Key::Gait) {
+        "run" => Action::Run,
+        "idle" => Action::Idle,
+        "start" => Action::Start,
+        "stop" => Action::Stop,
+        "spin" => Action::Spin,
+        "jump" => Action::Jump,
+        _ => Action::Walk,
+    }
+}
+
+/// Whether the chosen motion has that parameter: nobody who stands has a speed.
+pub(crate) fn has(params: &Params, key: Key) -> bool {
+    let lacks = match key {
+        Key::GaitSpeed => matches!(params.text(Key::Gait), "idle" | "spin"),
+        Key::TurnRate => matches!(params.text(Key::Gait), "idle" | "spin" | "jump" | "start" | "stop"),
+        _ => false,
+    };
+    !lacks
+}
+
+/// What of a number's range the chosen motion can be made with, where it is not all of it.
+pub(crate) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
+    let (own, table) = match (key, key.param().kind) {
+        (Key::GaitSpeed, Kind::Number { min, max, .. }) => (synth::Params::speed_range(synth_action(params))?, (min, max)),
+        (Key::MakeSeconds, Kind::Number { min, max, .. }) => (synth::Params::duration_range(synth_action(params)), (min, max)),
+        _ => return None,
+    };
+    // As the decimals are written: 0.4 of an f32 is a little more than 0.4.
+    let own = [own.0, own.1].map(|end| (f64::from(end) * 1e3).round() / 1e3);
+    Some((own[0].max(table.0), own[1].min(table.1)))
+}
+
+fn synth_params(params: &Params) -> synth::Params {
+    let of = |key| params.number(key) as f32;
+    // A number that was set for another motion is brought to what this one can do.
+    let within = |key, value: f32| match range_of(params, key) {
+        Some((min, max)) => value.clamp(min as f32, max as f32),
+        None => value,
+    };
+    let natural = synth::Params::new(synth_action(params));
+    synth::Params {
+        speed_mps: within(
+            Key::GaitSpeed,
+            params.optional(Key::GaitSpeed).map_or(natural.speed_mps, |speed| speed as f32),
+        ),
+        turn_rate_dps: of(Key::TurnRate),
+        height_m: of(Key::BodyHeight),
+        style: synth::Style {
+            bounce: of(Key::Bounce),
+            arm_swing: of(Key::ArmSwing),
+            lean: of(Key::Lean),
+            ..natural.style
+        },
+        seed: of(Key::Seed) as u32,
+        duration_secs: within(Key::MakeSeconds, of(Key::MakeSeconds)),
+        ..natural
+    }
+}
+
+/// The motion that the Make lab is set to.
+pub(crate) fn make(params: &Params) -> Result<Outcome, String> {
+    let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
+    let mut motion = Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
+    let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
+    let mut metrics = vec![slide(slid(&motion))];
+    let lock = Lock::of(params);
+    motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, motion.ground_m, lock)?;
+    if lock.is_some() {
+        metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
+    }
+    Ok(Outcome {
+        metrics,
+        ..Outcome::plain(Arc::new(motion))
+    })
+}
+
+/// A built-in motion by its id.
+pub(crate) fn preset_motion(id: &str) -> Result<Motion, String> {
+    let preset = synth::presets()
+        .into_iter()
+        .find(|preset| preset.id == id)
+        .ok_or_else(|| format!("`{}` is no built-in motion.", short(id)))?;
+    let made = synth::synthesize(&preset.params).map_err(|error| error.to_string())?;
+    Ok(Motion::analyze(made.clip.with_name(preset.title), None))
+}
+
+/// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`. It is all that is needed to make it again.
+pub(crate) fn made_id(params: &Params) -> String {
+    let changed = params
+        .changed()
+        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait)
+        .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
+    let list: Vec<String> = changed
+        .map(|(param, value)| match (value, range_of(params, param.key)) {
+            // As it is made, not as it was set for another motion.
+            (Value::Number(number), Some((min, max))) => (param, Value::Number(number.clamp(min, max))),
+            _ => (param, value.clone()),
+        })
+        .map(|(param, value)| format!("{}:{}", param.name, param.format(&value)))
+        .collect();
+    format!("{}({})", params.text(Key::Gait), list.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recipe_params;
+    use super::*;
+
+    #[test]
+    fn an_id_is_all_that_is_needed_to_make_a_clip_again() {
+        let mut params = Params::default();
+        params.set(Key::Gait, Value::Choice("run")).unwrap();
+        params.set(Key::TurnRate, Value::Number(-20.0)).unwrap();
+        params.set(Key::GaitSpeed, Value::Number(3.05)).unwrap();
+        let id = made_id(&params);
+        assert_eq!(id, "run(gait_speed:3.05,turn_rate:-20)");
+        params.set(Key::Lab, Value::Choice("make")).unwrap();
+        assert_eq!(recipe_params(&id), Some(params.clone()));
+        params.set(Key::Gait, Value::Choice("walk")).unwrap();
+        assert_eq!(made_id(&params), "walk(gait_speed:2.2,turn_rate:-20)", "no walk is as fast");
+        for id in [
+            "walk",
+            "walk)",
+            "fly()",
+            "walk(blend_window:3)",
+            "walk(turn_rate:900)",
+            "walk(turn_rate)",
+        ] {
+            assert_eq!(recipe_params(id), None, "{id}");
+        }
+    }
+}

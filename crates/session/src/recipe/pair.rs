@@ -1,0 +1,143 @@
+use super::Retargeted;
+use crate::motion::Motion;
+use segue_motion::blend;
+use segue_motion::clip::{Clip, Interpolation, resample, retarget_onto};
+use segue_motion::metrics::Profile;
+use segue_motion::skeleton::Retargeting;
+use std::sync::Arc;
+
+/// Two clips made ready for each other.
+#[derive(Debug)]
+pub(crate) struct Pair {
+    pub(super) a: Arc<Motion>,
+    pub(super) b: Arc<Motion>,
+    /// B on the skeleton and at the frame rate of A.
+    pub(super) incoming: Arc<Motion>,
+    /// What dissolve and metrics know of A and of `incoming`.
+    pub(super) profiles: [Profile; 2],
+    /// How B came onto A's skeleton, where that is not its own.
+    pub(super) retargeted: Option<Arc<Retargeted>>,
+}
+
+impl Pair {
+    /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted off the ground that its own clip has.
+    pub(super) fn ground_m(&self) -> f32 {
+        self.a.ground_m.min(self.incoming.ground_m)
+    }
+
+    /// Both clips on the skeleton of A.
+    pub(super) fn clips(&self) -> Vec<Arc<Clip>> {
+        [&self.a, &self.incoming].map(|motion| Arc::clone(&motion.clip)).into()
+    }
+
+    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
+        let (incoming, retargeted) = fitted(a, b)?;
+        let profiles = [a, &incoming].map(|motion| Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone()));
+        Ok(Self {
+            a: Arc::clone(a),
+            b: Arc::clone(b),
+            incoming,
+            profiles,
+            retargeted,
+        })
+    }
+}
+
+/// B on the skeleton and at the frame rate of A, and how it came there if that is not its own.
+pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), String> {
+    let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
+    let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
+    if same_skeleton && same_rate {
+        return Ok((Arc::clone(b), None));
+    }
+    let mut clip = (*b.clip).clone();
+    if !same_skeleton {
+        clip = retarget_onto(&clip, &b.roles, &a.clip, &a.roles).map_err(|error| error.to_string())?;
+    }
+    if !same_rate {
+        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic).map_err(|error| error.to_string())?;
+    }
+    let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
+    let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
+    let (rate, rate_b) = (a.clip.fps(), b.clip.fps());
+    let motion = Motion {
+        seams: b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize),
+        ..Motion::analyze_feet(clip, Some(roles), b.feet)
+    };
+    Ok((Arc::new(motion), retargeted))
+}
+
+/// A motion as what is blended.
+pub(super) fn source_of(motion: &Motion) -> blend::Source {
+    blend::Source::with_frames(Arc::clone(&motion.clip), motion.ground_frames.clone())
+}
+
+impl Retargeted {
+    /// What happens to `b` on the skeleton of `a`.
+    fn between(a: &Motion, b: &Motion) -> Self {
+        let skeleton = a.clip.skeleton();
+        let way = Retargeting::new(b.clip.skeleton(), &b.roles, skeleton, &a.roles);
+        let joints = skeleton.joints().iter().enumerate();
+        let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
+        Self {
+            unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect(),
+        }
+    }
+}
+
+/// Makes pairs, and keeps the last one: labs and panes share it.
+#[derive(Debug, Default)]
+pub(crate) struct Pairs(Option<Arc<Pair>>);
+
+impl Pairs {
+    /// B on the skeleton and at the rate of A.
+    pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, String> {
+        if let Some(pair) = &self.0
+            && Arc::ptr_eq(&pair.a, a)
+            && Arc::ptr_eq(&pair.b, b)
+        {
+            return Ok(Arc::clone(pair));
+        }
+        let pair = Arc::new(Pair::new(a, b)?);
+        self.0 = Some(Arc::clone(&pair));
+        Ok(pair)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use segue_motion::clip::Clip;
+    use segue_motion::math::quat;
+    use segue_motion::synth::{Action, Params, synthesize};
+
+    /// The largest change of a joint's angular velocity from one frame to the next, radians per second.
+    fn roughest(clip: &Clip) -> f32 {
+        let step = |frame: usize, joint: usize| {
+            let (from, to) = (clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint]);
+            quat::angular_velocity(from, to, clip.fps().recip() as f32)
+        };
+        let inner = 8..clip.frames() - 10;
+        let changes =
+            inner.flat_map(|frame| (0..clip.skeleton().len()).map(move |joint| (step(frame + 1, joint) - step(frame, joint)).length()));
+        changes.fold(0.0, f32::max)
+    }
+
+    /// Between the frames of a slower clip the velocity changes evenly, and not in a step at each of them.
+    #[test]
+    fn slower_incoming_clip_is_resampled_without_velocity_steps() {
+        let at = |fps: f32| {
+            let params = Params {
+                fps,
+                ..Params::new(Action::Walk)
+            };
+            Arc::new(Motion::analyze(synthesize(&params).unwrap().clip, None))
+        };
+        let (a, b) = (at(120.0), at(30.0));
+        let (incoming, _) = fitted(&a, &b).unwrap();
+        assert_eq!(incoming.clip.fps(), 120.0);
+        let (made, true_one) = (roughest(&incoming.clip), roughest(&a.clip));
+        let linear = roughest(&resample(&b.clip, 120.0, Interpolation::Linear).unwrap());
+        assert!(made < 0.6 * linear, "{made} rad/s per frame, linearly {linear}, truly {true_one}");
+    }
+}

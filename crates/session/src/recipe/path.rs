@@ -1,0 +1,343 @@
+//! The Path lab: a motion on another path.
+
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::pair::source_of;
+use super::{Outcome, Slot, Source};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use planter::{Planted, Planter};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_motion::path::{
+    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Offset, Orientation, PathEditor,
+    Road, SplineEnds, Timing, Waypoint,
+};
+use std::sync::Arc;
+
+mod planter;
+
+/// A motion and the path that was fitted to its way: what stays while the path is edited.
+#[derive(Debug)]
+pub struct FittedMotion {
+    motion: Arc<Motion>,
+    options: FitOptions,
+    editor: PathEditor,
+    road: Arc<Road>,
+    error: FitError,
+    errors_cm: Vec<[f64; 2]>,
+}
+
+impl FittedMotion {
+    fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, String> {
+        let source = source_of(motion);
+        let path = FittedPath::new(Arc::new(source), &options).map_err(|error| error.to_string())?;
+        let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
+        Ok(Self {
+            motion: Arc::clone(motion),
+            options,
+            road: Arc::new(path.road().clone()),
+            error: path.error(),
+            errors_cm: path.places().iter().map(|place| place.along_m).zip(off).map(Into::into).collect(),
+            editor: PathEditor::new(path, &motion.roles, motion.contacts.clone()),
+        })
+    }
+
+    /// The motion as it came.
+    #[must_use]
+    pub fn motion(&self) -> &Arc<Motion> {
+        &self.motion
+    }
+
+    /// The fitted path.
+    #[must_use]
+    pub fn road(&self) -> &Arc<Road> {
+        &self.road
+    }
+
+    /// For every frame of the motion the place on the fitted path that it rides in.
+    #[must_use]
+    pub fn places(&self) -> &[Waypoint] {
+        self.editor.path().places()
+    }
+
+    /// How far the hips are from the path.
+    #[must_use]
+    pub fn error(&self) -> FitError {
+        self.error
+    }
+
+    /// Likewise frame by frame: metres along the path, and centimetres away from it.
+    #[must_use]
+    pub fn errors_cm(&self) -> &[[f64; 2]] {
+        &self.errors_cm
+    }
+}
+
+/// What is known of a motion on an edited path.
+#[derive(Clone, Debug)]
+pub struct OnPath {
+    /// The motion before it was edited.
+    pub fitted: Arc<FittedMotion>,
+    /// The path that it goes on now.
+    pub road: Arc<Road>,
+    /// Whether that is another one than was fitted.
+    pub is_edited: bool,
+    /// For every frame of the result the place on the path that it rides in.
+    pub places: Vec<Waypoint>,
+    /// Where the path turns faster than the motion can.
+    pub hard_turns: Vec<HardTurn>,
+    /// Its feet will be planted as soon as the hand rests, and are not yet.
+    pub awaits_feet: bool,
+}
+
+/// What a motion on a path depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct PathInputs {
+    fitted: Arc<FittedMotion>,
+    /// The word of the edited path; empty for the fitted one.
+    code: String,
+    carry: CarryOptions,
+    /// How planted feet are held, where they are.
+    lock: Option<Lock>,
+    feet: Feet,
+}
+
+/// What becomes of the feet.
+#[derive(Clone, Debug)]
+enum Feet {
+    Free,
+    AtOnce,
+    Awaited,
+    Planted(Arc<Planted>),
+}
+
+/// The feet of so many frames are planted while the hand moves: about 3 ms for 31 joints in a browser.
+const AT_ONCE: usize = 400;
+
+impl PathInputs {
+    /// Whether it is the same motion on the same path with its feet held alike, at once or later.
+    fn makes_the_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && (self.carry, self.lock) == (other.carry, other.lock)
+    }
+}
+
+impl PartialEq for PathInputs {
+    fn eq(&self, other: &Self) -> bool {
+        self.makes_the_same(other)
+            && match (&self.feet, &other.feet) {
+                (Feet::Planted(a), Feet::Planted(b)) => Arc::ptr_eq(a, b),
+                (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+            }
+    }
+}
+
+/// Fits paths, and keeps the last ones: a hand that drags a point changes none of them.
+#[derive(Debug, Default)]
+pub(crate) struct Paths {
+    fitted: Vec<Arc<FittedMotion>>,
+    planter: Planter,
+}
+
+impl Paths {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(crate) fn ask_anew(&mut self) {
+        self.planter.ask_anew();
+    }
+
+    /// One slice of what a pane waits for. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self) -> bool {
+        self.planter.work()
+    }
+
+    /// Whether what a pane waits for is there, so that it should ask again.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.planter.is_ready()
+    }
+
+    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    pub(crate) fn progress(&self) -> Option<f32> {
+        self.planter.progress()
+    }
+
+    /// What the parameters ask for, of this clip.
+    pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<PathInputs, String> {
+        let options = FitOptions {
+            control_points: params.number(Key::ControlPoints) as usize,
+            smoothing: params.number(Key::PathSmoothing),
+            pin_ends: false,
+            ends: spline_ends(params),
+        };
+        let mut inputs = PathInputs {
+            fitted: self.fitted(motion, options)?,
+            code: params.text(Key::Path).to_owned(),
+            carry: carry_options(params),
+            lock: Lock::of(params),
+            feet: Feet::Free,
+        };
+        if inputs.lock.is_some() {
+            inputs.feet = if motion.clip.frames() <= AT_ONCE {
+                Feet::AtOnce
+            } else {
+                self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::Planted)
+            };
+        }
+        Ok(inputs)
+    }
+
+    fn fitted(&mut self, motion: &Arc<Motion>, options: FitOptions) -> Result<Arc<FittedMotion>, String> {
+        let is_it = |known: &&Arc<FittedMotion>| Arc::ptr_eq(&known.motion, motion) && known.options == options;
+        if let Some(known) = self.fitted.iter().find(is_it) {
+            return Ok(Arc::clone(known));
+        }
+        let fitted = Arc::new(FittedMotion::new(motion, options)?);
+        if self.fitted.len() >= MAX_PANES {
+            self.fitted.remove(0);
+        }
+        self.fitted.push(Arc::clone(&fitted));
+        Ok(fitted)
+    }
+}
+
+/// Whose control points a path has that is fitted or drawn.
+#[must_use]
+pub fn spline_ends(params: &Params) -> SplineEnds {
+    match params.text(Key::PathSpline) {
+        "uniform" => SplineEnds::Uniform,
+        _ => SplineEnds::Clamped,
+    }
+}
+
+fn carry_options(params: &Params) -> CarryOptions {
+    CarryOptions {
+        timing: match params.text(Key::PathKeep) {
+            "duration" => Timing::Duration,
+            "whole" => Timing::Speed,
+            _ => Timing::Metres,
+        },
+        orientation: match params.text(Key::PathFacing) {
+            "world" => Orientation::World,
+            _ => Orientation::Path,
+        },
+        offset: match params.text(Key::PathOffset) {
+            "world" => Offset::World,
+            _ => Offset::Path,
+        },
+    }
+}
+
+/// The path, and the motion on it as its feet come.
+fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String> {
+    let fitted = &inputs.fitted;
+    let road = if inputs.code.is_empty() {
+        Arc::clone(&fitted.road)
+    } else {
+        let spline = GroundSpline::from_code(&inputs.code);
+        Arc::new(spline.and_then(Road::new).map_err(|error| error.to_string())?)
+    };
+    let options = MotionOptions {
+        carry: inputs.carry,
+        foot_lock: None,
+    };
+    let made = fitted.editor.motion(&road, &options).map_err(|error| error.to_string())?;
+    Ok((road, made))
+}
+
+impl PathInputs {
+    /// Whether its feet are to be planted, and are not yet.
+    pub(crate) fn awaits_feet(&self) -> bool {
+        matches!(self.feet, Feet::Awaited)
+    }
+
+    /// The motion on the path.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let (road, made) = free_motion(self)?;
+        let fitted = &self.fitted;
+        let free = Arc::new(made.clip);
+        let (clip, slide_cm) = match &self.feet {
+            Feet::Free | Feet::Awaited => (free, made.slide_cm.carried),
+            Feet::AtOnce => {
+                let roles = &fitted.motion.roles;
+                let clip = with_feet(&free, roles, &made.contacts, fitted.motion.ground_m, self.lock)?;
+                let slide_cm = foot_slide_cm(&clip, roles, &made.contacts);
+                (clip, slide_cm)
+            }
+            Feet::Planted(planted) => planted.made.clone()?,
+        };
+        let mut metrics = vec![
+            slide(slide_cm),
+            Metric::fact(
+                "foot_slide_original_cm",
+                "Foot slide of the original",
+                made.slide_cm.original,
+                "cm",
+                "How far a planted foot slides in the worst stance before the path was edited.",
+            ),
+            Metric::fact(
+                "fit_rms_cm",
+                "Fit error",
+                fitted.error.rms_cm,
+                "cm",
+                "How far the hips are from the fitted path: the root of the mean squared distance. It is carried along, not lost.",
+            ),
+            Metric::fact(
+                "fit_most_cm",
+                "Largest fit error",
+                fitted.error.most_cm,
+                "cm",
+                "The same where it is largest.",
+            ),
+            Metric::fact(
+                "path_m",
+                "Length of the path",
+                road.length_m(),
+                "m",
+                "The edited path from its start to its end.",
+            ),
+            Metric::lower(
+                "hard_turns",
+                "Hard turns",
+                made.hard_turns.len() as f64,
+                "bends",
+                "Places where curvature times speed is beyond what the original does.",
+            ),
+        ];
+        if matches!(self.feet, Feet::AtOnce | Feet::Planted(_)) {
+            metrics.push(slide_before(made.slide_cm.carried));
+        }
+        if !self.code.is_empty() {
+            metrics.push(Metric::fact(
+                "path_original_m",
+                "Length of the original path",
+                fitted.road.length_m(),
+                "m",
+                "The fitted path from its start to its end.",
+            ));
+        }
+        let (frames, before) = (clip.frames(), fitted.motion.clip.frames().max(1));
+        let seams = fitted.motion.seams_at(|frame| frame * frames / before);
+        let motion = Motion {
+            clip,
+            roles: fitted.motion.roles.clone(),
+            contacts: made.contacts,
+            ground_frames: made.characters,
+            seams,
+            ground_m: fitted.motion.ground_m,
+            feet: fitted.motion.feet,
+        };
+        Ok(Outcome {
+            sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
+            path: Some(Arc::new(OnPath {
+                fitted: Arc::clone(fitted),
+                road,
+                is_edited: !self.code.is_empty(),
+                places: made.places,
+                hard_turns: made.hard_turns,
+                awaits_feet: matches!(self.feet, Feet::Awaited),
+            })),
+            metrics,
+            beside: vec![Arc::clone(&fitted.motion.clip)],
+            ..Outcome::plain(Arc::new(motion))
+        })
+    }
+}

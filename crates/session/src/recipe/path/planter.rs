@@ -1,0 +1,125 @@
+//! Planting the feet of a motion on a path takes longer than a hand waits: it is done in slices when the hand rests.
+
+use super::{PathInputs, free_motion};
+use crate::compare::MAX_PANES;
+use crate::recipe::feet::locking;
+use segue_motion::clip::{Clip, Contacts};
+use segue_motion::metrics::SlideMeter;
+use segue_motion::transition::FootLocking;
+use std::sync::Arc;
+
+/// Frames in one slice of work: about 2 ms for 31 joints in a browser.
+const PER_SLICE: usize = 500;
+
+/// The motion with its feet planted, and how far they slide now, centimetres.
+type Made = Result<(Arc<Clip>, Option<f64>), String>;
+
+/// What came of it.
+#[derive(Debug)]
+pub(super) struct Planted {
+    of: PathInputs,
+    pub(super) made: Made,
+}
+
+#[derive(Debug)]
+enum Stage {
+    Locking(FootLocking, Contacts),
+    Measuring(Arc<Clip>, Contacts, SlideMeter),
+}
+
+/// Plants feet slice by slice, and keeps the last results.
+#[derive(Debug, Default)]
+pub(super) struct Planter {
+    done: Vec<Arc<Planted>>,
+    wanted: Vec<PathInputs>,
+    under_way: Option<(PathInputs, Stage)>,
+    /// Something has just been done, and nobody has asked for it yet.
+    is_ready: bool,
+}
+
+impl Planter {
+    pub(super) fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.is_ready = false;
+    }
+
+    /// What came of it, if that is known; else it is done as soon as there is time.
+    pub(super) fn ask(&mut self, of: &PathInputs) -> Option<Arc<Planted>> {
+        let known = self.done.iter().find(|planted| planted.of.makes_the_same(of));
+        if known.is_none() {
+            self.wanted.push(of.clone());
+        }
+        known.cloned()
+    }
+
+    pub(super) fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    pub(super) fn progress(&self) -> Option<f32> {
+        let share = self.under_way.as_ref().map(|(_, stage)| match stage {
+            Stage::Locking(locking, _) => 0.8 * locking.progress(),
+            Stage::Measuring(..) => 0.8,
+        });
+        share.or((!self.wanted.is_empty()).then_some(0.0))
+    }
+
+    /// One slice. `false` when there was nothing to do.
+    pub(super) fn work(&mut self) -> bool {
+        // What a hand has left behind nobody wants to see.
+        let wanted = |of: &PathInputs| self.wanted.iter().any(|wanted| wanted.makes_the_same(of));
+        let under_way = self.under_way.take().filter(|(of, _)| wanted(of));
+        let next = match (under_way, self.wanted.first()) {
+            (Some((of, stage)), _) => step(&of, stage).map(|stage| (of.clone(), stage)).map_err(|made| (of, made)),
+            (None, Some(of)) => begin(of)
+                .map(|stage| (of.clone(), stage))
+                .map_err(|problem| (of.clone(), Err(problem))),
+            (None, None) => return false,
+        };
+        match next {
+            Ok(under_way) => self.under_way = Some(under_way),
+            Err((of, made)) => {
+                self.wanted.retain(|wanted| !wanted.makes_the_same(&of));
+                if self.done.len() >= MAX_PANES {
+                    self.done.remove(0);
+                }
+                self.done.push(Arc::new(Planted { of, made }));
+                self.is_ready = true;
+            }
+        }
+        true
+    }
+}
+
+fn begin(of: &PathInputs) -> Result<Stage, String> {
+    let (_, free) = free_motion(of)?;
+    let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
+    let locking = match of.lock {
+        Some(lock) => locking(Arc::clone(&clip), roles, &free.contacts, of.fitted.motion.ground_m, lock)?,
+        None => None,
+    };
+    Ok(match locking {
+        Some(locking) => Stage::Locking(locking, free.contacts),
+        None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
+    })
+}
+
+/// The next stage, or what came of it all.
+fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
+    match stage {
+        Stage::Locking(mut locking, contacts) => {
+            if locking.advance(PER_SLICE) {
+                return Ok(Stage::Locking(locking, contacts));
+            }
+            let clip = locking.finish().map_err(|error| Err(error.to_string()))?;
+            let meter = SlideMeter::new(&clip, &of.fitted.motion.roles);
+            Ok(Stage::Measuring(Arc::new(clip), contacts, meter))
+        }
+        Stage::Measuring(clip, contacts, mut meter) => {
+            if meter.advance(&clip, &contacts, PER_SLICE) {
+                return Ok(Stage::Measuring(clip, contacts, meter));
+            }
+            Err(Ok((clip, meter.worst_cm())))
+        }
+    }
+}

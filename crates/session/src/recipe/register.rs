@@ -1,0 +1,510 @@
+//! The Register lab: two clips laid on each other in time, blended or joined along it.
+
+mod map;
+mod pairs;
+mod registrar;
+
+pub use map::DistanceMap;
+pub use pairs::{MOST_ALSO, write_also, write_pairs};
+pub(crate) use pairs::{read_also, read_pins, read_weights};
+pub(crate) use registrar::Registrars;
+
+use super::blend::weight_law;
+use super::feet::{Lock, slide, slide_before, with_feet};
+use super::pair::Pair;
+use super::{Measured, Outcome, Slot, Source, Transition};
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use registrar::Found;
+use segue_motion::blend::{
+    self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
+};
+use segue_motion::clip::{Clip, Contacts};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Metric, Subject, TransitionMetrics, foot_slide_cm};
+use segue_motion::registration::Registration;
+use segue_motion::skeleton::Side;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What a frame of a registered result is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beat {
+    /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or has not begun.
+    pub frames: [f64; 2],
+    /// How much of A there is, and of B, 0 to 1; where more clips are blended, less than 1 together.
+    pub weights: [f64; 2],
+}
+
+/// How a result follows from the registration of A and B.
+#[derive(Clone, Debug)]
+pub struct Registered {
+    /// The distances that were looked at.
+    pub map: Arc<DistanceMap>,
+    /// Path and curves through them: those that the result follows, or the ones that it leaves out where it is plain.
+    pub registration: Arc<Registration>,
+    /// Both clips run at their own speed.
+    pub is_plain: bool,
+    /// What each frame of the result is made of.
+    pub beats: Vec<Beat>,
+    /// When the feet of the result stand, by its own motion.
+    pub steps: Contacts,
+    /// The part of A that can be registered, or that a join takes to go over: from and to, seconds in A.
+    pub part_secs: [f64; 2],
+}
+
+impl Registered {
+    fn fps(&self) -> f64 {
+        self.map.fps()
+    }
+
+    /// What the result is made of at a time, which may lie between two frames.
+    #[must_use]
+    pub fn beat_at(&self, secs: f64) -> Option<Beat> {
+        let last = self.beats.len().checked_sub(1)?;
+        // `max` takes NaN to 0.
+        let at = (secs * self.fps()).max(0.0).min(last as f64);
+        let (here, next) = (
+            self.beats.get(at.floor() as usize)?,
+            self.beats.get((at.floor() as usize + 1).min(last))?,
+        );
+        let mixed = |from: f64, to: f64| from + (to - from) * at.fract();
+        Some(Beat {
+            frames: [0, 1].map(|clip| mixed(here.frames[clip], next.frames[clip])),
+            weights: [0, 1].map(|clip| mixed(here.weights[clip], next.weights[clip])),
+        })
+    }
+
+    /// The time of the result that comes nearest to a pair of frames.
+    #[must_use]
+    pub fn secs_near(&self, frames: [f64; 2]) -> Option<f64> {
+        let off = |beat: &Beat| (beat.frames[0] - frames[0]).hypot(beat.frames[1] - frames[1]);
+        let nearest = (self.beats.iter().enumerate()).min_by(|x, y| off(x.1).total_cmp(&off(y.1)));
+        nearest.map(|(frame, _)| frame as f64 / self.fps())
+    }
+
+    /// When a foot of a source stands, in the result's time; of the result itself where there is none.
+    #[must_use]
+    pub fn stances(&self, of: Option<Slot>, side: Side) -> Vec<Range<f64>> {
+        let secs = |frames: Range<usize>| frames.start as f64 / self.fps()..frames.end as f64 / self.fps();
+        let Some(slot) = of else {
+            return self.steps.intervals(side).into_iter().map(secs).collect();
+        };
+        let clip = usize::from(slot == Slot::B);
+        let contacts = &self.map.motions()[clip].contacts;
+        let flags = self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
+        let in_result = Contacts::from_flags([flags, Vec::new()]);
+        in_result.intervals(Side::BOTH[0]).into_iter().map(secs).collect()
+    }
+}
+
+fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
+    frame > -0.5 && contacts.planted(side, frame.round() as usize)
+}
+
+/// What is made of two registered clips.
+#[derive(Clone, Debug, PartialEq)]
+enum Made {
+    /// Both at once.
+    Blend {
+        /// The weight of B.
+        weight: WeightCurve,
+    },
+    /// A goes over into B.
+    Join {
+        /// Where it begins and ends, seconds in A.
+        part_secs: [Option<f64>; 2],
+        /// How the weight moves from A to B meanwhile.
+        law: WeightLaw,
+    },
+}
+
+impl Made {
+    fn of(params: &Params) -> Result<Self, String> {
+        if params.text(Key::WarpMode) == "join" {
+            return Ok(Self::Join {
+                part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
+                law: weight_law(params),
+            });
+        }
+        let keys = read_weights(params.text(Key::WarpCurve))?;
+        let weight = if keys.is_empty() {
+            WeightCurve::constant(params.number(Key::WarpWeight))
+        } else {
+            weight_curve(&keys)
+        };
+        Ok(Self::Blend { weight })
+    }
+}
+
+/// The curve through keys in per cent of the blend and per cent of B.
+#[must_use]
+pub fn weight_curve(keys: &[(usize, usize)]) -> WeightCurve {
+    WeightCurve::new(keys.iter().map(|&(at, weight)| (at as f64 / 100.0, weight as f64 / 100.0)))
+}
+
+/// What a registered result depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct RegisterInputs {
+    pair: Arc<Pair>,
+    found: Arc<Found>,
+    also: Vec<Also>,
+    made: Made,
+    is_plain: bool,
+    foot_lock: Option<Lock>,
+}
+
+/// A further clip of a blend, registered to A.
+#[derive(Clone, Debug)]
+struct Also {
+    pair: Arc<Pair>,
+    found: Arc<Found>,
+    weight: f64,
+}
+
+impl PartialEq for Also {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair) && Arc::ptr_eq(&self.found, &other.found) && self.weight == other.weight
+    }
+}
+
+impl Found {
+    /// The registration that a result follows.
+    fn way(&self, is_plain: bool) -> &Registration {
+        if is_plain { &self.lockstep } else { &self.registration }
+    }
+}
+
+impl PartialEq for RegisterInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && Arc::ptr_eq(&self.found, &other.found)
+            && self.also == other.also
+            && self.made == other.made
+            && (self.is_plain, self.foot_lock) == (other.is_plain, other.foot_lock)
+    }
+}
+
+/// A motion made of two, before its feet are held and measured.
+struct Draft {
+    clip: Clip,
+    /// Where the character stands.
+    frames: Vec<Planar>,
+    beats: Vec<Beat>,
+    contacts: Contacts,
+    /// The frames in which both clips are mixed.
+    mixed: Range<usize>,
+    /// Where B lies behind them.
+    world_from_b: Planar,
+}
+
+fn beat(instant: &Instant) -> Beat {
+    let of = |values: &[f64], at: usize| values.get(at).copied().unwrap_or_default();
+    Beat {
+        frames: [of(&instant.frames, 0), of(&instant.frames, 1)],
+        weights: [of(&instant.weights, 0), of(&instant.weights, 1)],
+    }
+}
+
+impl RegisterInputs {
+    fn sources(&self) -> [&blend::Source; 2] {
+        [0, 1].map(|clip| &**self.pair.profiles[clip].source())
+    }
+
+    /// Of A and of B.
+    fn contacts(&self) -> [&Contacts; 2] {
+        [&self.pair.a.contacts, &self.pair.incoming.contacts]
+    }
+
+    /// The frames of A that are registered: first and last.
+    fn span(&self) -> [f64; 2] {
+        let warp = self.found.registration.warp();
+        let [last_a, last_b] = self.sources().map(|source| source.clip().frames() as f64 - 1.0);
+        [
+            warp.first().0.max(0.0).max(warp.inverse(0.0)),
+            warp.last().0.min(last_a).min(warp.inverse(last_b)),
+        ]
+    }
+
+    fn blend(&self, weight: &WeightCurve) -> Result<Draft, String> {
+        let [a, b] = self.sources();
+        let partner = Partner {
+            source: b,
+            registration: self.found.way(self.is_plain),
+            weight,
+        };
+        let weights: Vec<WeightCurve> = self.also.iter().map(|also| WeightCurve::constant(also.weight)).collect();
+        let also = self.also.iter().zip(&weights).map(|(also, weight)| Partner {
+            source: also.pair.profiles[1].source(),
+            registration: also.found.way(self.is_plain),
+            weight,
+        });
+        let partners: Vec<Partner<'_>> = std::iter::once(partner).chain(also).collect();
+        let made = registered_blend(a, &partners).map_err(|error| sentence(&error))?;
+        let also = self.also.iter().map(|also| &also.pair.incoming.contacts);
+        let all: Vec<&Contacts> = self.contacts().into_iter().chain(also).collect();
+        let contacts = made.contacts(&all);
+        let RegisteredBlend { clip, instants, frames } = made;
+        Ok(Draft {
+            mixed: 0..clip.frames(),
+            clip,
+            frames,
+            beats: instants.iter().map(beat).collect(),
+            contacts,
+            world_from_b: Planar::IDENTITY,
+        })
+    }
+
+    /// Where the seams of A and B lie in the result, and its own, where it is a join.
+    fn seams(&self, beats: &[Beat], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
+        let plays = |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
+        let [of_a, of_b] = [&self.pair.a, &self.pair.incoming];
+        let of_a = of_a.seams_at(|frame| plays(0, frame)).into_iter();
+        let of_b = of_b.seams_at(|frame| plays(1, frame)).into_iter();
+        let Some(own) = own else { return of_a.chain(of_b).collect() };
+        let before = of_a.filter(|seam| seam.start < own.start);
+        let behind = of_b.filter(|seam| seam.start >= own.start);
+        before.chain([own.clone()]).chain(behind).collect()
+    }
+
+    /// From and to in frames of A: what was asked for, inside of what is registered; the middle half of it where nothing was, so that no seam of
+    /// a kept clip is left out: behind the last one of A, before the first one of B.
+    fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], String> {
+        let [from, to] = self.span();
+        let fps = self.pair.a.clip.fps();
+        let Pair { a, incoming, .. } = &*self.pair;
+        let mut room = [from, to];
+        if !a.seams.is_empty() {
+            room[0] = from.max(a.behind_seams() as f64);
+        }
+        if !incoming.seams.is_empty() {
+            room[1] = to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
+        }
+        if part_secs.contains(&None) && room != [from, to] && room[0] + 2.0 > room[1] {
+            return Err(format!(
+                "Behind the last seam of A, at {:.2} s, and before the first one of B, at {:.2} s of A, there is no room to go over: set by hand where the join begins and ends.",
+                room[0] / fps,
+                room[1] / fps
+            ));
+        }
+        let asked = |secs: Option<f64>, share: f64| {
+            let frame = secs.map_or(room[0] + share * (room[1] - room[0]), |secs| secs * fps);
+            (frame.round() as usize).clamp(from.ceil() as usize, (to.floor() as usize).max(from.ceil() as usize))
+        };
+        let [leave, arrive] = [asked(part_secs[0], 0.25), asked(part_secs[1], 0.75)];
+        if leave + 2 > arrive {
+            return Err(format!(
+                "The join begins at {:.2} s and ends at {:.2} s of A, of which {:.2} to {:.2} s are registered: move its end behind its beginning.",
+                leave as f64 / fps,
+                arrive as f64 / fps,
+                from / fps,
+                to / fps
+            ));
+        }
+        Ok([leave, arrive])
+    }
+
+    fn join(&self, [leave, arrive]: [usize; 2], law: WeightLaw) -> Result<Draft, String> {
+        let [a, b] = self.sources();
+        let [contacts_a, contacts_b] = self.contacts();
+        let warp = self.found.registration.warp();
+        let (joined, during, contacts) = if self.is_plain {
+            let enter = (warp.at(leave as f64).round().max(0.0)) as usize;
+            let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
+            let options = DissolveOptions {
+                window,
+                law,
+                ..DissolveOptions::default()
+            };
+            let joined = dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
+            let beat = |p: usize| Beat {
+                frames: [(leave + p) as f64, (enter + p) as f64],
+                weights: of_two(1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64)),
+            };
+            let during: Vec<Beat> = (0..joined.transition.len()).map(beat).collect();
+            let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
+            (joined, during, contacts)
+        } else {
+            let made = registered_join(a, b, &self.found.registration, leave, arrive, law).map_err(|error| sentence(&error))?;
+            let contacts = made.contacts(contacts_a, contacts_b);
+            (made.joined, made.during.iter().map(beat).collect(), contacts)
+        };
+        let before = (0..leave).map(|frame| Beat {
+            frames: [frame as f64, warp.at(frame as f64)],
+            weights: of_two(0.0),
+        });
+        let last = during.last().map_or([arrive as f64, 0.0], |last| last.frames);
+        let left = joined.clip.frames().saturating_sub(joined.transition.end);
+        let after = (1..=left).map(|step| {
+            let in_b = last[1] + step as f64;
+            let in_a = if self.is_plain { last[0] + step as f64 } else { warp.inverse(in_b) };
+            Beat {
+                frames: [in_a, in_b],
+                weights: of_two(1.0),
+            }
+        });
+        Ok(Draft {
+            beats: before.chain(during).chain(after).collect(),
+            clip: joined.clip,
+            frames: joined.frames,
+            contacts,
+            mixed: joined.transition,
+            world_from_b: joined.world_from_b,
+        })
+    }
+
+    /// The blend or the join.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let pair = &self.pair;
+        let fps = pair.a.clip.fps();
+        let (draft, part, is_join) = match &self.made {
+            Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
+            Made::Join { part_secs, law } => {
+                let part = self.part(*part_secs)?;
+                (self.join(part, *law)?, part.map(|frame| frame as f64), true)
+            }
+        };
+        let Draft {
+            clip: free,
+            frames,
+            beats,
+            contacts,
+            mixed,
+            world_from_b,
+        } = draft;
+        let roles = pair.a.roles.clone();
+        let sign = if is_join { "→" } else { "+" };
+        let also = self.also.iter().map(|also| &also.pair.b);
+        let others: Vec<&str> = std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
+        let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), others.join(" + "))));
+        let clip = with_feet(&free, &roles, &contacts, self.ground_m(), self.foot_lock)?;
+        let distance_cm = mean(
+            beats
+                .get(mixed.clone())
+                .unwrap_or_default()
+                .iter()
+                .filter_map(|beat| self.found.map.cm_at(beat.frames)),
+        );
+        let secs = |frame: usize| frame as f64 / fps;
+        let entered = beats.get(mixed.start).map_or(0.0, |beat| beat.frames[1] / fps);
+        let left = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1] / fps);
+        let transition = is_join.then(|| Transition {
+            start_secs: secs(mixed.start),
+            end_secs: secs(mixed.end),
+            leave_a_secs: secs(mixed.start),
+            enter_b_secs: entered,
+            window_frames: mixed.len(),
+            distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
+            search: None,
+        });
+        let metrics = self.measured([&clip, &free], &contacts, &beats, &mixed, distance_cm);
+        let seams = self.seams(&beats, is_join.then_some(&mixed));
+        let sources = vec![
+            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
+        ];
+        Ok(Outcome {
+            registered: Some(Arc::new(Registered {
+                map: Arc::clone(&self.found.map),
+                registration: Arc::clone(&self.found.registration),
+                is_plain: self.is_plain,
+                beats,
+                steps: Contacts::detect(&clip, &roles, &pair.a.feet.contacts),
+                part_secs: part.map(|frame| frame / fps),
+            })),
+            walk: None,
+            motion: Arc::new(Motion {
+                clip,
+                roles,
+                contacts,
+                ground_frames: frames,
+                seams,
+                ground_m: self.ground_m(),
+                feet: pair.a.feet,
+            }),
+            sources,
+            transition,
+            cycle: None,
+            retargeted: pair.retargeted.clone(),
+            layer: None,
+            path: None,
+            driven: None,
+            metrics,
+            beside: self.beside(),
+            measured: Measured::Motion,
+            is_measured: false,
+        })
+    }
+
+    /// All clips on the skeleton of A.
+    fn beside(&self) -> Vec<Arc<Clip>> {
+        let also = self.also.iter().map(|also| Arc::clone(&also.pair.incoming.clip));
+        self.pair.clips().into_iter().chain(also).collect()
+    }
+
+    /// The height of the ground under all clips, metres: the lowest.
+    fn ground_m(&self) -> f32 {
+        let also = self.also.iter().map(|also| also.pair.ground_m());
+        also.fold(self.pair.ground_m(), f32::min)
+    }
+
+    /// How far feet slide, how far apart the mixed frames are, and how deep the body sinks.
+    fn measured(
+        &self,
+        [clip, free]: [&Clip; 2],
+        contacts: &Contacts,
+        beats: &[Beat],
+        mixed: &Range<usize>,
+        distance_cm: Option<f64>,
+    ) -> Vec<Metric> {
+        let [a, b] = &self.pair.profiles;
+        let roles = &self.pair.a.roles;
+        let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
+        let mut metrics = vec![slide(slid(clip))];
+        if self.foot_lock.is_some() {
+            metrics.push(slide_before(slid(free)));
+        }
+        metrics.push(Metric::lower(
+            "apart_cm",
+            "Distance",
+            distance_cm,
+            "cm",
+            "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
+        ));
+        let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
+        let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
+        let found = TransitionMetrics::measure(&Subject {
+            result: clip,
+            start: mixed.start,
+            end: mixed.end,
+            handover,
+            enter: (behind.max(0.0).round() as usize).saturating_sub(mixed.len()),
+            a,
+            b,
+            roles,
+            ground_m: self.ground_m(),
+        });
+        // The others ask what a source does in the same frame, which a bent clock does not have.
+        metrics.extend(found.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        metrics
+    }
+}
+
+/// An error as a sentence.
+fn sentence(error: &impl std::fmt::Display) -> String {
+    let words = error.to_string();
+    let mut letters = words.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// The weights of A and of B where there are no more.
+fn of_two(weight_b: f64) -> [f64; 2] {
+    [1.0 - weight_b, weight_b]
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0_usize), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / count as f64)
+}

@@ -1,0 +1,95 @@
+use crate::motion::Motion;
+use crate::recipe::pair::Pair;
+use segue_motion::math::Planar;
+use segue_motion::registration::{DistanceMatrix, align, limb_weights};
+use std::sync::Arc;
+
+/// How far apart the frames of two clips are, with the clips.
+///
+/// A *pair* is a frame of A and a frame of B, both counted at A's rate; a cell of the matrix stands for the middle frames of its windows.
+#[derive(Clone, Debug)]
+pub struct DistanceMap {
+    matrix: DistanceMatrix,
+    motions: [Arc<Motion>; 2],
+    weights: Vec<f64>,
+    cm_scale: f64,
+}
+
+impl DistanceMap {
+    pub(super) fn new(matrix: DistanceMatrix, pair: &Pair) -> Self {
+        let skeleton = pair.a.clip.skeleton();
+        Self {
+            matrix,
+            weights: limb_weights(skeleton),
+            cm_scale: DistanceMatrix::cm_scale(pair.a.roles.body_height(skeleton).into()),
+            motions: [Arc::clone(&pair.a), Arc::clone(&pair.incoming)],
+        }
+    }
+
+    /// The distances: A's windows in rows, B's in columns.
+    #[must_use]
+    pub fn matrix(&self) -> &DistanceMatrix {
+        &self.matrix
+    }
+
+    /// A, and B on the skeleton and at the rate of A.
+    #[must_use]
+    pub fn motions(&self) -> &[Arc<Motion>; 2] {
+        &self.motions
+    }
+
+    /// Frames per second of both.
+    #[must_use]
+    pub fn fps(&self) -> f64 {
+        self.motions[0].clip.fps()
+    }
+
+    /// What turns metres of the matrix into centimetres per joint on a body of 1.75 m.
+    #[must_use]
+    pub fn cm_scale(&self) -> f64 {
+        self.cm_scale
+    }
+
+    /// From the first frame of a window to the one that it stands for.
+    pub(super) fn middle(&self) -> usize {
+        (self.matrix.window().max(1) - 1) / 2
+    }
+
+    /// The cell that is nearest to a pair; `None` for one that is in no clip, or where no window fits.
+    #[must_use]
+    pub fn cell_of(&self, frames: [f64; 2]) -> Option<(usize, usize)> {
+        let sizes = [self.matrix.rows(), self.matrix.columns()];
+        let cell = |clip: usize| {
+            let (frame, frames) = (frames[clip], self.motions[clip].clip.frames() as f64);
+            let inside = frame >= -0.5 && frame <= frames - 0.5;
+            let cell = ((frame - self.middle() as f64) / self.matrix.stride() as f64).round().max(0.0) as usize;
+            inside.then(|| sizes[clip].checked_sub(1).map(|last| cell.min(last))).flatten()
+        };
+        cell(0).zip(cell(1))
+    }
+
+    /// The pair that a cell stands for.
+    #[must_use]
+    pub fn pair_of(&self, (row, column): (usize, usize)) -> [f64; 2] {
+        let (a, b) = self.matrix.frames(row, column);
+        let half = (self.matrix.window().max(1) - 1) as f64 / 2.0;
+        [a as f64 + half, b as f64 + half]
+    }
+
+    /// How far apart a pair is: root mean square per joint over the windows, centimetres on a body of 1.75 m.
+    #[must_use]
+    pub fn cm_at(&self, frames: [f64; 2]) -> Option<f64> {
+        let (row, column) = self.cell_of(frames)?;
+        Some(f64::from(self.matrix.get(row, column)?) * self.cm_scale)
+    }
+
+    /// How B lies best on A about a pair: `a_world_from_b_world`.
+    #[must_use]
+    pub fn b_on_a(&self, frames: [f64; 2]) -> Option<Planar> {
+        let (row, column) = self.cell_of(frames)?;
+        let (i, j) = self.matrix.frames(row, column);
+        let window = self.matrix.window();
+        let [a, b] = [(0, i), (1, j)].map(|(clip, from)| self.motions[clip].clip.world_positions(from..from + window));
+        Some(align(&a, &b, &self.weights, 0.0).ok()?.transform)
+    }
+}

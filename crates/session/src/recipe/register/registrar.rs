@@ -1,0 +1,353 @@
+use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use crate::recipe::feet::Lock;
+use crate::recipe::pair::{Pair, Pairs};
+use segue_motion::registration::{
+    PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
+};
+use std::sync::Arc;
+
+/// Up to so many pairs of frames everything is done at once: a few seconds of motion need no second slice.
+const AT_ONCE: usize = 100_000;
+/// Pairs in one slice of work: about a millisecond for 31 joints.
+const PER_SLICE: usize = 60_000;
+/// More pairs than these are compared every few frames: 48 MiB of terms.
+const MOST_PAIRS: f64 = 4e6;
+
+/// What curves depend on, besides the two clips.
+#[derive(Clone, Debug, PartialEq)]
+struct Wanted {
+    window: usize,
+    path: PathOptions,
+    smoothing: usize,
+}
+
+/// What was found for two clips.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    pub(super) map: Arc<DistanceMap>,
+    pub(super) registration: Arc<Registration>,
+    /// Both clips at their own speed from where the path begins.
+    pub(super) lockstep: Arc<Registration>,
+}
+
+/// Registers every clip of a blend to A.
+#[derive(Debug, Default)]
+pub(crate) struct Registrars {
+    b: Registrar,
+    also: Vec<(Pairs, Registrar)>,
+}
+
+impl Registrars {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(crate) fn ask_anew(&mut self) {
+        self.all_mut().for_each(Registrar::ask_anew);
+    }
+
+    /// Brings everything to the point where the result is a pure function; `also` are the further clips with their weights. `None` when that takes longer than
+    /// a frame: [`work`](Self::work), then ask again.
+    pub(crate) fn inputs(
+        &mut self,
+        pair: &Arc<Pair>,
+        also: &[(Arc<Motion>, f64)],
+        params: &Params,
+    ) -> Result<Option<RegisterInputs>, String> {
+        let pins = read_pins(params.text(Key::Pins))?;
+        let found = self.b.found(pair, wanted_of(pair, params, pins)?)?;
+        let made = Made::of(params)?;
+        let also = if matches!(made, Made::Join { .. }) { &[] } else { also };
+        self.also.resize_with(also.len(), Default::default);
+        let mut more = Vec::with_capacity(also.len());
+        for ((motion, weight), (pairs, registrar)) in also.iter().zip(&mut self.also) {
+            let pair = pairs.of(&pair.a, motion)?;
+            // Pins are pairs of A and B.
+            let wanted = wanted_of(&pair, params, Vec::new())?;
+            let found = registrar.found(&pair, wanted)?;
+            more.push(found.map(|found| Also {
+                pair,
+                found,
+                weight: *weight,
+            }));
+        }
+        let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
+            return Ok(None);
+        };
+        Ok(Some(RegisterInputs {
+            pair: Arc::clone(pair),
+            found,
+            also,
+            made,
+            is_plain: params.text(Key::WarpWith) == "plain",
+            foot_lock: Lock::of(params),
+        }))
+    }
+
+    /// The distances of A and B that were asked for last.
+    pub(crate) fn last_map(&self) -> Option<&Arc<DistanceMap>> {
+        self.b.last_map()
+    }
+
+    /// One slice of what panes wait for. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self) -> bool {
+        self.all_mut().any(Registrar::work)
+    }
+
+    /// Whether something that panes wait for is there, so that they should ask again.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.all().any(Registrar::is_ready)
+    }
+
+    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    pub(crate) fn progress(&self) -> Option<f32> {
+        let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
+        let ended = self.also.len() + 1 - under_way.len();
+        (!under_way.is_empty()).then(|| (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32)
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Registrar> {
+        std::iter::once(&self.b).chain(self.also.iter().map(|(_, registrar)| registrar))
+    }
+
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut Registrar> {
+        std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, registrar)| registrar))
+    }
+}
+
+/// Registers clips slice by slice, and keeps what a change leaves as it is: products of frames for a new window, distances for a new path.
+#[derive(Debug, Default)]
+struct Registrar {
+    pair: Option<Arc<Pair>>,
+    terms: Option<PairTerms>,
+    sweep: Option<PausedSweep>,
+    /// The last ones that were asked for, at most one for each pane.
+    maps: Vec<Arc<DistanceMap>>,
+    search: Option<(Wanted, PathSearch)>,
+    found: Vec<(Wanted, Result<Arc<Found>, String>)>,
+    /// What panes wait for.
+    wanted: Vec<Wanted>,
+    /// All of that has just been found, and nobody has asked for it yet.
+    is_ready: bool,
+}
+
+impl Registrar {
+    /// Nobody waits any more: everybody is about to ask again.
+    fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.is_ready = false;
+    }
+
+    /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
+    fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, String> {
+        self.meet(pair)?;
+        let at_once = pair.a.clip.frames().saturating_mul(pair.incoming.clip.frames()) <= AT_ONCE;
+        loop {
+            if let Some((_, found)) = self.found.iter().find(|(known, _)| *known == wanted) {
+                return found.clone().map(Some);
+            }
+            if !at_once {
+                self.wanted.push(wanted);
+                return Ok(None);
+            }
+            self.step(&wanted);
+        }
+    }
+
+    /// The distances that were asked for last.
+    fn last_map(&self) -> Option<&Arc<DistanceMap>> {
+        self.maps.last()
+    }
+
+    /// One slice of what panes wait for. `false` when there was nothing to do.
+    fn work(&mut self) -> bool {
+        let Some(wanted) = self.next().cloned() else {
+            return false;
+        };
+        self.step(&wanted);
+        self.is_ready = self.next().is_none();
+        true
+    }
+
+    /// Whether what panes wait for is there, so that they should ask again.
+    fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn next(&self) -> Option<&Wanted> {
+        let is_known = |wanted: &&Wanted| self.found.iter().any(|(known, _)| known == *wanted);
+        self.wanted.iter().find(|wanted| !is_known(wanted))
+    }
+
+    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    fn progress(&self) -> Option<f32> {
+        let wanted = self.next()?;
+        let share = |progress: segue_motion::registration::Progress| progress.done as f32 / progress.total.max(1) as f32;
+        let terms = self.terms.as_ref().map_or(0.0, |terms| share(terms.progress()));
+        let swept = match &self.sweep {
+            _ if self.maps.iter().any(|map| map.matrix().window() == wanted.window) => 1.0,
+            Some(sweep) if sweep.window() == wanted.window => share(sweep.progress()),
+            _ => 0.0,
+        };
+        Some(0.45 * terms + 0.45 * swept)
+    }
+
+    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), String> {
+        if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
+            return Ok(());
+        }
+        *self = Self {
+            wanted: std::mem::take(&mut self.wanted),
+            ..Self::default()
+        };
+        let (a, b) = (&pair.a.clip, &pair.incoming.clip);
+        let pairs = a.frames() as f64 * b.frames() as f64;
+        let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
+        let weights = limb_weights(a.skeleton());
+        let terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, stride);
+        self.terms = Some(terms.map_err(|error| sentence(&error))?);
+        self.pair = Some(Arc::clone(pair));
+        Ok(())
+    }
+
+    /// Does a slice of what is needed next.
+    fn step(&mut self, wanted: &Wanted) {
+        let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
+            self.keep(wanted, Err("There are no clips to register.".to_owned()));
+            return;
+        };
+        let stride = terms.stride();
+        let rows = (PER_SLICE * stride / pair.incoming.clip.frames().max(1)).max(4);
+        if !terms.progress().is_complete() {
+            terms.advance(rows);
+            return;
+        }
+        if let Some(at) = self.maps.iter().position(|map| map.matrix().window() == wanted.window) {
+            let map = self.maps.remove(at);
+            self.maps.push(Arc::clone(&map));
+            let search = match self.search.take().filter(|(of, _)| of == wanted) {
+                Some((_, search)) => Ok(search),
+                None => PathSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
+            };
+            let found = search.and_then(|mut search| {
+                let path = search.advance(map.matrix(), rows)?;
+                if path.is_none() {
+                    self.search = Some((wanted.clone(), search));
+                }
+                path.map(|path| curves(terms, &map, path, wanted.smoothing)).transpose()
+            });
+            if let Some(found) = found.transpose() {
+                self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
+            }
+            return;
+        }
+        let begun = self.sweep.take().filter(|sweep| sweep.window() == wanted.window);
+        let sweep = match begun {
+            Some(sweep) => Ok(sweep.resume(terms)),
+            None => terms.sweep(wanted.window, &(0..usize::MAX), &(0..usize::MAX)),
+        };
+        match sweep {
+            Ok(mut sweep) => {
+                if !sweep.advance(rows).is_complete() {
+                    self.sweep = Some(sweep.pause());
+                    return;
+                }
+                if self.maps.len() >= MAX_PANES {
+                    self.maps.remove(0);
+                }
+                self.maps.push(Arc::new(DistanceMap::new(sweep.finish(), pair)));
+            }
+            Err(error) => self.keep(wanted, Err(sentence(&error))),
+        }
+    }
+
+    fn keep(&mut self, wanted: &Wanted, found: Result<Found, String>) {
+        if self.found.len() >= 2 * MAX_PANES {
+            drop(self.found.remove(0));
+        }
+        self.found.push((wanted.clone(), found.map(Arc::new)));
+    }
+}
+
+fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, String> {
+    let window = params.number(Key::RegistrationWindow) as usize;
+    let slack = params.number(Key::EndSlack) / 100.0;
+    let end = if params.text(Key::Ends) == "corner" {
+        PathEnd::Corner
+    } else {
+        PathEnd::Border { slack }
+    };
+    let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+    if let Some((a, b)) = pins.iter().find(|(a, b)| *a >= frames_a || *b >= frames_b) {
+        return Err(format!(
+            "The pin at frames {a} | {b} lies beyond the clips, which have {frames_a} and {frames_b} frames: move it inside or remove it."
+        ));
+    }
+    let usual = RegistrationOptions::new(pair.a.clip.fps()).smoothing;
+    Ok(Wanted {
+        window,
+        path: PathOptions {
+            slope_limit: params.number(Key::SlopeLimit) as usize,
+            start: end,
+            end,
+            pins,
+            ..PathOptions::default()
+        },
+        smoothing: params.optional(Key::WarpSmoothing).map_or(usual, |frames| frames as usize),
+    })
+}
+
+/// What is asked of a path, with its pins as cells in place of frames.
+fn in_cells(path: &PathOptions, map: &DistanceMap) -> PathOptions {
+    let cell = |pin: &(usize, usize)| map.cell_of([pin.0 as f64, pin.1 as f64]).unwrap_or(*pin);
+    PathOptions {
+        pins: path.pins.iter().map(cell).collect(),
+        ..path.clone()
+    }
+}
+
+/// The curves along a path through the distances.
+fn curves(terms: &PairTerms, map: &Arc<DistanceMap>, path: RegistrationPath, smoothing: usize) -> Result<Found, PathError> {
+    let matrix = map.matrix();
+    let registration = Registration::along(terms, matrix, path, smoothing)?;
+    let (row, column) = registration.path().cells.first().copied().unwrap_or_default();
+    let steps = (matrix.rows() - row).min(matrix.columns() - column);
+    let cells: Vec<(usize, usize)> = (0..steps).map(|k| (row + k, column + k)).collect();
+    let sum: f64 = cells.iter().filter_map(|cell| matrix.get(cell.0, cell.1)).map(f64::from).sum();
+    let diagonal = RegistrationPath {
+        pins: Vec::new(),
+        mean_m: sum / steps.max(1) as f64,
+        cells,
+    };
+    let lockstep = Registration::along(terms, matrix, diagonal, smoothing)?;
+    Ok(Found {
+        map: Arc::clone(map),
+        registration: Arc::new(registration),
+        lockstep: Arc::new(lockstep),
+    })
+}
+
+/// The sentence of an error, with the frames that its windows stand for.
+fn in_frames(error: PathError, middle: usize) -> String {
+    let moved = |frames: (usize, usize)| (frames.0 + middle, frames.1 + middle);
+    let error = match error {
+        PathError::Pins { first, second } => PathError::Pins {
+            first: moved(first),
+            second: moved(second),
+        },
+        PathError::PinAtEnd { pin, end } => PathError::PinAtEnd { pin: moved(pin), end },
+        PathError::NoPath {
+            from,
+            to,
+            slope_limit,
+            needed,
+        } => PathError::NoPath {
+            from: from.map(moved),
+            to: to.map(moved),
+            slope_limit,
+            needed,
+        },
+        other => other,
+    };
+    sentence(&error)
+}

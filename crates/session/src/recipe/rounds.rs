@@ -1,0 +1,76 @@
+//! A cycle that is played several times: what the Speed and the Loop lab show.
+
+use super::feet::{Lock, slide, slide_before, with_feet};
+use crate::motion::{FeetReading, Motion};
+use segue_motion::clip::{Clip, ClipError, Contacts, character_frames};
+use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_motion::skeleton::{Roles, Side};
+use segue_motion::transition::play_around;
+use std::sync::Arc;
+
+/// Cycles follow each other until they fill this, seconds.
+const SHOWN_SECS: f64 = 6.0;
+
+/// Several rounds of a cycle, and what their feet do.
+pub(super) struct Rounds {
+    /// Whole cycles and the frame behind them, which has the pose of the first.
+    pub(super) motion: Motion,
+    /// How far planted feet slide, and how far they would without the foot lock.
+    pub(super) slides: Vec<Metric>,
+}
+
+/// Plays a cycle of `cycle_frames` several times.
+///
+/// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in the middle is played again and again: a stance that
+/// the end of a clip cuts in two would be planted elsewhere than the same stance with all that is around it. `ground_m` is the height of the ground.
+pub(super) fn rounds(
+    roles: &Roles,
+    cycle_frames: usize,
+    three: Clip,
+    contacts: &Contacts,
+    ground_m: f32,
+    lock: Option<Lock>,
+) -> Result<Rounds, String> {
+    let sentence = |error: ClipError| error.to_string();
+    let fps = three.fps();
+    let count = (SHOWN_SECS * fps / cycle_frames as f64).ceil().clamp(2.0, 12.0) as usize;
+    let stands = character_frames(&three, roles);
+    let (Some(first), Some(second)) = (stands.first(), stands.get(cycle_frames)) else {
+        return Err("the cycle has no frames".to_owned());
+    };
+    let cycle = second.after(&first.inverse());
+    let three = Arc::new(three);
+    let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
+    let mut slides = vec![slide(slid(&three))];
+    let held = with_feet(&three, roles, contacts, ground_m, lock)?;
+    if lock.is_some() {
+        slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
+    }
+    let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;
+    let frames = count * cycle_frames + 1;
+    let clip = play_around(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
+        .and_then(|clip| clip.crop(0..frames))
+        .map_err(sentence)?;
+    Ok(Rounds {
+        motion: Motion {
+            ground_frames: character_frames(&clip, roles),
+            clip: Arc::new(clip),
+            roles: roles.clone(),
+            contacts: repeated(contacts, &(cycle_frames..2 * cycle_frames), frames),
+            seams: Vec::new(),
+            ground_m,
+            feet: FeetReading::default(),
+        },
+        slides,
+    })
+}
+
+/// The contacts of `frames` frames that go round in those of a part of a clip.
+pub(super) fn repeated(contacts: &Contacts, cycle: &std::ops::Range<usize>, frames: usize) -> Contacts {
+    let flags = |side: Side| {
+        (0..frames)
+            .map(|frame| contacts.planted(side, cycle.start + frame % cycle.len().max(1)))
+            .collect()
+    };
+    Contacts::from_flags(Side::BOTH.map(flags))
+}

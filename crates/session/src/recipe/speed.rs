@@ -1,0 +1,164 @@
+//! The Speed lab: two gaits at a speed.
+
+use super::feet::Lock;
+use super::pair::Pair;
+use super::rounds::{Rounds, rounds};
+use super::{Cycle, CycleMade, Measured, Outcome};
+use crate::params::{Key, Kind, Params};
+use segue_motion::clip::ground_speed;
+use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
+use segue_motion::metrics::Metric;
+use segue_motion::skeleton::Roles;
+use std::sync::Arc;
+
+/// The cycles of two clips, found once.
+#[derive(Debug)]
+struct Gaits {
+    pair: Arc<Pair>,
+    cycles: [GaitCycle; 2],
+}
+
+/// What a gait at a speed depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct SpeedInputs {
+    gaits: Arc<Gaits>,
+    alignment: PhaseAlignment,
+    asked_mps: f64,
+    foot_lock: Option<Lock>,
+}
+
+impl PartialEq for SpeedInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.gaits, &other.gaits)
+            && (self.alignment, self.foot_lock) == (other.alignment, other.foot_lock)
+            && self.asked_mps == other.asked_mps
+    }
+}
+
+/// Finds the cycles of two clips, and keeps them while the clips stay.
+#[derive(Debug, Default)]
+pub(crate) struct GaitFinder {
+    known: Option<Arc<Gaits>>,
+}
+
+impl GaitFinder {
+    /// What the parameters ask for, of these two clips.
+    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<SpeedInputs, String> {
+        let gaits = self.gaits(pair)?;
+        let clips_mps = [0, 1].map(|clip: usize| gaits.cycles[clip].speed_mps());
+        Ok(SpeedInputs {
+            alignment: if params.is_on(Key::PhaseAlign) {
+                PhaseAlignment::Feet
+            } else {
+                PhaseAlignment::None
+            },
+            asked_mps: params.optional(Key::Speed).unwrap_or_else(|| middle_mps(clips_mps)),
+            foot_lock: Lock::of(params),
+            gaits,
+        })
+    }
+
+    fn gaits(&mut self, pair: &Arc<Pair>) -> Result<Arc<Gaits>, String> {
+        if let Some(gaits) = &self.known
+            && Arc::ptr_eq(&gaits.pair, pair)
+        {
+            return Ok(Arc::clone(gaits));
+        }
+        let find = |profile: &segue_motion::metrics::Profile, roles: &Roles| {
+            let found = GaitCycle::find(profile.source(), roles, profile.contacts());
+            found.map_err(|error| error.to_string())
+        };
+        let [first, second] = &pair.profiles;
+        let cycles = [find(first, &pair.a.roles)?, find(second, &pair.incoming.roles)?];
+        let gaits = Arc::new(Gaits {
+            pair: Arc::clone(pair),
+            cycles,
+        });
+        self.known = Some(Arc::clone(&gaits));
+        Ok(gaits)
+    }
+}
+
+/// The speed half way between two, on a step of the slider.
+pub(crate) fn middle_mps([a, b]: [f64; 2]) -> f64 {
+    let Kind::Number { min, max, step, .. } = Key::Speed.param().kind else {
+        return 0.5 * (a + b);
+    };
+    ((0.5 * (a + b) / step).round() * step).clamp(min, max)
+}
+
+impl SpeedInputs {
+    /// Whether it is the same gaits, laid on each other in the same way.
+    pub(crate) fn differs_in_speed_alone(&self, other: &Self) -> bool {
+        let asked_mps = other.asked_mps;
+        Self { asked_mps, ..self.clone() } == *other
+    }
+
+    /// The gait at another speed than the one asked for.
+    pub(crate) fn run_at(&self, speed_mps: f64) -> Result<Outcome, String> {
+        let asked_mps = speed_mps;
+        Self { asked_mps, ..self.clone() }.run()
+    }
+
+    /// The gait.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
+        let options = SpeedOptions {
+            alignment: self.alignment,
+            ..SpeedOptions::default()
+        };
+        let roles = &pair.a.roles;
+        let blend = SpeedBlend::new(a, b, roles, &options).map_err(|error| error.to_string())?;
+        let fps = pair.a.clip.fps();
+        let three = blend.cycles_at(self.asked_mps, 3).map_err(|error| error.to_string())?;
+        let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
+        let Rounds { motion, mut slides } = rounds(roles, cycle_frames, three.clip, &three.contacts, pair.ground_m(), self.foot_lock)?;
+        let measured = f64::from(ground_speed(&motion.ground_frames, fps));
+        let mut metrics = vec![
+            Metric::fact(
+                "speed_mps",
+                "Speed",
+                measured,
+                "m/s",
+                "The way over the ground by its time, measured on the result.",
+            ),
+            Metric::fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
+            Metric::fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
+            Metric::fact(
+                "weight_percent",
+                "Weight of B",
+                100.0 * facts.weight,
+                "%",
+                "How much of B is in the pose: 0 at the speed of A, 100 at that of B, beyond it outside of both.",
+            ),
+        ];
+        metrics.append(&mut slides);
+        Ok(Outcome {
+            motion: Arc::new(motion),
+            sources: Vec::new(),
+            transition: None,
+            cycle: Some(Cycle {
+                secs: cycle_frames as f64 / fps,
+                made: CycleMade::Gait {
+                    facts,
+                    asked_mps: self.asked_mps,
+                    clips_mps: blend.speeds_mps(),
+                    cuts_secs: [a, b].map(|cycle| {
+                        let range = cycle.range();
+                        [range.start, range.end].map(|frame| frame as f64 / cycle.looped().clip.fps())
+                    }),
+                },
+            }),
+            retargeted: pair.retargeted.clone(),
+            layer: None,
+            registered: None,
+            path: None,
+            walk: None,
+            driven: None,
+            metrics,
+            beside: pair.clips(),
+            measured: Measured::Motion,
+            is_measured: false,
+        })
+    }
+}

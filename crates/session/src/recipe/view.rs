@@ -1,0 +1,333 @@
+//! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
+
+use super::feet::{Lock, locking, slide, slide_before};
+use super::pair::source_of;
+use super::{Measured, Outcome};
+use crate::compare::MAX_PANES;
+use crate::motion::Motion;
+use crate::notice::sentence;
+use crate::params::{Key, Params};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
+use segue_motion::path::{FitOptions, FittedPath};
+use segue_motion::transition::FootLocking;
+use std::sync::Arc;
+
+/// Clips of up to so many frames are done at once: about 8 ms for 31 joints.
+const AT_ONCE: usize = 1_000;
+/// Frames in one slice of work: about 2 ms for 31 joints in a browser.
+const PER_SLICE: usize = 500;
+
+/// What a view depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+pub(crate) struct ViewInputs {
+    motion: Arc<Motion>,
+    viewed: Option<Arc<Viewed>>,
+    ground: Ground,
+}
+
+impl PartialEq for ViewInputs {
+    fn eq(&self, other: &Self) -> bool {
+        let same_view = match (&self.viewed, &other.viewed) {
+            (Some(a), Some(b)) => a.lock == b.lock,
+            (None, None) => true,
+            _ => false,
+        };
+        Arc::ptr_eq(&self.motion, &other.motion) && same_view && self.ground == other.ground
+    }
+}
+
+impl ViewInputs {
+    /// Whether nothing is known of it yet but the clip itself.
+    pub(crate) fn awaits_numbers(&self) -> bool {
+        self.viewed.is_none()
+    }
+
+    /// The clip, with what is known of it by now. Numbers are those of the clip on its own ground: what goes on the spot slides with every step.
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        let shown = match &self.viewed {
+            None => Outcome::plain(Arc::clone(&self.motion)),
+            Some(viewed) => viewed.made.clone()?,
+        };
+        let measured = Measured::Clip(Arc::clone(&shown.motion.clip));
+        let motion = self.ground.moved(&shown.motion)?;
+        Ok(Outcome { motion, measured, ..shown })
+    }
+}
+
+/// What is taken out of the way over the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RootMotion {
+    /// Nothing.
+    World,
+    /// Where the character stands and faces, frame by frame.
+    InPlace,
+    /// Its path and the path's direction: what is left is the residual motion of path editing.
+    Residual,
+}
+
+/// Where on the ground a clip is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ground {
+    root_motion: RootMotion,
+    /// Where the first frame stands, (x, z) in metres, and what it faces, degrees; as it comes where nothing is given.
+    start: [Option<f64>; 2],
+    heading_deg: Option<f64>,
+}
+
+impl Ground {
+    fn of(params: &Params) -> Self {
+        Self {
+            root_motion: match params.text(Key::RootMotion) {
+                "in_place" => RootMotion::InPlace,
+                "residual" => RootMotion::Residual,
+                _ => RootMotion::World,
+            },
+            start: [Key::PlaceX, Key::PlaceZ].map(|key| params.optional(key)),
+            heading_deg: params.optional(Key::PlaceHeading),
+        }
+    }
+
+    /// The motion there.
+    fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, String> {
+        let frames = &motion.ground_frames;
+        let mut moves = match self.root_motion {
+            RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => return Ok(Arc::clone(motion)),
+            RootMotion::World => vec![Planar::IDENTITY; frames.len()],
+            RootMotion::InPlace => frames.iter().map(Planar::inverse).collect(),
+            RootMotion::Residual => {
+                let source = source_of(motion);
+                let path = FittedPath::new(Arc::new(source), &FitOptions::default()).map_err(|error| sentence(&error.to_string()))?;
+                path.places().iter().map(|place| place.frame.inverse()).collect()
+            }
+        };
+        let Some(first) = frames.first().zip(moves.first()).map(|(frame, planar)| planar.after(frame)) else {
+            return Ok(Arc::clone(motion));
+        };
+        let wanted = Planar::new(
+            self.heading_deg.map_or(first.yaw, f64::to_radians),
+            self.start[0].unwrap_or(first.shift.x),
+            self.start[1].unwrap_or(first.shift.y),
+        );
+        let there = wanted.after(&first.inverse());
+        for planar in &mut moves {
+            *planar = there.after(planar);
+        }
+        Ok(Arc::new(Motion {
+            clip: Arc::new(motion.clip.transformed_by_frame(&moves)),
+            ground_frames: moves.iter().zip(frames).map(|(planar, frame)| planar.after(frame)).collect(),
+            ..Motion::clone(motion)
+        }))
+    }
+}
+
+/// What came of it.
+#[derive(Debug)]
+struct Viewed {
+    of: Arc<Motion>,
+    lock: Option<Lock>,
+    made: Result<Outcome, String>,
+}
+
+/// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Viewer {
+    /// The newest last.
+    known: Vec<Arc<Viewed>>,
+    under_way: Vec<UnderWay>,
+    /// Something has just been done, and nobody has asked for it yet.
+    is_ready: bool,
+}
+
+#[derive(Debug)]
+struct UnderWay {
+    motion: Arc<Motion>,
+    lock: Option<Lock>,
+    is_wanted: bool,
+    stage: Stage,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// The feet as they are, of a clip whose feet will be held.
+    Before(Lock, SlideMeter),
+    Locking {
+        before_cm: Option<f64>,
+        locking: Box<FootLocking>,
+    },
+    Measuring {
+        /// The clip as it will be shown.
+        motion: Arc<Motion>,
+        /// Of a clip whose feet are held: how far they slid before.
+        before: Option<Metric>,
+        meter: Box<ClipMeter>,
+    },
+}
+
+impl Stage {
+    fn measuring(motion: Arc<Motion>, before: Option<Metric>) -> Self {
+        let meter = Box::new(ClipMeter::new(&motion.clip, &motion.roles, motion.ground_m));
+        Self::Measuring { motion, before, meter }
+    }
+}
+
+impl Viewer {
+    /// Nobody waits any more: everybody is about to ask again.
+    pub(crate) fn ask_anew(&mut self) {
+        self.is_ready = false;
+        for under_way in &mut self.under_way {
+            under_way.is_wanted = false;
+        }
+    }
+
+    /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
+    /// comes at once, and again with its numbers.
+    pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
+        let lock = Lock::of(params);
+        let viewed = self.known(motion, lock).or_else(|| {
+            let index = self.begin(motion, lock);
+            while motion.clip.frames() <= AT_ONCE && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion)) {
+                self.step(index);
+            }
+            self.known(motion, lock)
+        });
+        (viewed.is_some() || lock.is_none()).then(|| ViewInputs {
+            motion: Arc::clone(motion),
+            viewed,
+            ground: Ground::of(params),
+        })
+    }
+
+    fn known(&self, motion: &Arc<Motion>, lock: Option<Lock>) -> Option<Arc<Viewed>> {
+        let is_it = |viewed: &&Arc<Viewed>| Arc::ptr_eq(&viewed.of, motion) && viewed.lock == lock;
+        self.known.iter().find(is_it).cloned()
+    }
+
+    /// Has it done, if nobody else has; where it stands among what is under way.
+    fn begin(&mut self, motion: &Arc<Motion>, lock: Option<Lock>) -> usize {
+        let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
+        if let Some(index) = self.under_way.iter().position(is_it) {
+            self.under_way[index].is_wanted = true;
+            return index;
+        }
+        self.under_way.push(UnderWay {
+            motion: Arc::clone(motion),
+            lock,
+            is_wanted: true,
+            stage: match lock {
+                Some(lock) => Stage::Before(lock, SlideMeter::new(&motion.clip, &motion.roles)),
+                None => Stage::measuring(Arc::clone(motion), None),
+            },
+        });
+        self.under_way.len() - 1
+    }
+
+    /// One slice of what a pane waits for. `false` when there was nothing to do.
+    pub(crate) fn work(&mut self) -> bool {
+        self.under_way.retain(|at| at.is_wanted);
+        let before = self.under_way.len();
+        if before == 0 {
+            return false;
+        }
+        self.step(0);
+        self.is_ready |= self.under_way.len() < before;
+        true
+    }
+
+    /// Whether what a pane waits for is there, so that it should ask again.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    /// How much is done of the feet that are being held, 0 to 1; `None` when there are none. Nobody waits for numbers.
+    pub(crate) fn progress(&self) -> Option<f32> {
+        let at = self.under_way.iter().find(|at| at.lock.is_some())?;
+        Some(match &at.stage {
+            Stage::Before(..) => 0.0,
+            Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
+            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
+        })
+    }
+
+    fn step(&mut self, index: usize) {
+        let UnderWay {
+            motion,
+            lock,
+            is_wanted,
+            stage,
+        } = self.under_way.remove(index);
+        match next(&motion, stage) {
+            Step::On(stage) => self.under_way.insert(
+                index,
+                UnderWay {
+                    motion,
+                    lock,
+                    is_wanted,
+                    stage: *stage,
+                },
+            ),
+            Step::Done(made) => {
+                let made = *made;
+                self.known.push(Arc::new(Viewed { of: motion, lock, made }));
+                let surplus = self.known.len().saturating_sub(MAX_PANES);
+                self.known.drain(..surplus);
+            }
+        }
+    }
+}
+
+/// What a slice of work leads to.
+enum Step {
+    On(Box<Stage>),
+    Done(Box<Result<Outcome, String>>),
+}
+
+fn on(stage: Stage) -> Step {
+    Step::On(Box::new(stage))
+}
+
+fn next(of: &Arc<Motion>, stage: Stage) -> Step {
+    match stage {
+        Stage::Before(lock, mut meter) => {
+            if meter.advance(&of.clip, &of.contacts, PER_SLICE) {
+                return on(Stage::Before(lock, meter));
+            }
+            let before_cm = meter.worst_cm();
+            match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m, lock) {
+                Ok(Some(locking)) => on(Stage::Locking {
+                    before_cm,
+                    locking: Box::new(locking),
+                }),
+                Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
+                Err(error) => Step::Done(Box::new(Err(error))),
+            }
+        }
+        Stage::Locking { before_cm, mut locking } => {
+            if locking.advance(PER_SLICE) {
+                return on(Stage::Locking { before_cm, locking });
+            }
+            match locking.finish() {
+                // Hips are only raised and lowered: the character stands where it stood.
+                Ok(locked) => {
+                    let motion = Motion {
+                        clip: Arc::new(locked),
+                        ..Motion::clone(of)
+                    };
+                    on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
+                }
+                Err(error) => Step::Done(Box::new(Err(error.to_string()))),
+            }
+        }
+        Stage::Measuring { motion, before, mut meter } => {
+            if meter.advance(&motion.clip, &motion.contacts, PER_SLICE) {
+                return on(Stage::Measuring { motion, before, meter });
+            }
+            let found = meter.finish(&motion.ground_frames);
+            let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
+            Step::Done(Box::new(Ok(Outcome {
+                metrics: slides.chain(found.list()).collect(),
+                ..Outcome::plain(motion)
+            })))
+        }
+    }
+}

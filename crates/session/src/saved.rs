@@ -1,0 +1,167 @@
+//! What is stored of the work, so that it survives a reload. The files' bytes are stored beside it, by their SHA-256.
+
+use super::library::{Entry, Origin};
+use super::reading::Companion;
+use segue_formats::{FileKind, ImportOptions};
+use segue_motion::skeleton::Roles;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// How far storing is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Storing {
+    /// Everything is stored.
+    #[default]
+    Done,
+    /// Something is being written.
+    UnderWay,
+    /// Some files could not be stored.
+    Incomplete,
+}
+
+/// The work, without the bytes of its files.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Saved {
+    /// The parameters, as a link.
+    pub query: String,
+    /// The library in order.
+    pub entries: Vec<SavedEntry>,
+}
+
+impl Saved {
+    /// Keeps what `there`, stored at present, has from others: clips that are not among the `known`. Whoever writes this never had them, so it
+    /// was not them who took them away.
+    #[must_use]
+    pub fn with_others_of(mut self, there: &Self, known: &BTreeSet<String>) -> Self {
+        let own: BTreeSet<&str> = self.entries.iter().map(|entry| entry.id.as_str()).collect();
+        let is_of_others = |entry: &&SavedEntry| !own.contains(entry.id.as_str()) && !known.contains(&entry.id);
+        let others: Vec<SavedEntry> = there.entries.iter().filter(is_of_others).cloned().collect();
+        self.entries.extend(others);
+        self
+    }
+
+    /// The SHA-256 of the files that its clips come from.
+    #[must_use]
+    pub fn files(&self) -> BTreeSet<&str> {
+        let files = self.entries.iter().filter_map(|entry| entry.file.as_ref());
+        files.map(|file| file.sha256.as_str()).collect()
+    }
+}
+
+/// One clip of the library.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedEntry {
+    /// Its id.
+    pub id: String,
+    /// Its name.
+    pub name: String,
+    /// The file it comes from; `None` for what Segue can make or fetch again by the id.
+    pub file: Option<SavedFile>,
+    /// Roles that were corrected by hand.
+    pub roles: Option<Roles>,
+    /// Whether it is a bundled take. In what was stored without this mark, all takes are listed, whether they were asked for or not.
+    #[serde(default)]
+    pub is_sample: bool,
+}
+
+/// A file without its bytes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedFile {
+    /// The file's name.
+    pub name: String,
+    /// SHA-256 of its bytes, hexadecimal: where they are stored.
+    pub sha256: String,
+    /// How many bytes it has.
+    #[serde(default)]
+    pub size: u64,
+    /// What it is.
+    #[serde(default = "bvh")]
+    pub kind: FileKind,
+    /// The skeleton file that it is read with.
+    #[serde(default)]
+    pub companion: Option<Companion>,
+    /// Which of the clips in it.
+    pub index: usize,
+    /// How to read it.
+    pub options: ImportOptions,
+}
+
+/// What there was before there were other kinds.
+fn bvh() -> FileKind {
+    FileKind::Bvh
+}
+
+impl From<&Entry> for SavedEntry {
+    fn from(entry: &Entry) -> Self {
+        let file = match &entry.origin {
+            Origin::File(file) => Some(SavedFile {
+                name: file.name.clone(),
+                sha256: file.sha256.clone(),
+                size: file.size,
+                kind: file.kind,
+                companion: file.companion.clone(),
+                index: file.index,
+                options: file.options,
+            }),
+            Origin::Preset | Origin::Sample(_) | Origin::Made => None,
+        };
+        Self {
+            id: entry.id.clone(),
+            name: entry.name.clone(),
+            file,
+            roles: entry.roles_by_hand.clone(),
+            is_sample: matches!(entry.origin, Origin::Sample(_)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn saved(query: &str, ids: &[&str]) -> Saved {
+        let entry = |id: &&str| SavedEntry {
+            id: (*id).to_owned(),
+            name: format!("{id} of {query}"),
+            file: id.split_once('~').map(|(name, sha256)| SavedFile {
+                name: name.to_owned(),
+                sha256: sha256.to_owned(),
+                size: 1,
+                kind: FileKind::Bvh,
+                companion: None,
+                index: 0,
+                options: ImportOptions::default(),
+            }),
+            roles: None,
+            is_sample: false,
+        };
+        Saved {
+            query: query.to_owned(),
+            entries: ids.iter().map(entry).collect(),
+        }
+    }
+
+    fn names(saved: &Saved) -> Vec<&str> {
+        saved.entries.iter().map(|entry| entry.name.as_str()).collect()
+    }
+
+    #[test]
+    fn what_others_added_stays_and_what_was_removed_here_goes() {
+        let known = ["walk", "x~11", "y~22"].map(str::to_owned).into();
+        let here = saved("t=1", &["walk", "x~11"]);
+        let there = saved("t=2", &["walk", "y~22", "theirs~33", "run(turn_rate:20)"]);
+        let written = here.clone().with_others_of(&there, &known);
+        assert_eq!(written.query, "t=1");
+        assert_eq!(
+            names(&written),
+            ["walk of t=1", "x~11 of t=1", "theirs~33 of t=2", "run(turn_rate:20) of t=2"]
+        );
+        assert_eq!(written.files(), BTreeSet::from(["11", "33"]));
+        // Written once more, with nothing learned of the others: it is the same.
+        assert_eq!(here.clone().with_others_of(&written, &known), written);
+        assert_eq!(here.clone().with_others_of(&Saved::default(), &known), here);
+        // Two windows write in turn: neither loses what the other has.
+        let theirs = there.with_others_of(&here, &["y~22".to_owned()].into());
+        assert!(names(&theirs).contains(&"x~11 of t=1"));
+    }
+}
