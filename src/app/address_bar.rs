@@ -22,7 +22,7 @@ pub(crate) struct AddressBar {
 pub(crate) fn link_query(session: &Session) -> String {
     let query = session.query();
     if query.is_empty() {
-        format!("{}={}", Key::Lab.param().name, session.params().text(Key::Lab))
+        format!("{}={}", Key::Lab.param().name, session.params().lab().word())
     } else {
         query
     }

@@ -10,6 +10,8 @@ use segue::scene::pose_at;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
+use segue_session::LabId;
+use segue_session::choices;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
 use segue_session::outside;
 use segue_session::reading::Content;
@@ -455,15 +457,15 @@ impl Segue {
 
 /// What a result is called as a file: what it was made from.
 fn result_name(params: &Params) -> String {
-    match params.text(Key::Lab) {
-        "blend" | "transition" => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
-        "make" => params.text(Key::Gait).to_owned(),
-        "speed" | "layers" => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
-        "loop" => format!("{} loop", params.text(Key::A)),
-        "path" => format!("{} on a path", params.text(Key::A)),
-        "graph" => "walk".to_owned(),
-        "match" => "drive".to_owned(),
-        _ => params.text(Key::A).to_owned(),
+    match params.lab() {
+        LabId::Blend | LabId::Transition => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
+        LabId::Make => params.choice::<choices::MadeAction>().word().to_owned(),
+        LabId::Speed | LabId::Layers => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
+        LabId::Loop => format!("{} loop", params.text(Key::A)),
+        LabId::Path => format!("{} on a path", params.text(Key::A)),
+        LabId::Graph => "walk".to_owned(),
+        LabId::Match => "drive".to_owned(),
+        LabId::View | LabId::Register => params.text(Key::A).to_owned(),
     }
 }
 

@@ -8,7 +8,9 @@ use segue_motion::graph::Place;
 use segue_motion::matching;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
-use segue_session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Value, Walk, joint_of};
+use segue_session::LabId;
+use segue_session::choices;
+use segue_session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of};
 use std::sync::Arc;
 
 /// The colours of what is made from A, from B, and from both, in the theme of the page.
@@ -229,16 +231,16 @@ impl Director {
         let body = self.body(motion);
         let twisted = twisted(motion, world, params.number(Key::Twist));
         let world = twisted.as_ref().unwrap_or(world);
-        let seen = params.text(Key::Look);
+        let seen = params.choice::<choices::Look>();
         match (seen, outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors))) {
-            ("bones", _) => {}
-            ("both", _) => pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA)),
+            (choices::Look::Bones, _) => {}
+            (choices::Look::Both, _) => pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA)),
             (_, Some(layer)) => pane.add_colored_body(&body, world, |joint| {
                 share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)
             }),
             (_, None) => pane.add_body(&body, world, look.clay),
         }
-        if matches!(seen, "bones" | "both") {
+        if matches!(seen, choices::Look::Bones | choices::Look::Both) {
             add_bones(&body, motion, world, colors.result, pane);
         }
         if params.is_on(Key::Axes) {
@@ -297,7 +299,7 @@ impl Director {
                 continue;
             };
             let body = self.body(motion);
-            if params.text(Key::Look) == "bones" {
+            if params.choice::<choices::Look>() == choices::Look::Bones {
                 add_bones(&body, motion, &world, color, pane);
             } else {
                 pane.add_body(&body, &world, mixed(look.clay, color, COMPANY_SHARE));
@@ -325,7 +327,7 @@ impl Director {
             let color = colors.others[index % colors.others.len()];
             let moved = pose.translations.iter().copied();
             world_pose_into(skeleton, pose.root_translation, &pose.rotations, moved, world);
-            if session.params().text(Key::Look) == "bones" {
+            if session.params().choice::<choices::Look>() == choices::Look::Bones {
                 add_bones(&body, &shown.outcome.motion, world, color, pane);
             } else {
                 pane.add_body(&body, world, mixed(look.clay, color, CROWD_SHARE));
@@ -451,14 +453,14 @@ impl Director {
     /// The point of the figure that the camera stays with; `None` when it follows nothing.
     fn followed_point(&mut self, shown: &Shown<'_>, session: &Session) -> Option<Vec3> {
         let (params, outcome) = (session.params(), shown.outcome);
-        let wanted = match params.text(Key::Follow) {
-            "off" => return None,
-            "a" => Some(Slot::A),
-            "b" => Some(Slot::B),
-            _ => None,
+        let wanted = match params.choice::<choices::Follow>() {
+            choices::Follow::Off => return None,
+            choices::Follow::A => Some(Slot::A),
+            choices::Follow::B => Some(Slot::B),
+            choices::Follow::Result | choices::Follow::Other => None,
         };
         let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
-        let other = (params.text(Key::Follow) == "other").then(|| {
+        let other = (params.choice::<choices::Follow>() == choices::Follow::Other).then(|| {
             let place = (params.number(Key::FollowOther) as usize).saturating_sub(1);
             session.company().get(place)?.motion.as_ref().ok()
         });
@@ -586,12 +588,12 @@ fn figure_height(params: &Params) -> f32 {
 /// The pane's own way of skinning where it is compared, else that of all.
 fn skinning_of(session: &Session, pane: usize) -> Skinning {
     let compared = session.panes().get(pane).and_then(|pane| match &pane.variant {
-        Some((Key::Skinning, Value::Choice(word))) => Some(*word),
+        Some((Key::Skinning, value)) => value.choice(),
         _ => None,
     });
-    match compared.unwrap_or(session.params().text(Key::Skinning)) {
-        "linear" => Skinning::Linear,
-        _ => Skinning::Dual,
+    match compared.unwrap_or(session.params().choice()) {
+        choices::Skinning::Linear => Skinning::Linear,
+        choices::Skinning::Dual => Skinning::Dual,
     }
 }
 
@@ -626,7 +628,7 @@ fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose
 /// [`shown_size`]).
 #[must_use]
 pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
-    let from_above = params.text(Key::Camera) == "top";
+    let from_above = params.choice::<choices::Camera>() == choices::Camera::Top;
     Camera {
         yaw: params.number(Key::CameraYaw).to_radians() as f32,
         pitch: if from_above {
@@ -703,7 +705,7 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
 
 /// The line that a walk follows.
 fn add_walk_path(session: &Session, colors: &Colors, pane: &mut Pane) {
-    if session.params().text(Key::Lab) == "graph" {
+    if session.params().lab() == LabId::Graph {
         let points = session
             .graph_path()
             .into_iter()

@@ -4,6 +4,7 @@ use super::Body;
 use segue_motion::clip::reference_pose;
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose};
 use segue_motion::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
+use segue_session::choices;
 use segue_session::{Key, Motion, Params, Session};
 use std::sync::{Arc, Weak};
 
@@ -49,7 +50,7 @@ struct Cut {
 
 /// Whether bodies have a skin.
 fn shows_skin(params: &Params) -> bool {
-    params.text(Key::Look) != "limbs"
+    params.choice::<choices::Look>() != choices::Look::Limbs
 }
 
 /// The character that is shown in place of bodies made around bones.

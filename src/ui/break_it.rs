@@ -7,6 +7,7 @@ use super::param_row::{Detail, param_row_ui};
 use super::text;
 use super::theme::{Type, palette_of, theme_of};
 use eframe::egui::{RichText, Ui};
+use segue_session::choices::{Mistake, TransitionMethod};
 use segue_session::{Compare, Key, Session, Value, mistake_shows};
 
 /// The choice, a sentence for every mistake that is on the stage, and the right way beside it.
@@ -14,27 +15,22 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Mistake, &Detail::default(), session, out, ui);
     let params = session.params();
     let compared = session.compare().filter(|compare| compare.key == Key::Mistake);
-    let words: Vec<String> = match &compared {
-        Some(compare) => compare.values.iter().map(|value| Key::Mistake.param().format(value)).collect(),
-        None => vec![params.text(Key::Mistake).to_owned()],
-    };
-    for word in &words {
-        let shows = shows(word, session);
-        let sentence = match (word.as_str(), params.text(Key::Method)) {
+    for mistake in session.choices::<Mistake>() {
+        let shows = shows(mistake, session);
+        let sentence = match (mistake, params.choice()) {
             _ if !shows => text::MISTAKE_IDLE,
-            ("velocity", "smooth" | "linear") => text::VELOCITY_IN_DISSOLVE,
-            _ => text::mistake(word),
+            (Mistake::Velocity, TransitionMethod::Smooth | TransitionMethod::Linear) => text::VELOCITY_IN_DISSOLVE,
+            _ => text::mistake(mistake),
         };
         if !sentence.is_empty() {
             let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
             ui.label(RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
         }
     }
-    let chosen = params.text(Key::Mistake);
-    if (chosen != "none" || compared.is_some())
+    if (params.choice::<Mistake>() != Mistake::None || compared.is_some())
         && kit::button_ui(Button::new(text::RIGHT_AND_WRONG).selected(compared.is_some()), ui).clicked()
     {
-        let none = Value::Choice("none");
+        let none = Mistake::None.into();
         let query = match compared {
             Some(_) => String::new(),
             None => Compare {
@@ -48,8 +44,7 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// Whether the method gives this mistake an opportunity.
-fn shows(word: &str, session: &Session) -> bool {
+fn shows(mistake: Mistake, session: &Session) -> bool {
     let mut params = session.params().clone();
-    let value = Key::Mistake.param().parse(word);
-    value.is_ok_and(|value| params.set(Key::Mistake, value).is_ok()) && mistake_shows(&params)
+    params.set(Key::Mistake, mistake.into()).is_ok() && mistake_shows(&params)
 }

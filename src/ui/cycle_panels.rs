@@ -9,6 +9,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{palette_of, space};
 use eframe::egui::Ui;
+use segue_session::choices::LoopMethod;
 use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
 
 /// The upper end of the slider before the clips are known, metres per second.
@@ -118,15 +119,14 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
     // With several methods side by side, what any of them has to set is there.
-    let methods: Vec<String> = match session.compare().filter(|compare| compare.key == Key::LoopMethod) {
-        Some(compare) => compare.values.iter().map(|value| Key::LoopMethod.param().format(value)).collect(),
-        None => vec![params.text(Key::LoopMethod).to_owned()],
-    };
+    let methods: Vec<LoopMethod> = session.choices();
     if let [method] = methods.as_slice() {
-        kit::note_ui(text::loop_method(method), palette_of(ui).muted, ui);
+        kit::note_ui(text::loop_method(*method), palette_of(ui).muted, ui);
     }
-    let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
-    if any(&["exact", "both", "crossed", "start", "end"]) {
+    if !methods
+        .iter()
+        .all(|method| matches!(method, LoopMethod::Linear | LoopMethod::Cubic))
+    {
         let detail = Detail {
             help: Some(text::LOOP_HALF_LIFE.to_owned()),
             ..Detail::default()
@@ -134,7 +134,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         param_row_ui(Key::HalfLife, &detail, session, out, ui);
         compare_ui(Key::HalfLife, session, out, ui);
     }
-    if any(&["exact", "both", "crossed", "linear", "cubic"]) {
+    if !methods.iter().all(|method| matches!(method, LoopMethod::Start | LoopMethod::End)) {
         param_row_ui(Key::LoopRatio, &Detail::default(), session, out, ui);
     }
     let shoot_out = methods.len() > 1;

@@ -20,23 +20,25 @@ use super::top_bar::{made_number, toggle_compare};
 use eframe::egui::{self, Ui};
 use segue_motion::math::spring;
 use segue_motion::transition::has_legs;
+use segue_session::LabId;
+use segue_session::choices::{self, TransitionMethod};
 use segue_session::{Command, Group, Key, NoResult, PARAMS, Session, Slot, Value, split_reference};
 
 /// The right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
-    match params.text(Key::Lab) {
-        "make" => make_ui(session, state, out, ui),
-        "blend" => blend_ui(session, state, out, ui),
-        "transition" => transition_ui(session, state, out, ui),
-        "speed" => speed_ui(session, state, out, ui),
-        "loop" => loop_ui(session, state, out, ui),
-        "layers" => layers_ui(session, state, out, ui),
-        "register" => register_ui(session, state, out, ui),
-        "path" => path_ui(session, state, out, ui),
-        "graph" => graph_ui(session, state, out, ui),
-        "match" => drive_ui(session, state, out, ui),
-        _ => view_ui(session, state, out, ui),
+    match params.lab() {
+        LabId::Make => make_ui(session, state, out, ui),
+        LabId::Blend => blend_ui(session, state, out, ui),
+        LabId::Transition => transition_ui(session, state, out, ui),
+        LabId::Speed => speed_ui(session, state, out, ui),
+        LabId::Loop => loop_ui(session, state, out, ui),
+        LabId::Layers => layers_ui(session, state, out, ui),
+        LabId::Register => register_ui(session, state, out, ui),
+        LabId::Path => path_ui(session, state, out, ui),
+        LabId::Graph => graph_ui(session, state, out, ui),
+        LabId::Match => drive_ui(session, state, out, ui),
+        LabId::View => view_ui(session, state, out, ui),
     }
     ui.add_space(space::S);
     compare_choice_ui(session, out, ui);
@@ -221,23 +223,20 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);
     // With several methods side by side, what each of them has to set is there.
-    let methods: Vec<String> = match session.compare().filter(|compare| compare.key == Key::Method) {
-        Some(compare) => compare.values.iter().map(|value| Key::Method.param().format(value)).collect(),
-        None => vec![params.text(Key::Method).to_owned()],
-    };
-    let any = |of: &[&str]| methods.iter().any(|method| of.contains(&method.as_str()));
-    if any(&["inertialize"]) {
+    let methods: Vec<TransitionMethod> = session.choices();
+    let any = |of: &[TransitionMethod]| methods.iter().any(|method| of.contains(method));
+    if any(&[TransitionMethod::Inertialize]) {
         param_row_ui(Key::HalfLife, &Detail::default(), session, out, ui);
         half_life_ruler_ui(params.number(Key::HalfLife), fps, ui);
         compare_ui(Key::HalfLife, session, out, ui);
     }
-    if any(&["cubic", "quintic", "dead"]) {
+    if any(&[TransitionMethod::Cubic, TransitionMethod::Quintic, TransitionMethod::Dead]) {
         param_row_ui(Key::BlendTime, &Detail::default(), session, out, ui);
     }
-    if any(&["dead"]) {
+    if any(&[TransitionMethod::Dead]) {
         param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
     }
-    if any(&["smooth", "linear"]) {
+    if any(&[TransitionMethod::Smooth, TransitionMethod::Linear]) {
         let detail = Detail {
             fps: Some(fps),
             ..Detail::default()
@@ -253,7 +252,7 @@ fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut
     ui.add_space(space::S);
     place_rows_ui([Key::MixFrameA, Key::MixFrameB], session, out, ui);
     param_row_ui(Key::MatchBy, &Detail::default(), session, out, ui);
-    if params.text(Key::MatchBy) == "pose" {
+    if params.choice::<choices::MatchBy>() == choices::MatchBy::Pose {
         for key in [Key::MatchPosition, Key::MatchRotation, Key::MatchVelocity] {
             param_row_ui(key, &Detail::default(), session, out, ui);
         }

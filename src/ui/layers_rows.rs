@@ -9,6 +9,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
+use segue_session::choices;
 use segue_session::{Key, Session};
 
 /// All rows of the lab.
@@ -17,7 +18,8 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     pair_ui(session, out, ui);
     let params = session.params();
     let plain = Detail::default();
-    let additive = params.text(Key::LayerMode) == "additive" || session.compare().is_some_and(|compare| compare.key == Key::LayerMode);
+    let additive = params.choice::<choices::LayerMode>() == choices::LayerMode::Additive
+        || session.compare().is_some_and(|compare| compare.key == Key::LayerMode);
     param_row_ui(Key::LayerMode, &plain, session, out, ui);
     ui.add_space(space::XS);
     param_row_ui(Key::Mask, &plain, session, out, ui);
@@ -35,7 +37,7 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     }
     param_row_ui(Key::LayerStart, &plain, session, out, ui);
     ui.add_space(space::XS);
-    if params.text(Key::LayerMode) != "additive" {
+    if params.choice::<choices::LayerMode>() != choices::LayerMode::Additive {
         param_row_ui(Key::KeepOrientation, &plain, session, out, ui);
     }
     param_row_ui(Key::MaskColors, &plain, session, out, ui);

@@ -42,16 +42,18 @@ pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
 use segue::scene::Look;
+use segue_session::LabId;
+use segue_session::choices;
 use segue_session::{Key, Session};
 use state::Layout;
 use theme::{Theme, palette_of, space, theme_of};
 
 /// The theme that the parameters ask for, on a system that prefers dark or light.
 pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
-    let dark = match session.params().text(Key::Theme) {
-        "dark" => true,
-        "light" => false,
-        _ => system_dark,
+    let dark = match session.params().choice::<choices::PageTheme>() {
+        choices::PageTheme::Dark => true,
+        choices::PageTheme::Light => false,
+        choices::PageTheme::Auto => system_dark,
     };
     Theme {
         dark,
@@ -61,18 +63,18 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
 
 /// The theme of what lies over the stage, on a page of that theme.
 pub(crate) fn stage_theme(session: &Session, page: Theme) -> Theme {
-    let dark = match session.params().text(Key::Stage) {
-        "dark" => true,
-        "light" | "paper" => false,
-        _ => page.dark,
+    let dark = match session.params().choice::<choices::Backdrop>() {
+        choices::Backdrop::Dark => true,
+        choices::Backdrop::Light | choices::Backdrop::Paper => false,
+        choices::Backdrop::Auto => page.dark,
     };
     Theme { dark, ..page }
 }
 
 /// Colours and light of the stage in that theme.
 pub(crate) fn stage_look(session: &Session, theme: Theme) -> Look {
-    let mut look = match (session.params().text(Key::Stage), theme.dark) {
-        ("paper", _) => Look::PAPER,
+    let mut look = match (session.params().choice(), theme.dark) {
+        (choices::Backdrop::Paper, _) => Look::PAPER,
         (_, true) => Look::DARK,
         (_, false) => Look::LIGHT,
     };
@@ -91,7 +93,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     state.layout = layout;
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
     state.has_map_panel = has_room && graph::is_open(session) && !lessons_panel::is_open(session);
-    if !matches!(session.params().text(Key::Lab), "graph" | "path") {
+    if !matches!(session.params().lab(), LabId::Graph | LabId::Path) {
         state.drawing = None;
     }
     if session.params().is_on(Key::Embed) {

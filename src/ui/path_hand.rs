@@ -4,6 +4,7 @@ use super::out::Out;
 use super::text;
 use glam::DVec2;
 use segue_motion::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
+use segue_session::LabId;
 use segue_session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
 
 /// The hand on the path, remembered between frames.
@@ -144,7 +145,7 @@ fn pins(session: &Session) -> Pins {
 
 /// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
 pub(super) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
-    let is_open = session.params().text(Key::Lab) == "path" && pane.problem.is_none();
+    let is_open = session.params().lab() == LabId::Path && pane.problem.is_none();
     pane.outcome.as_ref()?.path.as_deref().filter(|_| is_open)
 }
 

@@ -63,7 +63,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
     ui.add_space(space::S);
     param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
-    kit::note_ui(text::path_keep(session.params().text(Key::PathKeep)), palette.muted, ui);
+    kit::note_ui(text::path_keep(session.params().choice()), palette.muted, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     param_row_ui(Key::PathOffset, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);

@@ -10,6 +10,7 @@ use super::theme::space;
 use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
+use segue_session::LabId;
 use segue_session::{Command, Group, Key, OnPath, Session};
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
@@ -203,7 +204,7 @@ pub(super) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut U
 
 /// When the lab opens, the whole path comes into sight, unless somebody has put the camera elsewhere; when it is left, the camera is as before.
 pub(super) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
-    let is_open = session.params().text(Key::Lab) == "path";
+    let is_open = session.params().lab() == LabId::Path;
     let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
     match (is_open, &state.path.framed) {
         (true, None) if !untouched() => state.path.framed = Some(Vec::new()),

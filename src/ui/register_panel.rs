@@ -11,6 +11,7 @@ use super::text;
 use super::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
 use segue_motion::skeleton::Side;
+use segue_session::choices::{self, WarpMode};
 use segue_session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
 use std::sync::Arc;
 
@@ -33,13 +34,12 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     }
     ui.add_space(space::XS);
     param_row_ui(Key::WarpMode, &plain, session, out, ui);
-    let modes = session.compare().filter(|compare| compare.key == Key::WarpMode);
-    let shown = |mode: &str| modes.is_some() || params.text(Key::WarpMode) == mode;
-    if shown("blend") {
+    let modes: Vec<WarpMode> = session.choices();
+    if modes.contains(&WarpMode::Blend) {
         weight_ui(session, out, ui);
         also_ui(session, out, ui);
     }
-    if shown("join") {
+    if modes.contains(&WarpMode::Join) {
         let last = |slot| {
             let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
             motion.map(|motion| motion.clip.duration_secs())
@@ -64,7 +64,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
     param_row_ui(Key::Ends, &plain, session, out, ui);
-    if params.text(Key::Ends) == "free" {
+    if params.choice::<choices::Ends>() == choices::Ends::Free {
         param_row_ui(Key::EndSlack, &plain, session, out, ui);
     }
     ui.add_space(space::S);

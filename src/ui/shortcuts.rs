@@ -6,6 +6,7 @@ use super::stage_panel::frame_everything;
 use super::state::UiState;
 use super::top_bar::toggle_compare;
 use eframe::egui::{Context, Event, Id, Key as Keyboard, Modifiers, Popup};
+use segue_session::choices;
 use segue_session::{Command, Key, Kind, Session, Value};
 
 /// The labs, from left to right: the row of digits and what stands behind them.
@@ -120,7 +121,10 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if pressed(none, Keyboard::T) {
         out.set_once(
             Key::Camera,
-            Value::Choice(if params.text(Key::Camera) == "top" { "orbit" } else { "top" }),
+            Value::from(match params.choice() {
+                choices::Camera::Top => choices::Camera::Orbit,
+                choices::Camera::Orbit => choices::Camera::Top,
+            }),
         );
     }
     if pressed(none, Keyboard::F) {
@@ -129,15 +133,18 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if pressed(none, Keyboard::G) {
         out.set_once(
             Key::Follow,
-            Value::Choice(if params.text(Key::Follow) == "off" { "result" } else { "off" }),
+            Value::from(match params.choice() {
+                choices::Follow::Off => choices::Follow::Result,
+                _ => choices::Follow::Off,
+            }),
         );
     }
     if pressed(none, Keyboard::B) {
-        let next = match params.text(Key::Look) {
-            "body" => "bones",
-            "bones" => "both",
-            _ => "body",
+        let next = match params.choice::<choices::Look>() {
+            choices::Look::Body => choices::Look::Bones,
+            choices::Look::Bones => choices::Look::Both,
+            choices::Look::Limbs | choices::Look::Both => choices::Look::Body,
         };
-        out.set_once(Key::Look, Value::Choice(next));
+        out.set_once(Key::Look, next.into());
     }
 }

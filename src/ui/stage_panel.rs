@@ -13,6 +13,8 @@ use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::scene::{camera_of, resting_point, shown_size};
 use segue_motion::metrics::Better;
+use segue_session::LabId;
+use segue_session::choices;
 use segue_session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
@@ -38,7 +40,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let line = ground_line(&shown, &response, state, ui);
     let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
     if let GroundLine::Done(points) = line {
-        if session.params().text(Key::Lab) == "path" {
+        if session.params().lab() == LabId::Path {
             state.path.take_drawn(&points, session, out);
         } else if points.len() > 1 {
             out.set_once(Key::WalkPath, Value::Text(write_path(&points)));
@@ -72,7 +74,7 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     // Where there is nothing to do it to, no hint says what to do.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
-    let says = session.params().text(Key::Lab) == "path" && (state.path.said.is_some() || state.drawing.is_some());
+    let says = session.params().lab() == LabId::Path && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
@@ -91,10 +93,10 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
 
 /// What to look at, in one line.
 fn hint(session: &Session) -> Option<&'static str> {
-    match session.params().text(Key::Lab) {
-        "register" => Some(text::REGISTER_HINT),
-        "path" => Some(text::PATH_HINT),
-        "graph" => Some(text::GRAPH_HINT),
+    match session.params().lab() {
+        LabId::Register => Some(text::REGISTER_HINT),
+        LabId::Path => Some(text::PATH_HINT),
+        LabId::Graph => Some(text::GRAPH_HINT),
         _ if is_welcome(session) => Some(text::WELCOME_HINT),
         _ => session.is_driven().then_some(text::MATCH_HINT),
     }
@@ -350,18 +352,18 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             .find(params.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     };
-    match params.text(Key::Lab) {
-        "blend" => Words {
+    match params.lab() {
+        LabId::Blend => Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: format!("{} frames", params.number(Key::BlendWindow)),
         },
-        "transition" => Words {
+        LabId::Transition => Words {
             strong: name(Key::A),
             text: format!("→ {}", name(Key::B)),
             secondary: Key::Method.param().spoken(params.get(Key::Method)),
         },
-        "speed" => Words {
+        LabId::Speed => Words {
             strong: name(Key::A),
             text: format!("~ {}", name(Key::B)),
             // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as fast as was asked.
@@ -371,24 +373,24 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 .and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == "speed_mps")?.value)
                 .map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
         },
-        "loop" => Words {
+        LabId::Loop => Words {
             strong: name(Key::A),
             text: String::new(),
             secondary: Key::LoopMethod.param().spoken(params.get(Key::LoopMethod)),
         },
-        "path" => Words {
+        LabId::Path => Words {
             strong: name(Key::A),
             text: String::new(),
             secondary: path_of(session, pane).map_or_else(String::new, text::path_lengths),
         },
-        "layers" => Words {
+        LabId::Layers => Words {
             strong: name(Key::A),
             text: format!("+ {}", name(Key::B)),
             secondary: Key::Mask.param().spoken(params.get(Key::Mask)),
         },
-        "register" => Words {
+        LabId::Register => Words {
             strong: name(Key::A),
-            text: if params.text(Key::WarpMode) == "join" {
+            text: if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
                 format!("→ {}", name(Key::B))
             } else {
                 let also = session.also_blended();
@@ -399,7 +401,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             },
             secondary: Key::WarpWith.param().spoken(params.get(Key::WarpWith)),
         },
-        "graph" => {
+        LabId::Graph => {
             let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
             let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
             let name = |(walk, clip): (&Walk, usize)| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
@@ -410,7 +412,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 secondary: format!("seed {}", params.number(Key::Seed)),
             }
         }
-        "match" => Words {
+        LabId::Match => Words {
             strong: if session.is_driven() {
                 text::LIVE.to_owned()
             } else {
@@ -419,12 +421,12 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             text: String::new(),
             secondary: Key::Hysteresis.param().spoken(params.get(Key::Hysteresis)),
         },
-        "make" => Words {
-            strong: params.text(Key::Gait).to_owned(),
+        LabId::Make => Words {
+            strong: params.choice::<choices::MadeAction>().word().to_owned(),
             text: String::new(),
             secondary: String::new(),
         },
-        _ => Words {
+        LabId::View => Words {
             strong: name(Key::A),
             text: String::new(),
             secondary: String::new(),
@@ -452,11 +454,11 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
     );
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
-        let follows = params.text(Key::Follow) != "off";
+        let follows = params.choice::<choices::Follow>() != choices::Follow::Off;
         if kit::button_ui(Button::icon_only(Icon::Follow, text::FOLLOW).quiet().selected(follows), ui).clicked() {
             out.set_once(Key::Follow, Value::Choice(if follows { "off" } else { "result" }));
         }
-        let top = params.text(Key::Camera) == "top";
+        let top = params.choice::<choices::Camera>() == choices::Camera::Top;
         if kit::button_ui(Button::icon_only(Icon::Top, text::TOP_VIEW).quiet().selected(top), ui).clicked() {
             out.set_once(Key::Camera, Value::Choice(if top { "orbit" } else { "top" }));
         }
@@ -518,7 +520,7 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
         };
         nearer = keys.nearer;
     }
-    let from_above = params.text(Key::Camera) == "top";
+    let from_above = params.choice::<choices::Camera>() == choices::Camera::Top;
     if drag != Vec2::ZERO && (panning || from_above) {
         values.extend(pan(session, drag, response.rect));
     } else if drag != Vec2::ZERO {
@@ -650,7 +652,7 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
     let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
-        (Key::Follow, Value::Choice("off")),
+        (Key::Follow, choices::Follow::Off.into()),
         (
             Key::CameraDistance,
             Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0)),

@@ -7,8 +7,9 @@ use eframe::egui::Rect;
 use glam::DVec2;
 use segue::scene::{Camera, PathMarks};
 use segue_motion::graph::Place;
+use segue_session::LabId;
 use segue_session::export::ExportOptions;
-use segue_session::{Key, Session, Storing};
+use segue_session::{Session, Storing};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +162,7 @@ impl Default for UiState {
 impl UiState {
     /// What is to be seen on the stage of the hand that works on it.
     pub(crate) fn path_marks(&self, session: &Session) -> PathMarks {
-        let is_open = session.params().text(Key::Lab) == "path";
+        let is_open = session.params().lab() == LabId::Path;
         let drawn = self.drawing.clone().unwrap_or_default();
         PathMarks {
             handles: is_open && drawn.is_empty(),

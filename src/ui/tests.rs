@@ -9,6 +9,8 @@ use egui_kittest::{
 };
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue_formats::{FileKind, ImportOptions};
+use segue_session::choices;
+use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value};
@@ -170,7 +172,7 @@ fn the_stage_has_its_own_colours_and_rows() {
             harness.run();
             harness.get_by_label("limbs").click();
             harness.run();
-            assert_eq!(harness.state().session.params().text(Key::Look), "limbs");
+            assert_eq!(harness.state().session.params().choice::<choices::Look>().word(), "limbs");
         }
         picture(name, &mut harness);
     }
@@ -551,7 +553,7 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
     // The keys follow the tabs.
     harness.key_press(Keyboard::Num5);
     harness.run();
-    assert_eq!(harness.state().session.params().text(Key::Lab), "speed");
+    assert_eq!(harness.state().session.params().lab().word(), "speed");
 }
 
 #[test]
@@ -588,7 +590,13 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
     press("Mask", &mut harness);
     press("left arm", &mut harness);
     let params = harness.state().session.params();
-    assert_eq!((params.text(Key::LayerMode), params.text(Key::Mask)), ("additive", "left_arm"));
+    assert_eq!(
+        (
+            params.choice::<choices::LayerMode>().word(),
+            params.choice::<choices::Mask>().word()
+        ),
+        ("additive", "left_arm")
+    );
     harness.get_by_label("first frame");
 }
 
@@ -598,12 +606,12 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     assert!(harness.query_by_label(text::RIGHT_AND_WRONG).is_none());
     press("Break it", &mut harness);
     press("Euler angles mixed", &mut harness);
-    harness.get_by_label(text::mistake("euler"));
+    harness.get_by_label(text::mistake(Mistake::Euler));
     picture("break-desk-dark", &mut harness);
     press(text::RIGHT_AND_WRONG, &mut harness);
     assert_eq!(harness.state().session.panes().len(), 2);
     assert_eq!(harness.state().session.params().text(Key::Compare), "mistake:none,euler");
-    harness.get_by_label(text::mistake("euler"));
+    harness.get_by_label(text::mistake(Mistake::Euler));
     picture("break-compare-dark", &mut harness);
     press(text::RIGHT_AND_WRONG, &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
@@ -613,16 +621,13 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     let dissolve = self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
     dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
     let turned = self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
-    turned.get_by_label(text::mistake("atan"));
+    turned.get_by_label(text::mistake(Mistake::Atan));
 }
 
 #[test]
 fn every_mistake_has_its_sentence() {
-    let Kind::Choice(mistakes) = Key::Mistake.param().kind else {
-        panic!("mistakes are a choice")
-    };
-    for mistake in mistakes {
-        assert_eq!(text::mistake(mistake.key).is_empty(), mistake.key == "none", "{}", mistake.key);
+    for &mistake in Mistake::ALL {
+        assert_eq!(text::mistake(mistake).is_empty(), mistake == Mistake::None, "{mistake:?}");
     }
 }
 
@@ -735,7 +740,7 @@ fn choices_side_by_side_have_a_row_each() {
     press(text::PANE_LESS, &mut harness);
     press("One pane", &mut harness);
     assert_eq!(compare(&harness), "");
-    assert_eq!(harness.state().session.params().text(Key::WeightLaw), "smooth");
+    assert_eq!(harness.state().session.params().choice::<choices::WeightLaw>().word(), "smooth");
 }
 
 #[test]
@@ -758,7 +763,7 @@ fn every_lab_has_a_key() {
     for (lab, key) in labs.iter().zip(shortcuts::LAB_KEYS).rev() {
         harness.key_press(key);
         harness.step();
-        assert_eq!(harness.state().session.params().text(Key::Lab), lab.key);
+        assert_eq!(harness.state().session.params().lab().word(), lab.key);
     }
 }
 

@@ -3,6 +3,7 @@
 use segue_motion::gait::GaitFacts;
 use segue_motion::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue_motion::path::HardTurn;
+use segue_session::choices::{Hysteresis, LoopMethod, Mistake, PathKeep};
 use segue_session::export::ExportFormat;
 use segue_session::{
     Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, MemoryUse, OnPath, Origin, Retargeted, Storing, Trace, Transition,
@@ -379,17 +380,17 @@ pub(crate) const LOOP_SHOOT_OUT: &str = "Exact against classic";
 pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 
 /// What a way to close a loop does.
-pub(crate) fn loop_method(method: &str) -> &'static str {
+pub(crate) fn loop_method(method: LoopMethod) -> &'static str {
     match method {
-        "both" => "Springs from both ends, as they are: what has not died away at the other end stays as a seam.",
-        "crossed" => {
+        LoopMethod::Both => "Springs from both ends, as they are: what has not died away at the other end stays as a seam.",
+        LoopMethod::Crossed => {
             "As with both ends, but the beginning takes the other share of the velocity's difference. With a ratio of 0.5 it is the same."
         }
-        "start" => "A spring at the beginning alone takes all of the difference.",
-        "end" => "A spring at the end alone takes all of the difference.",
-        "linear" => "Evenly over the whole cycle: the pose closes, its velocity does not.",
-        "cubic" => "A cubic over the whole cycle: pose and velocity close, and every pose bends a little.",
-        _ => "Springs from both ends, solved so that pose and velocity close exactly.",
+        LoopMethod::Start => "A spring at the beginning alone takes all of the difference.",
+        LoopMethod::End => "A spring at the end alone takes all of the difference.",
+        LoopMethod::Linear => "Evenly over the whole cycle: the pose closes, its velocity does not.",
+        LoopMethod::Cubic => "A cubic over the whole cycle: pose and velocity close, and every pose bends a little.",
+        LoopMethod::Exact => "Springs from both ends, solved so that pose and velocity close exactly.",
     }
 }
 
@@ -550,11 +551,11 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> St
 }
 
 /// What stays when a path becomes longer or shorter.
-pub(crate) fn path_keep(word: &str) -> &'static str {
+pub(crate) fn path_keep(word: PathKeep) -> &'static str {
     match word {
-        "duration" => "It takes the whole path in the time that it took before: faster on a longer one, and feet slide.",
-        "whole" => "It takes the whole path at its speed: a longer one takes longer, with longer strides.",
-        _ => "Speed and strides stay: on a longer path it does not come to the end, on a closed one it goes round.",
+        PathKeep::Duration => "It takes the whole path in the time that it took before: faster on a longer one, and feet slide.",
+        PathKeep::Whole => "It takes the whole path at its speed: a longer one takes longer, with longer strides.",
+        PathKeep::Speed => "Speed and strides stay: on a longer path it does not come to the end, on a closed one it goes round.",
     }
 }
 
@@ -613,22 +614,24 @@ pub(crate) fn companion_leaves(name: &str) -> String {
 }
 
 /// What the student will see of a mistake of the Transition lab; empty for none.
-pub(crate) fn mistake(key: &str) -> &'static str {
+pub(crate) fn mistake(key: Mistake) -> &'static str {
     match key {
-        "hemisphere" => {
+        Mistake::Hemisphere => {
             "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
         }
-        "euler" => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
-        "degrees" => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
-        "atan" => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
-        "transform_degrees" => "B goes off in a direction of its own: its turn in degrees was taken for radians.",
-        "facing" => {
+        Mistake::Euler => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
+        Mistake::Degrees => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
+        Mistake::Atan => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
+        Mistake::TransformDegrees => "B goes off in a direction of its own: its turn in degrees was taken for radians.",
+        Mistake::Facing => {
             "B is turned to wherever the hips happen to tilt: the root's Y axis points up, and its shadow on the ground is no facing."
         }
-        "alignment" => "The character flies to where B's file has it: nobody laid B on A.",
-        "velocity" => "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small.",
-        "world_root" => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
-        _ => "",
+        Mistake::Alignment => "The character flies to where B's file has it: nobody laid B on A.",
+        Mistake::Velocity => {
+            "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small."
+        }
+        Mistake::WorldRoot => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
+        Mistake::None => "",
     }
 }
 /// Of `velocity` where the method is a dissolve, which has no other velocity.
@@ -967,13 +970,13 @@ pub(crate) fn driven_for(secs: f64) -> String {
 }
 
 /// What a way to hold on does.
-pub(crate) fn hysteresis(word: &str) -> &'static str {
+pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
     match word {
-        "none" => "The best frame is taken, however little better it is: many jumps.",
-        "time" => "After a jump it stays for a while, whatever comes.",
-        "votes" => "Three searches in a row must want to go.",
-        "clip_votes" => "Three searches in a row must want to go to another clip; within its clip it jumps at once.",
-        _ => "Going on counts as better than it is.",
+        Hysteresis::None => "The best frame is taken, however little better it is: many jumps.",
+        Hysteresis::Time => "After a jump it stays for a while, whatever comes.",
+        Hysteresis::Votes => "Three searches in a row must want to go.",
+        Hysteresis::ClipVotes => "Three searches in a row must want to go to another clip; within its clip it jumps at once.",
+        Hysteresis::Bias => "Going on counts as better than it is.",
     }
 }
 

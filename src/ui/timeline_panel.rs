@@ -10,6 +10,8 @@ use super::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, RectAlign, Ui};
 use segue_motion::clip::joint_curve;
 use segue_motion::skeleton::{Role, Side};
+use segue_session::LabId;
+use segue_session::choices;
 use segue_session::{
     Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
 };
@@ -19,7 +21,7 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(crate) struct CurveCache {
     panes: Vec<(String, Arc<Outcome>)>,
-    what: (String, String),
+    what: (String, Option<choices::Curve>),
     lines: Vec<Curve>,
 }
 
@@ -57,9 +59,9 @@ pub(crate) fn timeline_panel_ui(
         return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
     let clip = &outcome.motion.clip;
-    let (joint, quantity) = (params.text(Key::Joint), params.text(Key::Curve));
+    let (joint, quantity) = (params.text(Key::Joint), params.choice::<choices::Curve>());
     let unit = unit_of(quantity);
-    let caption = format!("{joint} · {} {unit}", label_of(quantity));
+    let caption = format!("{joint} · {} {unit}", quantity.label());
     let playhead = Playhead {
         secs: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
@@ -109,23 +111,23 @@ pub(crate) fn timeline_panel_ui(
         }),
         None => names,
     };
-    let made = made_from.text(Key::Lab) == "make";
+    let made = made_from.lab() == LabId::Make;
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered.is_some() {
         // The feet of both say more than their bars.
         Vec::new()
     } else if made {
-        vec![whole_track(Part::Result, made_from.text(Key::Gait), outcome)]
+        vec![whole_track(Part::Result, made_from.choice::<choices::MadeAction>().word(), outcome)]
     } else if outcome.cycle.is_some() {
         vec![whole_track(Part::Result, &round, outcome)]
     } else {
         tracks(outcome, &names)
     };
     let curves = Curves {
-        title: label_of(quantity),
+        title: quantity.label(),
         unit,
         decimals: 2,
-        include: (quantity != "turn").then_some(0.0),
+        include: (quantity != choices::Curve::Turn).then_some(0.0),
         series: &series,
     };
     let mut seams = seams(outcome, palette.accent);
@@ -153,7 +155,7 @@ pub(crate) fn timeline_panel_ui(
 
 fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
     let (params, fps) = (session.params(), outcome.motion.clip.fps());
-    let in_transition = params.text(Key::Lab) == "transition";
+    let in_transition = params.lab() == LabId::Transition;
     let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
     // The flags do not pass each other.
     let (from, to) = (
@@ -191,12 +193,16 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
             let (start, end) = outcome.transition.map_or((0.0, 0.0), |found| (found.start_secs, found.end_secs));
             let wanted = secs - start;
             // What sets how long it takes depends on the method.
-            let (key, value) = match params.text(Key::Method) {
+            let (key, value) = match params.choice::<choices::TransitionMethod>() {
                 _ if !in_transition => (Key::BlendWindow, wanted * fps),
-                "cubic" | "quintic" | "dead" => (Key::BlendTime, wanted),
-                "inertialize" => (Key::HalfLife, params.number(Key::HalfLife) * wanted / (end - start).max(1.0 / fps)),
-                "cut" => return,
-                _ => (Key::BlendWindow, wanted * fps),
+                choices::TransitionMethod::Cubic | choices::TransitionMethod::Quintic | choices::TransitionMethod::Dead => {
+                    (Key::BlendTime, wanted)
+                }
+                choices::TransitionMethod::Inertialize => {
+                    (Key::HalfLife, params.number(Key::HalfLife) * wanted / (end - start).max(1.0 / fps))
+                }
+                choices::TransitionMethod::Cut => return,
+                choices::TransitionMethod::Smooth | choices::TransitionMethod::Linear => (Key::BlendWindow, wanted * fps),
             };
             if let Kind::Number { min, max, .. } = key.param().kind {
                 out.set(key, Value::Number(value.clamp(min, max)));
@@ -340,15 +346,15 @@ impl CurveOf {
 }
 
 impl CurveCache {
-    fn update(&mut self, main: &Arc<Outcome>, panes: &[(String, &Arc<Outcome>)], joint: &str, quantity: &str) {
+    fn update(&mut self, main: &Arc<Outcome>, panes: &[(String, &Arc<Outcome>)], joint: &str, quantity: choices::Curve) {
         let shown = panes.iter().map(|(name, outcome)| (name, *outcome));
         let known = self.panes.iter().map(|(name, outcome)| (name, outcome));
         let same = shown.len() == known.len() && shown.zip(known).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(a.1, b.1));
-        if same && self.what.0 == joint && self.what.1 == quantity {
+        if same && self.what.0 == joint && self.what.1 == Some(quantity) {
             return;
         }
         self.panes = panes.iter().map(|(name, outcome)| (name.clone(), Arc::clone(outcome))).collect();
-        self.what = (joint.to_owned(), quantity.to_owned());
+        self.what = (joint.to_owned(), Some(quantity));
         self.lines.clear();
         let end = main.duration_secs();
         for source in &main.sources {
@@ -380,7 +386,7 @@ impl CurveCache {
     }
 }
 
-fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> Vec<[f64; 2]> {
+fn curve(motion: &Motion, joint: &str, quantity: choices::Curve, starts_at_secs: f64) -> Vec<[f64; 2]> {
     let Some(joint) = joint_of(motion, joint) else { return Vec::new() };
     let values = joint_curve(&motion.clip, joint, curve_kind(quantity));
     let stride = values.len().div_ceil(CURVE_POINTS).max(1);
@@ -394,7 +400,7 @@ fn curve(motion: &Motion, joint: &str, quantity: &str, starts_at_secs: f64) -> V
 }
 
 /// The curve of a source in the result's time: what it has in the frames that the result is made of.
-fn registered_curve(source: &Source, registered: &Registered, joint: &str, quantity: &str) -> Vec<[f64; 2]> {
+fn registered_curve(source: &Source, registered: &Registered, joint: &str, quantity: choices::Curve) -> Vec<[f64; 2]> {
     let Some(joint) = joint_of(&source.motion, joint) else {
         return Vec::new();
     };
@@ -411,23 +417,13 @@ fn registered_curve(source: &Source, registered: &Registered, joint: &str, quant
         .collect()
 }
 
-fn unit_of(quantity: &str) -> &'static str {
+fn unit_of(quantity: choices::Curve) -> &'static str {
     match quantity {
-        "height" => "m",
-        "angle" => "°",
-        "turn" => "°/s",
-        _ => "m/s",
+        choices::Curve::Height => "m",
+        choices::Curve::Angle => "°",
+        choices::Curve::Turn => "°/s",
+        choices::Curve::Speed => "m/s",
     }
-}
-
-fn label_of(quantity: &str) -> &'static str {
-    let Kind::Choice(choices) = Key::Curve.param().kind else {
-        return "";
-    };
-    choices
-        .iter()
-        .find(|choice| choice.key == quantity)
-        .map_or("", |choice| choice.label)
 }
 
 /// Which joint and what of it: a menu on the caption.
@@ -483,7 +479,7 @@ mod tests {
         while session.work() {}
         let panes = named_outcomes(&session);
         let mut cache = CurveCache::default();
-        cache.update(session.main_outcome().unwrap(), &panes, "right foot", "angle");
+        cache.update(session.main_outcome().unwrap(), &panes, "right foot", choices::Curve::Angle);
         let names: Vec<&str> = cache.lines.iter().map(|line| line.of.name()).collect();
         assert_eq!(names, ["A", "B", "inertialize", "dissolve, smooth", "dead blend"]);
         let results = &cache.lines[2..];

@@ -13,6 +13,7 @@ use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
+use segue_session::LabId;
 use segue_session::{Command, Compare, Key, Kind, Session, Value};
 
 /// The whole bar.
@@ -45,10 +46,7 @@ fn logo_ui(layout: Layout, ui: &mut Ui) {
 fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
     let Kind::Choice(labs) = Key::Lab.param().kind else { return None };
     let options: Vec<(&'static str, &str)> = labs.iter().map(|lab| (lab.key, lab.label)).collect();
-    let chosen = labs
-        .iter()
-        .find(|lab| lab.key == session.params().text(Key::Lab))
-        .map_or("", |lab| lab.key);
+    let chosen = session.params().lab().word();
     kit::tabs_ui(
         [Key::Lab.param().label, text::MORE_LABS],
         chosen,
@@ -169,18 +167,18 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
         out.set_once(Key::Compare, Value::Text(String::new()));
         return;
     }
-    let key = match session.params().text(Key::Lab) {
-        "speed" => return compare_speeds(session, out),
-        "loop" => return compare_loops(session, out),
-        "register" => return compare_warps(session, out),
-        "path" => return compare_points(session, out),
-        "graph" => return compare_windows(out),
-        "match" => return compare_hysteresis(session, out),
-        "view" => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
-        "make" => made_number(session),
-        "transition" => Key::HalfLife,
-        "layers" => Key::LayerWeight,
-        _ => Key::BlendWindow,
+    let key = match session.params().lab() {
+        LabId::Speed => return compare_speeds(session, out),
+        LabId::Loop => return compare_loops(session, out),
+        LabId::Register => return compare_warps(session, out),
+        LabId::Path => return compare_points(session, out),
+        LabId::Graph => return compare_windows(out),
+        LabId::Match => return compare_hysteresis(session, out),
+        LabId::View => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
+        LabId::Make => made_number(session),
+        LabId::Transition => Key::HalfLife,
+        LabId::Layers => Key::LayerWeight,
+        LabId::Blend => Key::BlendWindow,
     };
     out.commands.push(Command::Compare(key));
 }
@@ -199,7 +197,7 @@ pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
     let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
     let compare = Compare { key: Key::A, values }.to_string();
     out.commands.push(Command::Set(vec![
-        (Key::Lab, Value::Choice("view")),
+        (Key::Lab, LabId::View.into()),
         (Key::Compare, Value::Text(compare)),
     ]));
     out.commands.push(Command::Settle);

@@ -6,6 +6,7 @@ use super::link;
 use super::params::{Key, Value};
 use super::recipe::{graph_of, write_ids};
 use super::samples::SUBJECT_16;
+use crate::LabId;
 
 /// A choice of clips for the whole lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +23,8 @@ impl Session {
     /// What is to be set so that the open lab works with these clips; `None` where it has nothing to choose, or there are no such clips.
     #[must_use]
     pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
-        let lab = self.params().text(Key::Lab);
-        let takes_list = matches!(lab, "graph" | "match");
+        let lab = self.params().lab();
+        let takes_list = matches!(lab, LabId::Graph | LabId::Match);
         match set {
             ClipSet::Captured => captured(lab),
             ClipSet::Made => captured(lab).map(|values| {
@@ -52,23 +53,23 @@ impl Session {
 /// The Graph lab takes no more.
 const MOST_OWN: usize = 64;
 
-fn captured(lab: &str) -> Option<Vec<(Key, Value)>> {
+fn captured(lab: LabId) -> Option<Vec<(Key, Value)>> {
     let query = match lab {
-        "graph" | "match" => {
+        LabId::Graph | LabId::Match => {
             let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
             return Some(listed(lab, &ids));
         }
-        "loop" | "path" => "a=cmu16_walk",
-        "speed" => "a=cmu16_walk&b=cmu16_run",
-        "register" => "a=cmu16_walk&b=cmu16_fast_walk",
+        LabId::Loop | LabId::Path => "a=cmu16_walk",
+        LabId::Speed => "a=cmu16_walk&b=cmu16_run",
+        LabId::Register => "a=cmu16_walk&b=cmu16_fast_walk",
         _ => return None,
     };
     Some(link::read(query).values)
 }
 
 /// A list of clips in a lab that takes one.
-fn listed(lab: &str, ids: &[String]) -> Vec<(Key, Value)> {
-    if lab == "graph" {
+fn listed(lab: LabId, ids: &[String]) -> Vec<(Key, Value)> {
+    if lab == LabId::Graph {
         graph_of(ids)
     } else {
         vec![(Key::MatchClips, Value::Text(write_ids(ids)))]

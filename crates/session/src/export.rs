@@ -162,7 +162,7 @@ pub fn plotted_of_result(outcome: &Outcome, params: &Params) -> Vec<Column> {
 
 fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
     let name = params.text(Key::Joint);
-    let kind = curve_kind(params.text(Key::Curve));
+    let kind = curve_kind(params.choice());
     let quantity = match kind {
         CurveKind::Speed => "speed_m_per_s",
         CurveKind::Height => "height_m",

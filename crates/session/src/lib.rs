@@ -57,6 +57,7 @@
 //! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it
 //! names a file, with the first digits of its SHA-256, and who opens the link must have that file.
 
+pub mod choices;
 mod clip_sets;
 mod command;
 mod compare;
@@ -79,6 +80,7 @@ mod saved;
 pub mod transport;
 mod undo;
 
+pub use choices::{LabId, Selected};
 pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};

@@ -1,3 +1,4 @@
+use crate::choices::Curve;
 use crate::params::{Key, Params, Value};
 use segue_motion::clip::{Clip, ContactOptions, Contacts, CurveKind, character_frames, estimate_ground};
 use segue_motion::math::{Planar, wrap_angle};
@@ -194,12 +195,12 @@ pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
 
 /// The curve that a word of the parameter `curve` means.
 #[must_use]
-pub fn curve_kind(word: &str) -> CurveKind {
-    match word {
-        "height" => CurveKind::Height,
-        "angle" => CurveKind::Angle,
-        "turn" => CurveKind::AngularSpeed,
-        _ => CurveKind::Speed,
+pub fn curve_kind(curve: Curve) -> CurveKind {
+    match curve {
+        Curve::Height => CurveKind::Height,
+        Curve::Angle => CurveKind::Angle,
+        Curve::Turn => CurveKind::AngularSpeed,
+        Curve::Speed => CurveKind::Speed,
     }
 }
 

@@ -1,5 +1,11 @@
 //! The one table of parameters. Sliders, the link, the page's API, compare, undo and the README table are made from it.
 
+use super::choices::{
+    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn, Hysteresis, JumpMethod, LabId, LayerFit,
+    LayerMode, LayerReference, Look, LoopMethod, MadeAction, Mask, MatchBy, Mistake, Normalisation, PageLanguage, PageTheme, PathFacing,
+    PathKeep, PathOffset, PathSpline, RootMotion, Scenario, SearchBy, Selected, Skinning, Transform, TransitionMethod, WalkMethod,
+    WarpMode, WarpWith, WeightLaw,
+};
 use super::compare::Compare;
 use super::outside::short;
 use serde_json::Value as Json;
@@ -63,10 +69,6 @@ pub struct Choice {
     pub key: &'static str,
     /// The word on screen.
     pub label: &'static str,
-}
-
-const fn choice(key: &'static str, label: &'static str) -> Choice {
-    Choice { key, label }
 }
 
 /// What values a parameter takes.
@@ -133,6 +135,23 @@ pub enum Value {
     Text(String),
 }
 
+impl Value {
+    /// Returns a choice as its type; `None` for anything else.
+    #[must_use]
+    pub fn choice<C: Selected>(&self) -> Option<C> {
+        match self {
+            Self::Choice(word) => C::from_word(word),
+            _ => None,
+        }
+    }
+}
+
+impl<C: Selected> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.word())
+    }
+}
+
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
@@ -159,7 +178,8 @@ enum Start {
     Auto,
     Number(f64),
     Switch(bool),
-    Word(&'static str),
+    Choice(&'static str),
+    Text(&'static str),
 }
 
 macro_rules! parameters {
@@ -204,175 +224,17 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
     }
 }
 
-const LABS: &[Choice] = &[
-    choice("view", "View"),
-    choice("make", "Make"),
-    choice("blend", "Blend"),
-    choice("transition", "Transition"),
-    choice("speed", "Speed"),
-    choice("loop", "Loop"),
-    choice("layers", "Layers"),
-    choice("register", "Register"),
-    choice("path", "Path"),
-    choice("graph", "Graph"),
-    choice("match", "Match"),
-];
-const WEIGHT_LAWS: &[Choice] = &[
-    choice("smooth", "smooth"),
-    choice("linear", "linear"),
-    choice("smoother", "smoother"),
-];
-const METHODS: &[Choice] = &[
-    choice("inertialize", "inertialize"),
-    choice("cubic", "cubic"),
-    choice("quintic", "quintic"),
-    choice("dead", "dead blend"),
-    choice("smooth", "dissolve, smooth"),
-    choice("linear", "dissolve, linear"),
-    choice("cut", "cut"),
-];
-const LOOP_METHODS: &[Choice] = &[
-    choice("exact", "exact"),
-    choice("both", "both ends"),
-    choice("crossed", "both ends, crossed"),
-    choice("start", "start only"),
-    choice("end", "end only"),
-    choice("linear", "linear"),
-    choice("cubic", "cubic"),
-];
-const MATCHES: &[Choice] = &[choice("pose", "pose"), choice("window", "window")];
-const MISTAKES: &[Choice] = &[
-    choice("none", "no mistake"),
-    choice("hemisphere", "no hemisphere check"),
-    choice("euler", "Euler angles mixed"),
-    choice("degrees", "degrees for radians"),
-    choice("atan", "atan for atan2"),
-    choice("transform_degrees", "transform in degrees"),
-    choice("facing", "wrong facing axis"),
-    choice("alignment", "no alignment"),
-    choice("velocity", "velocity divided twice"),
-    choice("world_root", "root mixed in the world"),
-];
-const LAYER_MODES: &[Choice] = &[choice("partial", "partial"), choice("additive", "additive")];
-const MASKS: &[Choice] = &[
-    choice("upper", "upper body"),
-    choice("arms", "both arms"),
-    choice("left_arm", "left arm"),
-    choice("right_arm", "right arm"),
-    choice("head", "head"),
-    choice("spine", "spine"),
-    choice("legs", "hips and legs"),
-    choice("whole", "whole body"),
-];
-const LAYER_FITS: &[Choice] = &[choice("step", "in step"), choice("loop", "loop"), choice("hold", "hold")];
-const REFERENCES: &[Choice] = &[choice("mean", "mean"), choice("first", "first frame"), choice("rest", "rest pose")];
-const WARPS: &[Choice] = &[choice("registered", "registered"), choice("plain", "plain")];
-const WARP_MODES: &[Choice] = &[choice("blend", "blend"), choice("join", "join")];
-const ENDS: &[Choice] = &[choice("free", "free"), choice("corner", "corner")];
-const KEEPS: &[Choice] = &[
-    choice("speed", "speed"),
-    choice("duration", "duration"),
-    choice("whole", "whole way"),
-];
-const SPLINES: &[Choice] = &[choice("clamped", "clamped"), choice("uniform", "uniform")];
-const OFFSETS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it was")];
-const ROOT_MOTIONS: &[Choice] = &[
-    choice("world", "recorded"),
-    choice("in_place", "in place"),
-    choice("residual", "residual"),
-];
-const FACINGS: &[Choice] = &[choice("path", "with the path"), choice("world", "as it did")];
-const CONSTRUCTIONS: &[Choice] = &[choice("segments", "segments"), choice("minima", "local minima")];
-const EDGE_WEIGHTS: &[Choice] = &[
-    choice("inverse", "1 / d"),
-    choice("exponential", "exp(−d)"),
-    choice("uniform", "uniform"),
-    choice("proportional", "d, wrong"),
-];
-const GOING_ON: &[Choice] = &[choice("share", "a share"), choice("constant", "a constant weight")];
-const WALK_METHODS: &[Choice] = &[choice("dissolve", "dissolve"), choice("inertialize", "inertialize")];
-const ALIGNMENTS: &[Choice] = &[choice("window", "whole window"), choice("first", "first posture")];
-const TRANSFORMS: &[Choice] = &[
-    choice("whole", "whole clip"),
-    choice("first", "first frame only"),
-    choice("teleport", "first frame, then as recorded"),
-];
-const ATANS: &[Choice] = &[
-    choice("atan2", "atan2"),
-    choice("atan", "atan, wrong"),
-    choice("degrees", "degrees, wrong"),
-    choice("facing", "rotation · Y, wrong"),
-];
-const SCENARIOS: &[Choice] = &[
-    choice("own", "my own"),
-    choice("straight", "walk straight"),
-    choice("left", "90° to the left"),
-    choice("right", "90° to the right"),
-    choice("spin", "180° spin"),
-    choice("start_stop", "start and stop"),
-    choice("run", "walk to run"),
-    choice("eight", "figure eight"),
-];
-const HYSTERESES: &[Choice] = &[
-    choice("none", "none"),
-    choice("bias", "bias"),
-    choice("time", "time"),
-    choice("votes", "votes"),
-    choice("clip_votes", "votes for another clip"),
-];
-const NORMALISATIONS: &[Choice] = &[choice("block", "by block"), choice("dimension", "by dimension")];
-const SEARCHES: &[Choice] = &[choice("boxes", "boxes"), choice("tree", "k-d tree"), choice("scan", "scan")];
-const JUMPS: &[Choice] = &[choice("inertialize", "inertialize"), choice("dead", "dead blend")];
-const GAITS: &[Choice] = &[
-    choice("walk", "walk"),
-    choice("run", "run"),
-    choice("idle", "idle"),
-    choice("start", "start"),
-    choice("stop", "stop"),
-    choice("spin", "spin"),
-    choice("jump", "jump"),
-];
-const LOOKS: &[Choice] = &[
-    choice("body", "body"),
-    choice("limbs", "limbs"),
-    choice("bones", "bones"),
-    choice("both", "both"),
-];
-const SKINNINGS: &[Choice] = &[choice("dual", "dual quaternions"), choice("linear", "linear blend")];
-const STAGES: &[Choice] = &[
-    choice("auto", "auto"),
-    choice("dark", "dark"),
-    choice("light", "light"),
-    choice("paper", "paper"),
-];
-const FOLLOW: &[Choice] = &[
-    choice("off", "off"),
-    choice("result", "result"),
-    choice("a", "A"),
-    choice("b", "B"),
-    choice("other", "one of the others"),
-];
-const CAMERAS: &[Choice] = &[choice("orbit", "orbit"), choice("top", "top")];
-const CURVES: &[Choice] = &[
-    choice("speed", "speed"),
-    choice("height", "height"),
-    choice("angle", "angle"),
-    choice("turn", "turn rate"),
-];
-const THEMES: &[Choice] = &[choice("auto", "auto"), choice("dark", "dark"), choice("light", "light")];
-const LANGUAGES: &[Choice] = &[choice("auto", "auto"), choice("en", "English"), choice("zh-Hant", "繁體中文")];
-
 parameters! {
-    Lab "lab" "Lab" Page Kind::Choice(LABS), Start::Word("blend"), "", "Which experiment is open.";
-    A "a" "A" Page Kind::Clip, Start::Word("walk"), "", "The clip that plays first.";
-    B "b" "B" Page Kind::Clip, Start::Word("run"), "", "The clip that follows.";
+    Lab "lab" "Lab" Page Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open.";
+    A "a" "A" Page Kind::Clip, Start::Text("walk"), "", "The clip that plays first.";
+    B "b" "B" Page Kind::Clip, Start::Text("run"), "", "The clip that follows.";
 
     BlendWindow "blend_window" "Blend window" Blend number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
     LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half.";
     EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
-    WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WEIGHT_LAWS), Start::Word("smooth"), "", "How the weight moves from A to B inside the window.";
+    WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
-    AlignBy "align_by" "Align by" Blend Kind::Choice(ALIGNMENTS), Start::Word("window"), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
+    AlignBy "align_by" "Align by" Blend Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
     RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
     FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
@@ -383,13 +245,13 @@ parameters! {
     ContactHeight "contact_height" "Contact height" Blend number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
     ContactSpeed "contact_speed" "Contact speed" Blend number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";
 
-    Method "method" "Method" Transition Kind::Choice(METHODS), Start::Word("inertialize"), "", "How A goes over into B.";
+    Method "method" "Method" Transition Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "How A goes over into B.";
     HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
     BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
     ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Transition logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
     MixFrameA "mix_frame_a" "Leave A at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half.";
     MixFrameB "mix_frame_b" "Enter B at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half.";
-    MatchBy "match_by" "Match by" Transition Kind::Choice(MATCHES), Start::Word("pose"), "", "What the best match compares: two poses, or windows of the whole body.";
+    MatchBy "match_by" "Match by" Transition Kind::Choice(MatchBy::CHOICES), Start::Choice(MatchBy::Pose.word()), "", "What the best match compares: two poses, or windows of the whole body.";
     MatchPosition "match_position" "Weight of positions" Transition number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
     MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
     MatchVelocity "match_velocity" "Weight of velocities" Transition number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
@@ -399,74 +261,74 @@ parameters! {
 
     LoopFrom "loop_from" "Cycle from" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A.";
     LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
-    LoopMethod "loop_method" "Method" Loop Kind::Choice(LOOP_METHODS), Start::Word("exact"), "", "How the difference between the ends is spread over the cycle.";
+    LoopMethod "loop_method" "Method" Loop Kind::Choice(LoopMethod::CHOICES), Start::Choice(LoopMethod::Exact.word()), "", "How the difference between the ends is spread over the cycle.";
     LoopRatio "loop_ratio" "Ratio" Loop number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
-    Mistake "mistake" "Break it" Transition Kind::Choice(MISTAKES), Start::Word("none"), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
+    Mistake "mistake" "Break it" Transition Kind::Choice(Mistake::CHOICES), Start::Choice(Mistake::None.word()), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
 
-    LayerMode "layer_mode" "Layer" Layers Kind::Choice(LAYER_MODES), Start::Word("partial"), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
-    Mask "mask" "Mask" Layers Kind::Choice(MASKS), Start::Word("upper"), "", "The part of the body that B moves.";
+    LayerMode "layer_mode" "Layer" Layers Kind::Choice(LayerMode::CHOICES), Start::Choice(LayerMode::Partial.word()), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
+    Mask "mask" "Mask" Layers Kind::Choice(Mask::CHOICES), Start::Choice(Mask::Upper.word()), "", "The part of the body that B moves.";
     LayerWeight "layer_weight" "Weight" Layers number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of B there is inside the mask.";
     Feather "feather" "Feather" Layers number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
-    LayerReference "layer_reference" "Reference" Layers Kind::Choice(REFERENCES), Start::Word("mean"), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
-    LayerFit "layer_fit" "B's time" Layers Kind::Choice(LAYER_FITS), Start::Word("step"), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
+    LayerReference "layer_reference" "Reference" Layers Kind::Choice(LayerReference::CHOICES), Start::Choice(LayerReference::Mean.word()), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
+    LayerFit "layer_fit" "B's time" Layers Kind::Choice(LayerFit::CHOICES), Start::Choice(LayerFit::Step.word()), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
     LayerStart "layer_start" "B begins at" Layers number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
     KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
-    RootMotion "root_motion" "Way over the ground" View Kind::Choice(ROOT_MOTIONS), Start::Word("world"), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
+    RootMotion "root_motion" "Way over the ground" View Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
     PlaceX "place_x" "Starts at x" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
     PlaceZ "place_z" "Starts at z" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
     PlaceHeading "place_heading" "Starts facing" View auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";
 
-    WarpWith "warp_with" "Timewarp" Register Kind::Choice(WARPS), Start::Word("registered"), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
-    WarpMode "warp_mode" "Make" Register Kind::Choice(WARP_MODES), Start::Word("blend"), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
+    WarpWith "warp_with" "Timewarp" Register Kind::Choice(WarpWith::CHOICES), Start::Choice(WarpWith::Registered.word()), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
+    WarpMode "warp_mode" "Make" Register Kind::Choice(WarpMode::CHOICES), Start::Choice(WarpMode::Blend.word()), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
-    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Word(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
-    WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Word(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
+    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
+    WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
     WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
     WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
     RegistrationWindow "registration_window" "Window" Register number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
     SlopeLimit "slope_limit" "Slope limit" Register number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
-    Ends "ends" "Ends" Register Kind::Choice(ENDS), Start::Word("free"), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
+    Ends "ends" "Ends" Register Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
     EndSlack "end_slack" "Left out at most" Register number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
     WarpSmoothing "warp_smoothing" "Smoothing" Register auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
-    Pins "pins" "Pins" Register Kind::Text, Start::Word(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
+    Pins "pins" "Pins" Register Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
 
     ControlPoints "control_points" "Control points" Path number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
     PathSmoothing "path_smoothing" "Smoothing" Path number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
-    PathKeep "keep" "Keep" Path Kind::Choice(KEEPS), Start::Word("speed"), "", "What stays when the path becomes longer or shorter.";
-    PathFacing "path_facing" "Body faces" Path Kind::Choice(FACINGS), Start::Word("path"), "", "Whether the body turns where the path turns, or faces as it did before.";
-    PathOffset "path_offset" "Sway of the hips" Path Kind::Choice(OFFSETS), Start::Word("path"), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
-    PathSpline "path_spline" "Spline" Path Kind::Choice(SPLINES), Start::Word("clamped"), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
-    Path "path" "Path" Path Kind::Text, Start::Word(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
+    PathKeep "keep" "Keep" Path Kind::Choice(PathKeep::CHOICES), Start::Choice(PathKeep::Speed.word()), "", "What stays when the path becomes longer or shorter.";
+    PathFacing "path_facing" "Body faces" Path Kind::Choice(PathFacing::CHOICES), Start::Choice(PathFacing::Path.word()), "", "Whether the body turns where the path turns, or faces as it did before.";
+    PathOffset "path_offset" "Sway of the hips" Path Kind::Choice(PathOffset::CHOICES), Start::Choice(PathOffset::Path.word()), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
+    PathSpline "path_spline" "Spline" Path Kind::Choice(PathSpline::CHOICES), Start::Choice(PathSpline::Clamped.word()), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
+    Path "path" "Path" Path Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
     PathGrid "path_grid" "Snap to grid" Path number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
     PinStart "pin_start" "Pin the start" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
     PinEnd "pin_end" "Pin the end" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
-    Others "others" "Others" Path Kind::Text, Start::Word(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
-    Clips "clips" "Clips" Graph Kind::Text, Start::Word("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
-    Construction "construction" "Construction" Graph Kind::Choice(CONSTRUCTIONS), Start::Word("minima"), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
+    Others "others" "Others" Path Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
+    Clips "clips" "Clips" Graph Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
+    Construction "construction" "Construction" Graph Kind::Choice(Construction::CHOICES), Start::Choice(Construction::Minima.word()), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
     SegmentSize "segment_size" "Segment size" Graph number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
     EdgeThreshold "edge_threshold" "Edge threshold" Graph number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
     MinJump "min_jump" "Shortest jump" Graph number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
     MostWaysOut "most_ways_out" "Ways out at most" Graph logarithmic(1.0, 10_000.0, 1.0), Start::Number(64.0), "", "How many transitions may leave one segment: the closest stay. More of them take longer to build and to choose from.";
-    EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EDGE_WEIGHTS), Start::Word("inverse"), "", "How the distance of a transition makes it more or less probable.";
+    EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EdgeWeight::CHOICES), Start::Choice(EdgeWeight::Inverse.word()), "", "How the distance of a transition makes it more or less probable.";
     EdgeSigma "edge_sigma" "Width σ" Graph logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
     Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
-    GoingOn "going_on" "Going on has" Graph Kind::Choice(GOING_ON), Start::Word("share"), "", "Share: the same chance to stay everywhere. Constant weight: one weight beside those of the transitions, so that the chance to stay falls with every further way out.";
+    GoingOn "going_on" "Going on has" Graph Kind::Choice(GoingOn::CHOICES), Start::Choice(GoingOn::Share.word()), "", "Share: the same chance to stay everywhere. Constant weight: one weight beside those of the transitions, so that the chance to stay falls with every further way out.";
     ContinuityWeight "continuity_weight" "Weight of going on" Graph logarithmic(0.1, 10_000.0, 0.1), Start::Number(1_000.0), "", "What the next segment of the same clip weighs beside the transitions: the higher, the longer a clip is left unbroken.";
     VisitedDiscount "visited_discount" "Worth after a visit" Graph number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
     Prune "prune" "Largest component only" Graph Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
-    WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WALK_METHODS), Start::Word("dissolve"), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
-    Transform "transform" "Transform" Graph Kind::Choice(TRANSFORMS), Start::Word("whole"), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
-    Atan "atan" "Angle of the transform" Graph Kind::Choice(ATANS), Start::Word("atan2"), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
+    WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WalkMethod::CHOICES), Start::Choice(WalkMethod::Dissolve.word()), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
+    Transform "transform" "Transform" Graph Kind::Choice(Transform::CHOICES), Start::Choice(Transform::Whole.word()), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
+    Atan "atan" "Angle of the transform" Graph Kind::Choice(Atan::CHOICES), Start::Choice(Atan::Atan2.word()), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
     WalkSeconds "walk_seconds" "Measured walk" Graph number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
-    GoTo "go_to" "Go to" Graph Kind::Text, Start::Word(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
-    WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Word(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
-    Jump "jump" "Transition" Graph Kind::Text, Start::Word(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
+    GoTo "go_to" "Go to" Graph Kind::Text, Start::Text(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
+    WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Text(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
+    Jump "jump" "Transition" Graph Kind::Text, Start::Text(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
 
-    Scenario "scenario" "Input" Match Kind::Choice(SCENARIOS), Start::Word("own"), "", "Who drives: you, or input that was written down, the same for everybody.";
-    Drive "drive" "Recorded input" Match Kind::Text, Start::Word(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
-    MatchClips "match_clips" "Clips" Match Kind::Text, Start::Word(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
+    Scenario "scenario" "Input" Match Kind::Choice(Scenario::CHOICES), Start::Choice(Scenario::Own.word()), "", "Who drives: you, or input that was written down, the same for everybody.";
+    Drive "drive" "Recorded input" Match Kind::Text, Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
+    MatchClips "match_clips" "Clips" Match Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
     Mirrored "mirrored" "Mirrored copies" Match Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
     MatchCycles "match_cycles" "Cycles go round" Match Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
     WalkSpeed "walk_speed" "Walking speed" Match number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
@@ -480,16 +342,16 @@ parameters! {
     AheadNear "ahead_near" "Look ahead, near" Match number(0.05, 1.0, 0.01), Start::Number(0.33), "s", "The first time at which path and facing are compared.";
     AheadMiddle "ahead_middle" "Look ahead, middle" Match number(0.1, 2.0, 0.01), Start::Number(0.67), "s", "The second.";
     AheadFar "ahead_far" "Look ahead, far" Match number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen, unless the clip is a cycle.";
-    Normalisation "normalisation" "Normalise" Match Kind::Choice(NORMALISATIONS), Start::Word("block"), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
+    Normalisation "normalisation" "Normalise" Match Kind::Choice(Normalisation::CHOICES), Start::Choice(Normalisation::Block.word()), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
     SearchInterval "search_interval" "Search every" Match logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
-    SearchBy "search_by" "Search by" Match Kind::Choice(SEARCHES), Start::Word("boxes"), "", "Three searches that find the same frame: how many frames they look at differs.";
-    Hysteresis "hysteresis" "Hysteresis" Match Kind::Choice(HYSTERESES), Start::Word("bias"), "", "What keeps it from jumping for next to nothing.";
+    SearchBy "search_by" "Search by" Match Kind::Choice(SearchBy::CHOICES), Start::Choice(SearchBy::Boxes.word()), "", "Three searches that find the same frame: how many frames they look at differs.";
+    Hysteresis "hysteresis" "Hysteresis" Match Kind::Choice(Hysteresis::CHOICES), Start::Choice(Hysteresis::Bias.word()), "", "What keeps it from jumping for next to nothing.";
     BiasShare "bias_share" "Bias, share" Match number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
     BiasConstant "bias_constant" "Bias, constant" Match number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
     MinimumTime "minimum_time" "Time between jumps" Match number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
     PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, a frame of another clip must be cheaper by this share.";
-    PreferClip "prefer_clip" "Clip preferred" Match Kind::Text, Start::Word(""), "", "Which clip is preferred by that share while the input is still. Empty: the one that plays.";
-    JumpMethod "jump_method" "Transition" Match Kind::Choice(JUMPS), Start::Word("inertialize"), "", "How a jump is hidden.";
+    PreferClip "prefer_clip" "Clip preferred" Match Kind::Text, Start::Text(""), "", "Which clip is preferred by that share while the input is still. Empty: the one that plays.";
+    JumpMethod "jump_method" "Transition" Match Kind::Choice(JumpMethod::CHOICES), Start::Choice(JumpMethod::Inertialize.word()), "", "How a jump is hidden.";
     JumpHalfLife "jump_half_life" "Half-life" Match logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
     VelocityHalfLife "velocity_half_life" "Velocity half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";
     FacingHalfLife "facing_half_life" "Facing half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.3), "s", "How lazily the facing follows.";
@@ -499,13 +361,13 @@ parameters! {
     ClampDistance "clamp_distance" "Never farther than" Match number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
     ClampTurn "clamp_turn" "Never turned more than" Match number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
     PlantFeet "plant_feet" "Foot lock" Match Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
-    AskTag "ask_tag" "Only frames of" Match Kind::Text, Start::Word("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
-    ForbidTag "forbid_tag" "No frames of" Match Kind::Text, Start::Word("nothing"), "", "Frames must not have this tag.";
-    Tags "tags" "Tags" Match Kind::Text, Start::Word(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
+    AskTag "ask_tag" "Only frames of" Match Kind::Text, Start::Text("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
+    ForbidTag "forbid_tag" "No frames of" Match Kind::Text, Start::Text("nothing"), "", "Frames must not have this tag.";
+    Tags "tags" "Tags" Match Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
     ShownCandidates "shown_candidates" "Candidates shown" Match number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
     Crowd "crowd" "Characters" Match number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
 
-    Gait "gait" "Motion" Make Kind::Choice(GAITS), Start::Word("walk"), "", "What the character does.";
+    Gait "gait" "Motion" Make Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
     TurnRate "turn_rate" "Turn rate" Make number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "How fast the path turns; positive is left.";
     BodyHeight "body_height" "Body height" Make number(1.0, 2.2, 0.01), Start::Number(1.75), "m", "Longer legs take longer and slower strides.";
@@ -515,12 +377,12 @@ parameters! {
     MakeSeconds "make_seconds" "Length" Make number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
     Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
 
-    Stage "stage" "Stage" Stage Kind::Choice(STAGES), Start::Word("auto"), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
-    Look "look" "Character" Stage Kind::Choice(LOOKS), Start::Word("body"), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
-    Character "character" "Figure" Stage Kind::Text, Start::Word(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
+    Stage "stage" "Stage" Stage Kind::Choice(Backdrop::CHOICES), Start::Choice(Backdrop::Auto.word()), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
+    Look "look" "Character" Stage Kind::Choice(Look::CHOICES), Start::Choice(Look::Body.word()), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
+    Character "character" "Figure" Stage Kind::Text, Start::Text(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     FigureHeight "figure_height" "Height" Stage number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
     FigureBuild "figure_build" "Build" Stage number(0.6, 1.6, 0.05), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
-    Skinning "skinning" "Skinning" Stage Kind::Choice(SKINNINGS), Start::Word("dual"), "", "How the skin follows two joints at once: twist a forearm to see the difference.";
+    Skinning "skinning" "Skinning" Stage Kind::Choice(Skinning::CHOICES), Start::Choice(Skinning::Dual.word()), "", "How the skin follows two joints at once: twist a forearm to see the difference.";
     Twist "twist" "Twist of the hands" Stage number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does. Linear blend wraps the wrist like a candy wrapper, dual quaternions keep it round.";
     Axes "axes" "Joint axes" Stage Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
@@ -528,14 +390,14 @@ parameters! {
     GhostStep "ghost_step" "Onion skin step" Stage number(0.05, 1.0, 0.05), Start::Number(0.25), "s", "Time from one onion-skin pose to the next.";
     Trail "trail" "Ground path" Stage Kind::Switch, Start::Switch(true), "", "The way of the hips, drawn on the ground.";
     JointTrail "joint_trail" "Joint trail" Stage Kind::Switch, Start::Switch(false), "", "The way of the chosen joint through the air.";
-    Joint "joint" "Joint" Stage Kind::Text, Start::Word("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
-    Curve "curve" "Curve" Stage Kind::Choice(CURVES), Start::Word("speed"), "", "What of the chosen joint is plotted.";
+    Joint "joint" "Joint" Stage Kind::Text, Start::Text("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
+    Curve "curve" "Curve" Stage Kind::Choice(Curve::CHOICES), Start::Choice(Curve::Speed.word()), "", "What of the chosen joint is plotted.";
     Contacts "contacts" "Foot contacts" Stage Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
-    Follow "follow" "Follow" Camera Kind::Choice(FOLLOW), Start::Word("result"), "", "Which character the camera stays with.";
+    Follow "follow" "Follow" Camera Kind::Choice(Follow::CHOICES), Start::Choice(Follow::Result.word()), "", "Which character the camera stays with.";
     FollowOther "follow_other" "Which other" Camera number(1.0, 6.0, 1.0), Start::Number(1.0), "", "Which of the others the camera stays with, by their order.";
-    FollowJoint "follow_joint" "Follow joint" Camera Kind::Text, Start::Word("hips"), "", "The joint that the camera stays with.";
+    FollowJoint "follow_joint" "Follow joint" Camera Kind::Text, Start::Text("hips"), "", "The joint that the camera stays with.";
     FollowHalfLife "follow_half_life" "Camera half-life" Camera logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
-    Camera "camera" "Camera" Camera Kind::Choice(CAMERAS), Start::Word("orbit"), "", "From the side, or from above.";
+    Camera "camera" "Camera" Camera Kind::Choice(Camera::CHOICES), Start::Choice(Camera::Orbit.word()), "", "From the side, or from above.";
     CameraYaw "camera_yaw" "Camera direction" Camera number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
     CameraPitch "camera_pitch" "Camera pitch" Camera number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
     CameraDistance "camera_distance" "Camera distance" Camera logarithmic(0.5, 60.0, 0.05), Start::Number(4.8), "m", "How far away the camera stands.";
@@ -550,13 +412,13 @@ parameters! {
     In "in" "In mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";
     Out "out" "Out mark" Transport auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing ends.";
 
-    Compare "compare" "Compare" Page Kind::Compare, Start::Word(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10.";
-    Theme "theme" "Theme" Page Kind::Choice(THEMES), Start::Word("auto"), "", "Dark, light, or as the system has it.";
-    Lang "lang" "Language" Page Kind::Choice(LANGUAGES), Start::Word("auto"), "", "English, Traditional Chinese, or as the browser has it. A link that names none leaves every reader their own.";
+    Compare "compare" "Compare" Page Kind::Compare, Start::Text(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10.";
+    Theme "theme" "Theme" Page Kind::Choice(PageTheme::CHOICES), Start::Choice(PageTheme::Auto.word()), "", "Dark, light, or as the system has it.";
+    Lang "lang" "Language" Page Kind::Choice(PageLanguage::CHOICES), Start::Choice(PageLanguage::Auto.word()), "", "English, Traditional Chinese, or as the browser has it. A link that names none leaves every reader their own.";
     Projector "projector" "Projector" Page Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
     Embed "embed" "Embed" Page Kind::Switch, Start::Switch(false), "", "The stage and the parameters that the link names, without the rest.";
-    Lesson "lesson" "Lesson" Page Kind::Text, Start::Word(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
-    Src "src" "Source" Page Kind::Text, Start::Word(""), "", "Addresses of motion files to load, separated by spaces.";
+    Lesson "lesson" "Lesson" Page Kind::Text, Start::Text(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
+    Src "src" "Source" Page Kind::Text, Start::Text(""), "", "Addresses of motion files to load, separated by spaces.";
 }
 
 impl Key {
@@ -634,12 +496,12 @@ impl Param {
     /// The value when nobody has said anything.
     #[must_use]
     pub fn default_value(&self) -> Value {
-        match (self.default, self.kind) {
-            (Start::Auto, _) => Value::Auto,
-            (Start::Number(number), _) => Value::Number(number),
-            (Start::Switch(on), _) => Value::Switch(on),
-            (Start::Word(word), Kind::Choice(_)) => Value::Choice(word),
-            (Start::Word(word), _) => Value::Text(word.to_owned()),
+        match self.default {
+            Start::Auto => Value::Auto,
+            Start::Number(number) => Value::Number(number),
+            Start::Switch(on) => Value::Switch(on),
+            Start::Choice(word) => Value::Choice(word),
+            Start::Text(text) => Value::Text(text.to_owned()),
         }
     }
 
@@ -879,14 +741,26 @@ impl Params {
         *self.get(key) == Value::Switch(true)
     }
 
-    /// A word, a clip's id or a text. Empty for a parameter that has none.
+    /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices have types: [`Params::choice`].
     #[must_use]
     pub fn text(&self, key: Key) -> &str {
         match self.get(key) {
-            Value::Choice(word) => word,
             Value::Text(text) => text,
             _ => "",
         }
+    }
+
+    /// Returns the value of a choice.
+    #[must_use]
+    pub fn choice<C: Selected>(&self) -> C {
+        // A value is checked before it is set, so that it is always one of the choices.
+        self.get(C::KEY).choice().unwrap_or(C::FIRST)
+    }
+
+    /// Returns the lab that is open.
+    #[must_use]
+    pub fn lab(&self) -> LabId {
+        self.choice()
     }
 
     /// The parameters that differ from their default, in the order of the table.

@@ -43,7 +43,7 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
         facts.link.replace('(', "%28").replace(')', "%29")
     ));
     say("| setting | value |\n|---|---|".to_owned());
-    for key in recipe_ingredients(params.text(Key::Lab)) {
+    for key in recipe_ingredients(params.lab()) {
         let param = key.param();
         let value = params.get(key);
         let words = match param.kind {

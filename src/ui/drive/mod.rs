@@ -11,13 +11,14 @@ pub(super) use hand::{steer, stick_on_stage_ui};
 pub(super) use rows::{compare_hysteresis, drive_ui};
 pub(super) use strip::drive_panel_ui;
 
+use segue_session::LabId;
 use segue_session::Session;
-use segue_session::{DriveMoment, Driven, Key};
+use segue_session::{DriveMoment, Driven};
 use std::sync::Arc;
 
 /// Whether the lab is open.
 pub(super) fn is_open(session: &Session) -> bool {
-    session.params().text(Key::Lab) == "match"
+    session.params().lab() == LabId::Match
 }
 
 /// What the first pane shows now, where it was driven.

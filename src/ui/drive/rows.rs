@@ -13,6 +13,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
+use segue_session::choices;
 use segue_session::{Command, Key, Session, Value, sentence, write_ids};
 
 /// All rows of the lab.
@@ -96,11 +97,11 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 out.commands.push(Command::RestartDrive);
             }
         });
-    } else if session.params().text(Key::Scenario) != "own" || !session.params().text(Key::Drive).is_empty() {
+    } else if session.params().choice::<choices::Scenario>() != choices::Scenario::Own || !session.params().text(Key::Drive).is_empty() {
         kit::note_ui(text::RECORDED, muted, ui);
         if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui).clicked() {
             out.commands.push(Command::Set(vec![
-                (Key::Scenario, Value::Choice("own")),
+                (Key::Scenario, choices::Scenario::Own.into()),
                 (Key::Drive, Value::Text(String::new())),
                 (Key::Play, Value::Switch(true)),
             ]));
@@ -119,7 +120,7 @@ fn any(key: Key, word: &str, session: &Session) -> bool {
 
 fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     row(Key::Hysteresis, session, out, ui);
-    kit::note_ui(text::hysteresis(session.params().text(Key::Hysteresis)), palette_of(ui).muted, ui);
+    kit::note_ui(text::hysteresis(session.params().choice()), palette_of(ui).muted, ui);
     if any(Key::Hysteresis, "bias", session) {
         row(Key::BiasShare, session, out, ui);
         row(Key::BiasConstant, session, out, ui);

@@ -8,7 +8,8 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
 use segue_motion::graph::{Choices, DistanceDetail, Place};
-use segue_session::{Built, Distances, Field, Key, Session, Walk};
+use segue_session::LabId;
+use segue_session::{Built, Distances, Field, Session, Walk};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -333,5 +334,5 @@ impl Tiles {
 
 /// Whether the lab is the Graph lab.
 pub(in crate::ui) fn is_open(session: &Session) -> bool {
-    session.params().text(Key::Lab) == "graph"
+    session.params().lab() == LabId::Graph
 }

@@ -12,6 +12,8 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Id, Layout as Flow, RichText, Ui};
 use petgraph::graph::NodeIndex;
+use segue_session::LabId;
+use segue_session::choices;
 use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
 use std::sync::Arc;
 
@@ -133,7 +135,9 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::BlendWindow, &window, session, out, ui);
     compare_ui(Key::BlendWindow, session, out, ui);
     let compared = session.compare().map(|compare| compare.key);
-    if params.text(Key::Construction) == "segments" || matches!(compared, Some(Key::SegmentSize | Key::Construction)) {
+    if params.choice::<choices::Construction>() == choices::Construction::Segments
+        || matches!(compared, Some(Key::SegmentSize | Key::Construction))
+    {
         let segment = Detail {
             fps: Some(fps),
             max: longest.map(|longest| longest.max(params.number(Key::SegmentSize))),
@@ -183,7 +187,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// What the seed does here.
 pub(in crate::ui) fn seed_detail(session: &Session) -> Detail {
-    let is_graph = session.params().text(Key::Lab) == "graph";
+    let is_graph = session.params().lab() == LabId::Graph;
     Detail {
         help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()),
         ..Detail::default()
@@ -197,7 +201,7 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Seed, &seed_detail(session), session, out, ui);
     param_row_ui(Key::GoingOn, &plain, session, out, ui);
     let compared = session.compare().map(|compare| compare.key);
-    let is_constant = params.text(Key::GoingOn) == "constant";
+    let is_constant = params.choice::<choices::GoingOn>() == choices::GoingOn::Constant;
     if !is_constant || matches!(compared, Some(Key::GoingOn | Key::Continuity)) {
         param_row_ui(Key::Continuity, &plain, session, out, ui);
     }
@@ -205,12 +209,12 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         param_row_ui(Key::ContinuityWeight, &plain, session, out, ui);
     }
     param_row_ui(Key::EdgeWeight, &plain, session, out, ui);
-    if params.text(Key::EdgeWeight) == "exponential" {
+    if params.choice::<choices::EdgeWeight>() == choices::EdgeWeight::Exponential {
         param_row_ui(Key::EdgeSigma, &plain, session, out, ui);
     }
     param_row_ui(Key::VisitedDiscount, &plain, session, out, ui);
     param_row_ui(Key::WalkMethod, &plain, session, out, ui);
-    if params.text(Key::WalkMethod) == "inertialize" {
+    if params.choice::<choices::WalkMethod>() == choices::WalkMethod::Inertialize {
         param_row_ui(Key::HalfLife, &plain, session, out, ui);
     } else {
         param_row_ui(Key::WeightLaw, &plain, session, out, ui);
@@ -250,8 +254,8 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         state.drawing = Some(Vec::new());
         // From above, and far enough away for a path.
         out.commands.push(Command::Set(vec![
-            (Key::Camera, Value::Choice("top")),
-            (Key::Follow, Value::Choice("off")),
+            (Key::Camera, choices::Camera::Top.into()),
+            (Key::Follow, choices::Follow::Off.into()),
             (Key::CameraDistance, Value::Number(14.0)),
             (Key::Jump, Value::Text(String::new())),
         ]));

@@ -14,7 +14,8 @@ mod tongue;
 
 pub(crate) use tongue::{Tongue, speak_english, tr};
 
-use segue_session::{Key, Session};
+use segue_session::Session;
+use segue_session::choices;
 
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,10 +30,10 @@ pub(crate) enum Language {
 impl Language {
     /// What the parameters ask for, for somebody who reads `preferred`.
     pub(crate) fn of(session: &Session, preferred: Self) -> Self {
-        match session.params().text(Key::Lang) {
-            "en" => Self::English,
-            "zh-Hant" => Self::Chinese,
-            _ => preferred,
+        match session.params().choice::<choices::PageLanguage>() {
+            choices::PageLanguage::En => Self::English,
+            choices::PageLanguage::ZhHant => Self::Chinese,
+            choices::PageLanguage::Auto => preferred,
         }
     }
 
@@ -64,7 +65,7 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue_session::{Command, Saved, Value};
+    use segue_session::{Command, Key, Saved, Value};
 
     #[test]
     fn the_first_language_that_there_is_is_taken() {

@@ -1,6 +1,7 @@
 //! The interface in Chinese: every lab, and what of it has stayed English.
 
 use super::*;
+use segue_session::choices;
 use std::collections::BTreeSet;
 use std::fs;
 
@@ -88,14 +89,14 @@ fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
     harness.get_by_label("複製連結");
     harness.get_by_label("介面改用英文").click();
     harness.run();
-    assert_eq!(harness.state().session.params().text(Key::Lang), "en");
+    assert_eq!(harness.state().session.params().choice::<choices::PageLanguage>().word(), "en");
     crate::ui::speak_english(&harness.ctx);
     harness.state_mut().state.language = Language::English;
     harness.run();
     harness.get_by_label(text::COPY_LINK);
     harness.get_by_label(text::IN_CHINESE).click();
     harness.run();
-    assert_eq!(harness.state().session.params().text(Key::Lang), "zh-Hant");
+    assert_eq!(harness.state().session.params().choice::<choices::PageLanguage>().word(), "zh-Hant");
 }
 
 /// What the catalogue and the lessons are written with can be set: the letters are in one of the fonts.

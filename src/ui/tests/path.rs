@@ -4,6 +4,7 @@ use super::*;
 use eframe::egui::{Event, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use glam::DVec2;
 use segue_session::OnPath;
+use segue_session::choices;
 
 fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
     outcome(harness.state()).path.clone().expect("a path")
@@ -262,10 +263,10 @@ fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
 #[test]
 fn the_camera_goes_back_where_it_was_when_the_lab_is_left() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
-    assert_eq!(harness.state().session.params().text(Key::Follow), "off");
+    assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "off");
     press("View", &mut harness);
-    assert_eq!(harness.state().session.params().text(Key::Follow), "result");
+    assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "result");
     // A camera that somebody put somewhere stays there.
     let harness = lab(DESK, DARK, "lab=path&a=walk&play=off&camera_yaw=10");
-    assert_eq!(harness.state().session.params().text(Key::Follow), "result");
+    assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "result");
 }

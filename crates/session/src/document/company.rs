@@ -1,6 +1,7 @@
 //! Who plays along on the stage of the Path lab: clips of the library, most of them motions on paths of their own.
 
 use super::Session;
+use crate::LabId;
 use crate::command::{CommandError, CompanyChange};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::Motion;
@@ -44,7 +45,7 @@ impl Session {
     /// Finds or makes everybody in the list.
     pub(super) fn refresh_company(&mut self) {
         self.company.clear();
-        if self.params.text(Key::Lab) != "path" {
+        if self.params.lab() != LabId::Path {
             return;
         }
         for id in self.company_ids().into_iter().take(MOST) {
@@ -126,8 +127,8 @@ impl Session {
 
 /// Sets everything that a clip on a path is made from; any other clip goes on the path that is fitted to it.
 fn take_up(params: &mut Params, id: &str) -> Result<(), CommandError> {
-    let made = recipe_params(id).filter(|made| made.text(Key::Lab) == "path");
-    for key in recipe_ingredients("path") {
+    let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
+    for key in recipe_ingredients(LabId::Path) {
         let value = match (&made, key) {
             (Some(made), _) => made.get(key).clone(),
             (None, Key::A) => Value::Text(id.to_owned()),

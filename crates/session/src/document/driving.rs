@@ -2,6 +2,8 @@
 
 use super::Session;
 use super::panes::{Answer, Inputs, Pane};
+use crate::LabId;
+use crate::choices;
 use crate::command::CommandError;
 use crate::params::{Key, Params, Value};
 use crate::recipe::{Crowd, Gauge, HandTag, Live, MatchSource, filter_of, options_in, read_ids, read_tags, recording_of};
@@ -35,7 +37,7 @@ pub(super) struct Driving {
 
 /// Whether these parameters let the user drive.
 fn is_own(params: &Params) -> bool {
-    params.text(Key::Lab) == "match" && matches!(recording_of(params), Ok(None))
+    params.lab() == LabId::Match && matches!(recording_of(params), Ok(None))
 }
 
 /// What a pane is driven by: its parameters, and its database; `None` while that is built.
@@ -109,7 +111,7 @@ impl Session {
         }
         let text = self.driving.recording.to_text();
         self.set(vec![
-            (Key::Scenario, Value::Choice("own")),
+            (Key::Scenario, choices::Scenario::Own.into()),
             (Key::Drive, Value::Text(text)),
             (Key::Time, Value::Number(0.0)),
         ])?;

@@ -3,6 +3,7 @@
 
 use super::Session;
 use super::panes::{Inputs, Pane};
+use crate::choices;
 use crate::params::{Key, Value};
 use crate::recipe::{CycleMade, Outcome};
 use segue_motion::gait::SpeedOptions;
@@ -183,7 +184,7 @@ impl Session {
     /// if the camera stands, or several panes run against each other, it goes back to the start.
     pub(super) fn come_round(&mut self, rounds: usize) {
         let span = self.span();
-        let walks_on = self.panes.len() == 1 && self.params.text(Key::Follow) != "off";
+        let walks_on = self.panes.len() == 1 && self.params.choice::<choices::Follow>() != choices::Follow::Off;
         for pane in &mut self.panes {
             if !walks_on || pane.outcome.as_ref().is_none_or(|outcome| outcome.cycle.is_none()) {
                 pane.place = Planar::IDENTITY;

@@ -1,6 +1,7 @@
 //! What panels and pictures ask about the Graph lab.
 
 use super::Session;
+use crate::LabId;
 use crate::params::Key;
 use crate::recipe::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
 use glam::DVec2;
@@ -8,7 +9,7 @@ use std::sync::Arc;
 
 impl Session {
     fn is_graph_lab(&self) -> bool {
-        self.params.text(Key::Lab) == "graph"
+        self.params.lab() == LabId::Graph
     }
 
     /// The ids of the clips that the graph is made of; none where the list cannot be read.

@@ -12,6 +12,7 @@ mod slots;
 mod storing;
 mod teaching;
 
+use crate::{LabId, Selected};
 pub use company::Companion;
 pub use loading::Loaded;
 use loading::Reading;
@@ -253,9 +254,18 @@ impl Session {
         let query = link::write(&self.params);
         if self.would_set_up() {
             // The lab, which is named only where it is not the first one, says that there is a state besides.
-            format!("{query}&{}={}", Key::Lab.param().name, self.params.text(Key::Lab))
+            format!("{query}&{}={}", Key::Lab.param().name, self.params.lab().word())
         } else {
             query
+        }
+    }
+
+    /// Returns what the panes have of a choice: the values that are compared, or the one that is set.
+    #[must_use]
+    pub fn choices<C: Selected>(&self) -> Vec<C> {
+        match self.compare().filter(|compare| compare.key == C::KEY) {
+            Some(compare) => compare.values.iter().filter_map(Value::choice).collect(),
+            None => vec![self.params.choice()],
         }
     }
 
@@ -493,13 +503,13 @@ impl Session {
     /// Whether the View lab shows its clip otherwise than it is: with its feet held, moved, or in place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
-        self.params.text(Key::Lab) == "view" && !is_as_it_is(&self.params)
+        self.params.lab() == LabId::View && !is_as_it_is(&self.params)
     }
 
     /// The distances that the Register lab looks at: those of the first pane, newer ones where it has no result for them.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
-        if self.params.text(Key::Lab) != "register" {
+        if self.params.lab() != LabId::Register {
             return None;
         }
         let pane = self.panes.first()?;
@@ -732,7 +742,7 @@ impl Session {
             motion.map_or(1.0, |motion| motion.clip.fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
-        if params.text(Key::Lab) == "view" && is_as_it_is(&params) {
+        if params.lab() == LabId::View && is_as_it_is(&params) {
             return Err(known);
         }
         let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(

@@ -2,6 +2,7 @@
 
 use super::Session;
 use super::going_round::{Glide, durations};
+use crate::LabId;
 use crate::compare::{Compare, MAX_PANES};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::{FeetReading, Motion};
@@ -308,7 +309,7 @@ impl Session {
         // What another lab made takes its time, and is made when it is used.
         let is_quick = |entry: &Entry| match entry.origin {
             Origin::Preset => true,
-            Origin::Made => recipe_params(&entry.id).is_some_and(|params| params.text(Key::Lab) == "make"),
+            Origin::Made => recipe_params(&entry.id).is_some_and(|params| params.lab() == LabId::Make),
             _ => false,
         };
         let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && is_quick(entry);
@@ -361,10 +362,10 @@ impl Session {
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
-        match (self.params.text(Key::Lab), slot) {
-            ("make" | "graph" | "match", _) => false,
+        match (self.params.lab(), slot) {
+            (LabId::Make | LabId::Graph | LabId::Match, _) => false,
             (_, Slot::A) => true,
-            (lab, Slot::B) => !matches!(lab, "view" | "loop" | "path"),
+            (lab, Slot::B) => !matches!(lab, LabId::View | LabId::Loop | LabId::Path),
         }
     }
 
@@ -484,7 +485,7 @@ impl Session {
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
         self.ask_for_lesson();
-        let lab = self.params.text(Key::Lab);
+        let lab = self.params.lab();
         let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
         // What is only looked at may be compared in every lab.
         let uses = |key: Key| {
@@ -573,34 +574,34 @@ impl Session {
 
     /// What a pane's result depends on; `None` while that is still being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
-        let inputs = match params.text(Key::Lab) {
-            "register" => {
+        let inputs = match params.lab() {
+            LabId::Register => {
                 let pair = self.pair_of(params)?;
                 let (ids, weights): (Vec<_>, Vec<_>) = read_also(params.text(Key::WarpAlso))?.into_iter().unzip();
                 let also: Vec<_> = self.motions_read(&ids, params)?.into_iter().zip(weights).collect();
                 return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
             }
-            "graph" => {
+            LabId::Graph => {
                 let clips = self.graph_clips(params)?;
                 return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
             }
-            "match" => return self.match_inputs(params),
-            "view" => {
+            LabId::Match => return self.match_inputs(params),
+            LabId::View => {
                 let motion = self.motion_read(params.text(Key::A), params)?;
                 return Ok(self.viewer.inputs(&motion, params).map(Inputs::View));
             }
-            "make" => Ok(Inputs::Make(made_id(params))),
-            "loop" => (self.motion_read(params.text(Key::A), params))
+            LabId::Make => Ok(Inputs::Make(made_id(params))),
+            LabId::Loop => (self.motion_read(params.text(Key::A), params))
                 .and_then(|motion| self.cycles.inputs(&motion, params))
                 .map(Inputs::Loop),
-            "path" => (self.motion_read(params.text(Key::A), params))
+            LabId::Path => (self.motion_read(params.text(Key::A), params))
                 .and_then(|motion| self.paths.inputs(&motion, params))
                 .map(Inputs::Path),
-            lab => self.pair_of(params).and_then(|pair| match lab {
-                "speed" => self.gaits.inputs(&pair, params).map(Inputs::Speed),
-                "layers" => self.layerer.inputs(&pair, params).map(Inputs::Layers),
-                _ => self.blender.inputs(&pair, params, match_window).map(Inputs::Blend),
-            }),
+            LabId::Speed => (self.pair_of(params)).and_then(|pair| self.gaits.inputs(&pair, params).map(Inputs::Speed)),
+            LabId::Layers => (self.pair_of(params)).and_then(|pair| self.layerer.inputs(&pair, params).map(Inputs::Layers)),
+            LabId::Blend | LabId::Transition => {
+                (self.pair_of(params)).and_then(|pair| self.blender.inputs(&pair, params, match_window).map(Inputs::Blend))
+            }
         };
         inputs.map(Some)
     }

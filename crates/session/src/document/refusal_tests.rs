@@ -163,7 +163,7 @@ fn refusals() -> Vec<(&'static str, Change, &'static str)> {
 
 /// Changes a session; the clips that stand on its stage from then on.
 fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
-    let lab = session.params().text(Key::Lab).to_owned();
+    let lab = session.params().lab().word().to_owned();
     let (mut is_here, mut values) = ([true; 2], Vec::new());
     let put = |session: &mut Session, key: Key, clips: Clips| (key, Value::Text(clips.id(session)));
     match change {

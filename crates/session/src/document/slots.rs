@@ -2,6 +2,7 @@
 //! taken out.
 
 use super::{Session, built_in_entries};
+use crate::LabId;
 use crate::command::CommandError;
 use crate::library::{Entry, Origin, split_reference};
 use crate::outside;
@@ -40,7 +41,7 @@ impl Session {
         {
             return;
         }
-        let is_looked_at = came == Came::ByHand && self.params.text(Key::Lab) == "view" && self.slot(Slot::A).is_some();
+        let is_looked_at = came == Came::ByHand && self.params.lab() == LabId::View && self.slot(Slot::A).is_some();
         let free = [Slot::A, Slot::B]
             .into_iter()
             .find(|slot| (is_looked_at && *slot == Slot::A) || self.is_free(*slot, came));
@@ -51,8 +52,8 @@ impl Session {
 
     /// Offers clips that came together the slots in turn: in View that of the one that is looked at; else those with clips that nobody brought.
     pub(super) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
-        let slots = match self.params.text(Key::Lab) {
-            "view" => vec![Slot::A],
+        let slots = match self.params.lab() {
+            LabId::View => vec![Slot::A],
             _ => [Slot::A, Slot::B]
                 .into_iter()
                 .filter(|slot| self.is_free(*slot, Came::ByHand))
@@ -175,10 +176,10 @@ impl Session {
 
     /// Puts back what the open lab's own list of clips names.
     pub(super) fn bring_back_listed(&mut self) {
-        let listed = match self.params.text(Key::Lab) {
-            "graph" => self.graph_clip_ids(),
-            "match" => self.match_clip_ids(),
-            "path" => self.company_ids(),
+        let listed = match self.params.lab() {
+            LabId::Graph => self.graph_clip_ids(),
+            LabId::Match => self.match_clip_ids(),
+            LabId::Path => self.company_ids(),
             _ => return,
         };
         for id in listed {

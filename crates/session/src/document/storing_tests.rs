@@ -2,6 +2,7 @@
 
 use super::tests::{made_bvh, settle};
 use super::*;
+use crate::choices;
 use crate::reading::Content;
 use crate::saved::Saved;
 use segue_motion::skeleton::Role;
@@ -98,7 +99,11 @@ fn work_that_comes_late_completes_what_waits_for_it() {
     assert_eq!(session.panes()[0].problem, None);
     assert!(session.notices().list().is_empty(), "{:?}", session.notices().list());
     assert_eq!(session.params().number(Key::BlendWindow), 24.0);
-    assert_eq!(session.params().text(Key::Lang), "zh-Hant", "as for every link");
+    assert_eq!(
+        session.params().choice::<choices::PageLanguage>().word(),
+        "zh-Hant",
+        "as for every link"
+    );
 
     // The same file came meanwhile: what was said of it on the last visit is said of it still, unless it was said anew.
     for (renamed, name) in [(false, "mine"), (true, "yours")] {

@@ -1,6 +1,7 @@
 //! Lessons, by commands.
 
 use super::*;
+use crate::choices;
 use crate::lesson::Source;
 
 const PAGE: &str = "# One\n\n[Begin](?lab=blend&a=walk&b=run&blend_window=30)\n\n## Try\n\n- [Ten](?blend_window=10) Short.\n- [Loop](?lab=loop&a=walk_left) A loop.\n\n# Two\n\n[Next](?lab=make&gait=run)\n";
@@ -57,9 +58,9 @@ fn a_lesson_that_is_chosen_sets_the_document_up_in_one_step() {
     set(&mut session, &[(Key::Lesson, &next)]);
     assert_eq!(session.take_requests(), []);
     assert_eq!(number_of(&session), 2);
-    assert_eq!(session.params().text(Key::Lab), "make");
+    assert_eq!(session.params().lab().word(), "make");
     session.apply(Command::Undo).unwrap();
-    assert_eq!((number_of(&session), session.params().text(Key::Lab)), (1, "blend"));
+    assert_eq!((number_of(&session), session.params().lab().word()), (1, "blend"));
     session.apply(Command::Undo).unwrap();
     assert_eq!(session.query(), before);
     assert!(session.lesson().is_none());
@@ -87,17 +88,14 @@ fn a_link_to_what_is_there_does_not_set_the_page_up() {
     let mut session = Session::new();
     set(&mut session, &[(Key::Lesson, &format!("{ADDRESS}#2"))]);
     deliver(&mut session);
-    assert_eq!(session.params().text(Key::Lab), "make");
+    assert_eq!(session.params().lab().word(), "make");
     // All as in the table, but for the lesson.
     set(&mut session, &[(Key::Lab, "blend"), (Key::Gait, "walk")]);
     let link = session.query();
     let mut other = Session::new();
     other.apply(Command::OpenLink(link.clone())).unwrap();
     deliver(&mut other);
-    assert_eq!(
-        (other.query(), number_of(&other), other.params().text(Key::Lab)),
-        (link, 2, "blend")
-    );
+    assert_eq!((other.query(), number_of(&other), other.params().lab().word()), (link, 2, "blend"));
 }
 
 #[test]
@@ -111,11 +109,17 @@ fn a_try_lays_its_link_over_the_page_and_is_one_step() {
     let params = session.params();
     assert_eq!(params.number(Key::BlendWindow), 10.0);
     assert!(params.is_on(Key::Align), "what no link names is as on the page");
-    assert_eq!((params.text(Key::Theme), params.text(Key::Look)), ("light", "bones"));
+    assert_eq!(
+        (
+            params.choice::<choices::PageTheme>().word(),
+            params.choice::<choices::Look>().word()
+        ),
+        ("light", "bones")
+    );
     assert_eq!(params.text(Key::Lesson), ADDRESS);
     session.apply(Command::Try("lab=loop&a=walk_left".into())).unwrap();
     assert_eq!(
-        (session.params().text(Key::Lab), session.params().number(Key::BlendWindow)),
+        (session.params().lab().word(), session.params().number(Key::BlendWindow)),
         ("loop", 30.0)
     );
     session.apply(Command::Try(String::new())).unwrap();

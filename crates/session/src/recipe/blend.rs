@@ -1,6 +1,8 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
 use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
+use crate::LabId;
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -58,17 +60,17 @@ struct Wanted {
 
 /// The mistake that the Transition lab is to make.
 fn mistake_of(params: &Params) -> Option<Mistake> {
-    match params.text(Key::Mistake) {
-        "hemisphere" => Some(Mistake::NoHemisphereCheck),
-        "euler" => Some(Mistake::EulerLerp),
-        "degrees" => Some(Mistake::DegreesForRadians),
-        "atan" => Some(Mistake::AtanForAtan2),
-        "transform_degrees" => Some(Mistake::DegreesInTransform),
-        "facing" => Some(Mistake::WrongFacingAxis),
-        "alignment" => Some(Mistake::NoAlignment),
-        "velocity" => Some(Mistake::VelocityDividedTwice),
-        "world_root" => Some(Mistake::WorldRoot),
-        _ => None,
+    match params.choice::<choices::Mistake>() {
+        choices::Mistake::Hemisphere => Some(Mistake::NoHemisphereCheck),
+        choices::Mistake::Euler => Some(Mistake::EulerLerp),
+        choices::Mistake::Degrees => Some(Mistake::DegreesForRadians),
+        choices::Mistake::Atan => Some(Mistake::AtanForAtan2),
+        choices::Mistake::TransformDegrees => Some(Mistake::DegreesInTransform),
+        choices::Mistake::Facing => Some(Mistake::WrongFacingAxis),
+        choices::Mistake::Alignment => Some(Mistake::NoAlignment),
+        choices::Mistake::Velocity => Some(Mistake::VelocityDividedTwice),
+        choices::Mistake::WorldRoot => Some(Mistake::WorldRoot),
+        choices::Mistake::None => None,
     }
 }
 
@@ -80,18 +82,18 @@ pub fn mistake_shows(params: &Params) -> bool {
 
 /// How the weight moves from A to B.
 pub(super) fn weight_law(params: &Params) -> WeightLaw {
-    match params.text(Key::WeightLaw) {
-        "linear" => WeightLaw::Linear,
-        "smoother" => WeightLaw::Smoother,
-        _ => WeightLaw::Smooth,
+    match params.choice::<choices::WeightLaw>() {
+        choices::WeightLaw::Linear => WeightLaw::Linear,
+        choices::WeightLaw::Smoother => WeightLaw::Smoother,
+        choices::WeightLaw::Smooth => WeightLaw::Smooth,
     }
 }
 
 /// By what B is laid on A.
 pub(super) fn align_by(params: &Params) -> AlignBy {
-    match params.text(Key::AlignBy) {
-        "first" => AlignBy::FirstPose,
-        _ => AlignBy::Window,
+    match params.choice::<choices::AlignBy>() {
+        choices::AlignBy::First => AlignBy::FirstPose,
+        choices::AlignBy::Window => AlignBy::Window,
     }
 }
 
@@ -107,23 +109,23 @@ pub(super) fn root_blend(params: &Params) -> RootBlend {
 /// The method of the Transition lab; `window` is that of its dissolves.
 fn method_of(params: &Params, window: usize) -> Method {
     let blend_secs = params.number(Key::BlendTime);
-    match params.text(Key::Method) {
-        "cut" => Method::Cut,
-        "linear" => Method::Dissolve {
+    match params.choice::<choices::TransitionMethod>() {
+        choices::TransitionMethod::Cut => Method::Cut,
+        choices::TransitionMethod::Linear => Method::Dissolve {
             window,
             law: WeightLaw::Linear,
         },
-        "smooth" => Method::Dissolve {
+        choices::TransitionMethod::Smooth => Method::Dissolve {
             window,
             law: WeightLaw::Smooth,
         },
-        "cubic" => Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs })),
-        "quintic" => Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs })),
-        "dead" => Method::Inertialize(Inertialization::DeadBlend {
+        choices::TransitionMethod::Cubic => Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs })),
+        choices::TransitionMethod::Quintic => Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs })),
+        choices::TransitionMethod::Dead => Method::Inertialize(Inertialization::DeadBlend {
             blend_secs,
             extrapolation_half_life_secs: params.number(Key::ExtrapolationHalfLife),
         }),
-        _ => Method::Inertialize(Inertialization::Offset(Decay::Spring {
+        choices::TransitionMethod::Inertialize => Method::Inertialize(Inertialization::Offset(Decay::Spring {
             half_life_secs: params.number(Key::HalfLife),
         })),
     }
@@ -182,7 +184,7 @@ impl Blender {
     pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params, match_window: usize) -> Result<BlendInputs, String> {
         self.meet(pair)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
-        let in_transition = params.text(Key::Lab) == "transition";
+        let in_transition = params.lab() == LabId::Transition;
         let fps = pair.a.clip.fps();
         let given = if in_transition {
             [
@@ -216,7 +218,7 @@ impl Blender {
         };
         let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)]
             .map(|(frame, frames)| frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind))));
-        let weights = (in_transition && params.text(Key::MatchBy) == "pose").then(|| PoseWeights {
+        let weights = (in_transition && params.choice::<choices::MatchBy>() == choices::MatchBy::Pose).then(|| PoseWeights {
             position: params.number(Key::MatchPosition),
             rotation: params.number(Key::MatchRotation),
             velocity: params.number(Key::MatchVelocity),

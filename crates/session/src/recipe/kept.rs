@@ -2,7 +2,9 @@
 
 use super::make::made_id;
 use super::{CycleMade, Outcome};
+use crate::choices;
 use crate::params::{Group, Key, Kind, PARAMS, Param, Params, Value};
+use crate::{LabId, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 
 /// What would end a value, and what says that something is written otherwise.
@@ -12,24 +14,23 @@ const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').ad
 const DEEPEST: usize = 6;
 
 /// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
-pub(crate) fn belongs_to(key: Key, lab: &str) -> bool {
+pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
     let group = key.param().group;
     match lab {
-        "view" => group == Group::View || is_of_feet(key),
-        "make" => group == Group::Make || is_of_feet(key),
-        "blend" => group == Group::Blend,
-        "transition" => matches!(group, Group::Blend | Group::Transition),
-        "speed" => group == Group::Speed || is_of_feet(key),
-        "loop" => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
-        "layers" => group == Group::Layers || is_of_feet(key),
-        "register" => group == Group::Register || key == Key::WeightLaw || is_of_feet(key),
-        "path" => group == Group::Path || is_of_feet(key),
-        "graph" => {
+        LabId::View => group == Group::View || is_of_feet(key),
+        LabId::Make => group == Group::Make || is_of_feet(key),
+        LabId::Blend => group == Group::Blend,
+        LabId::Transition => matches!(group, Group::Blend | Group::Transition),
+        LabId::Speed => group == Group::Speed || is_of_feet(key),
+        LabId::Loop => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
+        LabId::Layers => group == Group::Layers || is_of_feet(key),
+        LabId::Register => group == Group::Register || key == Key::WeightLaw || is_of_feet(key),
+        LabId::Path => group == Group::Path || is_of_feet(key),
+        LabId::Graph => {
             let of_blend = matches!(key, Key::BlendWindow | Key::WeightLaw | Key::AlignBy | Key::RootBlend);
             group == Group::Graph || of_blend || matches!(key, Key::HalfLife | Key::Seed) || is_of_feet(key)
         }
-        "match" => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
-        _ => false,
+        LabId::Match => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
     }
 }
 
@@ -49,10 +50,10 @@ pub(super) fn counts(params: &Params, key: Key) -> bool {
 }
 
 /// Whether a parameter is part of what a lab's result is made from.
-fn is_ingredient(key: Key, lab: &str) -> bool {
+fn is_ingredient(key: Key, lab: LabId) -> bool {
     match key {
-        Key::A => !matches!(lab, "graph" | "match"),
-        Key::B => !matches!(lab, "view" | "loop" | "path" | "graph" | "match"),
+        Key::A => !matches!(lab, LabId::Graph | LabId::Match),
+        Key::B => !matches!(lab, LabId::View | LabId::Loop | LabId::Path | LabId::Graph | LabId::Match),
         // Looked at or worked with, and not made from.
         Key::MaskColors
         | Key::PathGrid
@@ -70,7 +71,7 @@ fn is_ingredient(key: Key, lab: &str) -> bool {
 }
 
 /// What a lab's result is made from, clips included.
-pub(crate) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = Key> {
+pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
     PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
 }
 
@@ -78,14 +79,14 @@ pub(crate) fn recipe_ingredients(lab: &str) -> impl Iterator<Item = Key> {
 ///
 /// What was left to Segue is written down as it was found, so that the same comes out again, and at once. `fps` are the clips' own frame rates.
 pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
-    let lab = params.text(Key::Lab);
+    let lab = params.lab();
     match lab {
-        "view" if is_as_it_is(params) => return None,
-        "make" => return Some(made_id(params)),
+        LabId::View if is_as_it_is(params) => return None,
+        LabId::Make => return Some(made_id(params)),
         _ => {}
     }
     let mut params = params.clone();
-    if lab == "graph" {
+    if lab == LabId::Graph {
         // As long as it is by now, as far as a link can say it.
         let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
         params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
@@ -105,17 +106,18 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
     let list: Vec<String> = ingredients
         .map(|param| format!("{}:{}", param.name, written(param, params.get(param.key))))
         .collect();
-    Some(format!("{lab}({})", list.join(",")))
+    Some(format!("{}({})", lab.word(), list.join(",")))
 }
 
 /// The parameters that an id stands for; `None` when it stands for none.
 pub(crate) fn recipe_params(id: &str) -> Option<Params> {
     let (word, list) = id.strip_suffix(')')?.split_once('(')?;
     let mut params = Params::default();
+    let lab = LabId::from_word(word).filter(|lab| *lab != LabId::Make);
+    let is_lab = lab.is_some();
+    let lab = lab.unwrap_or(LabId::Make);
+    params.set(Key::Lab, lab.into()).ok()?;
     let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
-    let is_lab = Key::Lab.param().parse(word).is_ok() && word != "make";
-    let lab = if is_lab { word } else { "make" };
-    set(Key::Lab, lab)?;
     if !is_lab {
         set(Key::Gait, word)?;
     }
@@ -131,12 +133,12 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
         set(Some(key).filter(|_| allowed)?, &value)?;
     }
     // A clip as it is has its own id.
-    (lab != "view" || !is_as_it_is(&params)).then_some(params)
+    (lab != LabId::View || !is_as_it_is(&params)).then_some(params)
 }
 
 /// Whether the View lab changes nothing of its clip.
 pub(crate) fn is_as_it_is(params: &Params) -> bool {
-    let matters = |key: Key| belongs_to(key, "view") && counts(params, key);
+    let matters = |key: Key| belongs_to(key, LabId::View) && counts(params, key);
     let changes = |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
     !PARAMS.iter().any(changes)
 }
@@ -147,9 +149,9 @@ pub(crate) fn recipe_name(params: &Params) -> String {
         Some(kept) => recipe_name(&kept),
         None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
     });
-    match params.text(Key::Lab) {
-        "make" => made_id(params),
-        "view" => {
+    match params.lab() {
+        LabId::Make => made_id(params),
+        LabId::View => {
             let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
                 .iter()
                 .any(|&key| params.optional(key).is_some());
@@ -158,23 +160,23 @@ pub(crate) fn recipe_name(params: &Params) -> String {
             } else {
                 a
             };
-            match params.text(Key::RootMotion) {
-                "in_place" => format!("{held}, in place"),
-                "residual" => format!("{held}, beside its path"),
+            match params.choice::<choices::RootMotion>() {
+                choices::RootMotion::InPlace => format!("{held}, in place"),
+                choices::RootMotion::Residual => format!("{held}, beside its path"),
                 _ if is_placed => format!("{held}, moved"),
-                _ => held,
+                choices::RootMotion::World => held,
             }
         }
-        "loop" => format!("{a}, looped"),
-        "speed" => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
-        "layers" => format!("{a} with {b}"),
-        "path" => format!("{a} on a path"),
-        "graph" => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
-        "match" => match params.text(Key::Scenario) {
-            "own" => "a drive".to_owned(),
+        LabId::Loop => format!("{a}, looped"),
+        LabId::Speed => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
+        LabId::Layers => format!("{a} with {b}"),
+        LabId::Path => format!("{a} on a path"),
+        LabId::Graph => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
+        LabId::Match => match params.choice::<choices::Scenario>() {
+            choices::Scenario::Own => "a drive".to_owned(),
             _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
         },
-        _ => format!("{a} to {b}"),
+        LabId::Blend | LabId::Transition | LabId::Register => format!("{a} to {b}"),
     }
 }
 
@@ -201,11 +203,11 @@ pub(crate) fn read_ids(text: &str) -> Option<Vec<String>> {
 }
 
 /// What was found where it was left to Segue.
-fn found(lab: &str, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
+fn found(lab: LabId, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
     let mut found = Vec::new();
     if let Some(transition) = &outcome.transition {
         found.extend(match lab {
-            "transition" => [
+            LabId::Transition => [
                 (Key::MixFrameA, (transition.leave_a_secs * fps[0]).round()),
                 (Key::MixFrameB, (transition.enter_b_secs * fps[1]).round()),
             ],
@@ -259,7 +261,7 @@ mod tests {
 
     fn named(a: &str, b: &str) -> Option<Params> {
         let mut params = Params::default();
-        params.set(Key::Lab, Value::Choice("transition")).ok()?;
+        params.set(Key::Lab, LabId::Transition.into()).ok()?;
         params.set(Key::A, Value::Text(a.to_owned())).ok()?;
         params.set(Key::B, Value::Text(b.to_owned())).ok()?;
         Some(params)
@@ -291,7 +293,7 @@ mod tests {
     #[test]
     fn lists_stay_whole_inside_of_an_id() {
         let mut params = Params::default();
-        params.set(Key::Lab, Value::Choice("register")).expect("a lab");
+        params.set(Key::Lab, LabId::Register.into()).expect("a lab");
         params.set(Key::Pins, Value::Text("12-30,50-71".into())).expect("a text");
         assert_eq!(recipe_params(&id_of(&params)), Some(params));
     }

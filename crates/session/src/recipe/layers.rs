@@ -1,6 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::{Pair, source_of};
 use super::{Measured, Outcome, Slot, Source};
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -67,7 +68,7 @@ struct Reading {
 struct Timed {
     pair: Arc<Pair>,
     /// The word of the parameter, and the start in seconds.
-    wanted: (&'static str, f64),
+    wanted: (choices::LayerFit, f64),
     reading: Reading,
     fit: LayerFit,
     has_no_steps: bool,
@@ -97,12 +98,7 @@ impl Layerer {
     }
 
     fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<Timed>, String> {
-        let word = match params.text(Key::LayerFit) {
-            "loop" => "loop",
-            "hold" => "hold",
-            _ => "step",
-        };
-        let wanted = (word, params.number(Key::LayerStart));
+        let wanted = (params.choice(), params.number(Key::LayerStart));
         let known = self
             .timed
             .iter()
@@ -118,19 +114,23 @@ impl Layerer {
         Ok(timed)
     }
 
-    fn read(&mut self, pair: &Arc<Pair>, wanted: (&'static str, f64)) -> Result<Timed, String> {
+    fn read(&mut self, pair: &Arc<Pair>, wanted: (choices::LayerFit, f64)) -> Result<Timed, String> {
         let (a, b) = (&pair.a.clip, &pair.incoming.clip);
         let times = || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
         let plain = || Reading {
             over: Arc::clone(b),
             times: times(),
         };
-        let (word, start) = wanted;
-        let in_step = if word == "step" { self.in_step(pair) } else { None };
+        let (wanted_fit, start) = wanted;
+        let in_step = if wanted_fit == choices::LayerFit::Step {
+            self.in_step(pair)
+        } else {
+            None
+        };
         let fits = start >= 0.0 && start + a.duration_secs() <= b.duration_secs();
-        let (reading, fit) = match (in_step, word) {
+        let (reading, fit) = match (in_step, wanted_fit) {
             (Some(reading), _) => (reading, LayerFit::InStep),
-            (None, "hold") => (plain(), LayerFit::Held),
+            (None, choices::LayerFit::Hold) => (plain(), LayerFit::Held),
             _ if fits => (plain(), LayerFit::Once),
             _ => {
                 let over = closed(pair).unwrap_or_else(|| Arc::clone(b));
@@ -153,7 +153,7 @@ impl Layerer {
             wanted,
             reading,
             fit,
-            has_no_steps: word == "step" && fit != LayerFit::InStep,
+            has_no_steps: wanted_fit == choices::LayerFit::Step && fit != LayerFit::InStep,
             profile: Profile::new(Arc::new(source), roles, shown.contacts.clone()),
             shown,
         })
@@ -202,28 +202,28 @@ fn time_of(fit: LayerFit) -> LayerTime {
 
 /// What the lab is set to; how long the layer lasts is not known here.
 fn options_of(params: &Params) -> LayerOptions {
-    let parts = match params.text(Key::Mask) {
-        "arms" => vec![BodyPart::LeftArm, BodyPart::RightArm],
-        "left_arm" => vec![BodyPart::LeftArm],
-        "right_arm" => vec![BodyPart::RightArm],
-        "head" => vec![BodyPart::Head],
-        "spine" => vec![BodyPart::Spine],
-        "legs" => vec![BodyPart::LowerBody],
-        "whole" => vec![BodyPart::Whole],
-        _ => vec![BodyPart::UpperBody],
+    let parts = match params.choice::<choices::Mask>() {
+        choices::Mask::Arms => vec![BodyPart::LeftArm, BodyPart::RightArm],
+        choices::Mask::LeftArm => vec![BodyPart::LeftArm],
+        choices::Mask::RightArm => vec![BodyPart::RightArm],
+        choices::Mask::Head => vec![BodyPart::Head],
+        choices::Mask::Spine => vec![BodyPart::Spine],
+        choices::Mask::Legs => vec![BodyPart::LowerBody],
+        choices::Mask::Whole => vec![BodyPart::Whole],
+        choices::Mask::Upper => vec![BodyPart::UpperBody],
     };
-    let reference = match params.text(Key::LayerReference) {
-        "rest" => Reference::Rest,
-        "first" => Reference::Frame(0),
-        _ => Reference::Mean,
+    let reference = match params.choice::<choices::LayerReference>() {
+        choices::LayerReference::Rest => Reference::Rest,
+        choices::LayerReference::First => Reference::Frame(0),
+        choices::LayerReference::Mean => Reference::Mean,
     };
     LayerOptions {
         parts,
         feather: params.number(Key::Feather) as usize,
         weight: params.number(Key::LayerWeight) as f32,
-        mode: match params.text(Key::LayerMode) {
-            "additive" => LayerMode::Additive(reference),
-            _ => LayerMode::Override,
+        mode: match params.choice::<choices::LayerMode>() {
+            choices::LayerMode::Additive => LayerMode::Additive(reference),
+            choices::LayerMode::Partial => LayerMode::Override,
         },
         time: LayerTime::default(),
         start_secs: params.number(Key::LayerStart),

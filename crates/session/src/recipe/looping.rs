@@ -4,6 +4,7 @@ use super::feet::Lock;
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
+use crate::choices;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::blend;
@@ -90,14 +91,14 @@ fn options(params: &Params) -> LoopOptions {
     let half_life_secs = params.number(Key::HalfLife);
     let ratio = params.number(Key::LoopRatio);
     let classic = LoopMethod::Classic { half_life_secs };
-    let (method, ratio) = match params.text(Key::LoopMethod) {
-        "both" => (classic, ratio),
-        "crossed" => (LoopMethod::Crossed { half_life_secs }, ratio),
-        "start" => (classic, 1.0),
-        "end" => (classic, 0.0),
-        "linear" => (LoopMethod::Linear, ratio),
-        "cubic" => (LoopMethod::Cubic, ratio),
-        _ => (LoopMethod::Exact { half_life_secs }, ratio),
+    let (method, ratio) = match params.choice::<choices::LoopMethod>() {
+        choices::LoopMethod::Both => (classic, ratio),
+        choices::LoopMethod::Crossed => (LoopMethod::Crossed { half_life_secs }, ratio),
+        choices::LoopMethod::Start => (classic, 1.0),
+        choices::LoopMethod::End => (classic, 0.0),
+        choices::LoopMethod::Linear => (LoopMethod::Linear, ratio),
+        choices::LoopMethod::Cubic => (LoopMethod::Cubic, ratio),
+        choices::LoopMethod::Exact => (LoopMethod::Exact { half_life_secs }, ratio),
     };
     LoopOptions { method, ratio }
 }

@@ -1,6 +1,8 @@
 use super::Outcome;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::kept::{belongs_to, counts};
+use crate::LabId;
+use crate::choices;
 use crate::motion::{FeetReading, Motion};
 use crate::outside::short;
 use crate::params::{Key, Kind, Params, Value};
@@ -10,22 +12,32 @@ use std::sync::Arc;
 
 /// The action that the Make lab is set to.
 pub(crate) fn synth_action(params: &Params) -> Action {
-    match params.text(Key::Gait) {
-        "run" => Action::Run,
-        "idle" => Action::Idle,
-        "start" => Action::Start,
-        "stop" => Action::Stop,
-        "spin" => Action::Spin,
-        "jump" => Action::Jump,
-        _ => Action::Walk,
+    match params.choice::<choices::MadeAction>() {
+        choices::MadeAction::Run => Action::Run,
+        choices::MadeAction::Idle => Action::Idle,
+        choices::MadeAction::Start => Action::Start,
+        choices::MadeAction::Stop => Action::Stop,
+        choices::MadeAction::Spin => Action::Spin,
+        choices::MadeAction::Jump => Action::Jump,
+        choices::MadeAction::Walk => Action::Walk,
     }
 }
 
 /// Whether the chosen motion has that parameter: nobody who stands has a speed.
 pub(crate) fn has(params: &Params, key: Key) -> bool {
     let lacks = match key {
-        Key::GaitSpeed => matches!(params.text(Key::Gait), "idle" | "spin"),
-        Key::TurnRate => matches!(params.text(Key::Gait), "idle" | "spin" | "jump" | "start" | "stop"),
+        Key::GaitSpeed => matches!(
+            params.choice::<choices::MadeAction>(),
+            choices::MadeAction::Idle | choices::MadeAction::Spin
+        ),
+        Key::TurnRate => matches!(
+            params.choice::<choices::MadeAction>(),
+            choices::MadeAction::Idle
+                | choices::MadeAction::Spin
+                | choices::MadeAction::Jump
+                | choices::MadeAction::Start
+                | choices::MadeAction::Stop
+        ),
         _ => false,
     };
     !lacks
@@ -101,7 +113,7 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, String> {
 pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| belongs_to(param.key, "make") && param.key != Key::Gait)
+        .filter(|(param, _)| belongs_to(param.key, LabId::Make) && param.key != Key::Gait)
         .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
@@ -111,7 +123,7 @@ pub(crate) fn made_id(params: &Params) -> String {
         })
         .map(|(param, value)| format!("{}:{}", param.name, param.format(&value)))
         .collect();
-    format!("{}({})", params.text(Key::Gait), list.join(","))
+    format!("{}({})", params.choice::<choices::MadeAction>().word(), list.join(","))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -202,26 +203,26 @@ impl Paths {
 /// Whose control points a path has that is fitted or drawn.
 #[must_use]
 pub fn spline_ends(params: &Params) -> SplineEnds {
-    match params.text(Key::PathSpline) {
-        "uniform" => SplineEnds::Uniform,
-        _ => SplineEnds::Clamped,
+    match params.choice::<choices::PathSpline>() {
+        choices::PathSpline::Uniform => SplineEnds::Uniform,
+        choices::PathSpline::Clamped => SplineEnds::Clamped,
     }
 }
 
 fn carry_options(params: &Params) -> CarryOptions {
     CarryOptions {
-        timing: match params.text(Key::PathKeep) {
-            "duration" => Timing::Duration,
-            "whole" => Timing::Speed,
-            _ => Timing::Metres,
+        timing: match params.choice::<choices::PathKeep>() {
+            choices::PathKeep::Duration => Timing::Duration,
+            choices::PathKeep::Whole => Timing::Speed,
+            choices::PathKeep::Speed => Timing::Metres,
         },
-        orientation: match params.text(Key::PathFacing) {
-            "world" => Orientation::World,
-            _ => Orientation::Path,
+        orientation: match params.choice::<choices::PathFacing>() {
+            choices::PathFacing::World => Orientation::World,
+            choices::PathFacing::Path => Orientation::Path,
         },
-        offset: match params.text(Key::PathOffset) {
-            "world" => Offset::World,
-            _ => Offset::Path,
+        offset: match params.choice::<choices::PathOffset>() {
+            choices::PathOffset::World => Offset::World,
+            choices::PathOffset::Path => Offset::Path,
         },
     }
 }

@@ -13,6 +13,7 @@ use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
 use super::{Measured, Outcome, Slot, Source, Transition};
+use crate::choices;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use registrar::Found;
@@ -121,7 +122,7 @@ enum Made {
 
 impl Made {
     fn of(params: &Params) -> Result<Self, String> {
-        if params.text(Key::WarpMode) == "join" {
+        if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
             return Ok(Self::Join {
                 part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
                 law: weight_law(params),

@@ -3,6 +3,7 @@
 use super::feet::{Lock, locking, slide, slide_before};
 use super::pair::source_of;
 use super::{Measured, Outcome};
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::notice::sentence;
@@ -78,10 +79,10 @@ struct Ground {
 impl Ground {
     fn of(params: &Params) -> Self {
         Self {
-            root_motion: match params.text(Key::RootMotion) {
-                "in_place" => RootMotion::InPlace,
-                "residual" => RootMotion::Residual,
-                _ => RootMotion::World,
+            root_motion: match params.choice::<choices::RootMotion>() {
+                choices::RootMotion::InPlace => RootMotion::InPlace,
+                choices::RootMotion::Residual => RootMotion::Residual,
+                choices::RootMotion::World => RootMotion::World,
             },
             start: [Key::PlaceX, Key::PlaceZ].map(|key| params.optional(key)),
             heading_deg: params.optional(Key::PlaceHeading),

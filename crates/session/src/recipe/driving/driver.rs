@@ -2,6 +2,7 @@
 
 use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -35,9 +36,9 @@ impl Source {
             options: DatabaseOptions {
                 features: FeatureOptions {
                     trajectory_secs,
-                    normalisation: match params.text(Key::Normalisation) {
-                        "dimension" => Normalisation::Dimension,
-                        _ => Normalisation::Block,
+                    normalisation: match params.choice::<choices::Normalisation>() {
+                        choices::Normalisation::Dimension => Normalisation::Dimension,
+                        choices::Normalisation::Block => Normalisation::Block,
                     },
                 },
                 mirrored: params.is_on(Key::Mirrored),

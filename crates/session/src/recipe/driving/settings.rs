@@ -1,6 +1,7 @@
 //! From parameters to what the controller is told.
 
 use super::tagging::clip_name;
+use crate::choices;
 use crate::outside::short;
 use crate::params::{Key, Params};
 use crate::recipe::read_ids;
@@ -24,31 +25,31 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
     ControllerOptions {
         weights: Weights(blocks.map(|key| number(key) as f32)),
         search_interval_secs: number(Key::SearchInterval),
-        method: match params.text(Key::SearchBy) {
-            "tree" => SearchMethod::Tree,
-            "scan" => SearchMethod::Scan,
-            _ => SearchMethod::Boxes,
+        method: match params.choice::<choices::SearchBy>() {
+            choices::SearchBy::Tree => SearchMethod::Tree,
+            choices::SearchBy::Scan => SearchMethod::Scan,
+            choices::SearchBy::Boxes => SearchMethod::Boxes,
         },
-        hysteresis: match params.text(Key::Hysteresis) {
-            "none" => Hysteresis::None,
-            "time" => Hysteresis::MinimumTime {
+        hysteresis: match params.choice::<choices::Hysteresis>() {
+            choices::Hysteresis::None => Hysteresis::None,
+            choices::Hysteresis::Time => Hysteresis::MinimumTime {
                 secs: number(Key::MinimumTime),
             },
-            "votes" => Hysteresis::ThreeVotes,
-            "clip_votes" => Hysteresis::ThreeVotesForAnotherClip,
-            _ => Hysteresis::ContinuingBias {
+            choices::Hysteresis::Votes => Hysteresis::ThreeVotes,
+            choices::Hysteresis::ClipVotes => Hysteresis::ThreeVotesForAnotherClip,
+            choices::Hysteresis::Bias => Hysteresis::ContinuingBias {
                 share: number(Key::BiasShare) as f32,
                 constant: number(Key::BiasConstant) as f32,
             },
         },
         prefer_current: number(Key::PreferCurrent) as f32,
         prefer_source: None,
-        transition: match params.text(Key::JumpMethod) {
-            "dead" => Inertialization::DeadBlend {
+        transition: match params.choice::<choices::JumpMethod>() {
+            choices::JumpMethod::Dead => Inertialization::DeadBlend {
                 blend_secs: number(Key::BlendTime),
                 extrapolation_half_life_secs: number(Key::ExtrapolationHalfLife),
             },
-            _ => Inertialization::Offset(Decay::Spring {
+            choices::JumpMethod::Inertialize => Inertialization::Offset(Decay::Spring {
                 half_life_secs: number(Key::JumpHalfLife),
             }),
         },
@@ -90,7 +91,7 @@ pub(crate) fn options_in(database: &Database, params: &Params) -> Result<Control
 
 /// The input that is played; `None` where the user drives.
 pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, String> {
-    if let Some(scenario) = Scenario::find(params.text(Key::Scenario)) {
+    if let Some(scenario) = Scenario::find(params.choice::<choices::Scenario>().word()) {
         return Ok(Some(scenario.recording()));
     }
     let text = params.text(Key::Drive);

@@ -1,3 +1,4 @@
+use crate::choices;
 use crate::outside::short;
 use crate::params::{Key, Params, Value};
 use crate::recipe::blend::{align_by, root_blend, weight_law};
@@ -48,25 +49,25 @@ pub(super) struct GraphKey {
 impl Wanted {
     pub(super) fn of(params: &Params, clips: usize) -> Result<Self, String> {
         let window = params.number(Key::BlendWindow) as usize;
-        let of_transform = match params.text(Key::Transform) {
-            "first" => Some(WalkMistake::FirstFrameOnly),
-            "teleport" => Some(WalkMistake::FirstFrameThenRecorded),
-            _ => None,
+        let of_transform = match params.choice::<choices::Transform>() {
+            choices::Transform::First => Some(WalkMistake::FirstFrameOnly),
+            choices::Transform::Teleport => Some(WalkMistake::FirstFrameThenRecorded),
+            choices::Transform::Whole => None,
         };
-        let of_angle = match params.text(Key::Atan) {
-            "atan" => Some(Mistake::AtanForAtan2),
-            "degrees" => Some(Mistake::DegreesInTransform),
-            "facing" => Some(Mistake::WrongFacingAxis),
-            _ => None,
+        let of_angle = match params.choice::<choices::Atan>() {
+            choices::Atan::Atan => Some(Mistake::AtanForAtan2),
+            choices::Atan::Degrees => Some(Mistake::DegreesInTransform),
+            choices::Atan::Facing => Some(Mistake::WrongFacingAxis),
+            choices::Atan::Atan2 => None,
         };
         if of_transform.is_some() && of_angle.is_some() {
             return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
         }
-        let method = match params.text(Key::WalkMethod) {
-            "inertialize" => Method::Inertialize(Inertialization::Offset(Decay::Spring {
+        let method = match params.choice::<choices::WalkMethod>() {
+            choices::WalkMethod::Inertialize => Method::Inertialize(Inertialization::Offset(Decay::Spring {
                 half_life_secs: params.number(Key::HalfLife),
             })),
-            _ => Method::Dissolve {
+            choices::WalkMethod::Dissolve => Method::Dissolve {
                 window,
                 law: weight_law(params),
             },
@@ -81,11 +82,11 @@ impl Wanted {
         Ok(Self {
             graph: GraphKey {
                 options: GraphOptions {
-                    construction: match params.text(Key::Construction) {
-                        "segments" => Construction::Segments {
+                    construction: match params.choice::<choices::Construction>() {
+                        choices::Construction::Segments => Construction::Segments {
                             segment_size: params.number(Key::SegmentSize) as usize,
                         },
-                        _ => Construction::Minima,
+                        choices::Construction::Minima => Construction::Minima,
                     },
                     blend_window: window,
                     edge_threshold_cm: params.number(Key::EdgeThreshold),
@@ -95,17 +96,17 @@ impl Wanted {
                 pruned: params.is_on(Key::Prune),
             },
             weights: WeightOptions {
-                continuity: match params.text(Key::GoingOn) {
-                    "constant" => Continuity::Weight(params.number(Key::ContinuityWeight)),
-                    _ => Continuity::Share(params.number(Key::Continuity)),
+                continuity: match params.choice::<choices::GoingOn>() {
+                    choices::GoingOn::Constant => Continuity::Weight(params.number(Key::ContinuityWeight)),
+                    choices::GoingOn::Share => Continuity::Share(params.number(Key::Continuity)),
                 },
-                law: match params.text(Key::EdgeWeight) {
-                    "exponential" => DistanceLaw::Exponential {
+                law: match params.choice::<choices::EdgeWeight>() {
+                    choices::EdgeWeight::Exponential => DistanceLaw::Exponential {
                         sigma_cm: params.number(Key::EdgeSigma),
                     },
-                    "uniform" => DistanceLaw::Uniform,
-                    "proportional" => DistanceLaw::Proportional,
-                    _ => DistanceLaw::Inverse,
+                    choices::EdgeWeight::Uniform => DistanceLaw::Uniform,
+                    choices::EdgeWeight::Proportional => DistanceLaw::Proportional,
+                    choices::EdgeWeight::Inverse => DistanceLaw::Inverse,
                 },
             },
             seed: params.number(Key::Seed) as u64,

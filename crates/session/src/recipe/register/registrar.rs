@@ -1,4 +1,5 @@
 use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
+use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -79,7 +80,7 @@ impl Registrars {
             found,
             also,
             made,
-            is_plain: params.text(Key::WarpWith) == "plain",
+            is_plain: params.choice::<choices::WarpWith>() == choices::WarpWith::Plain,
             foot_lock: Lock::of(params),
         }))
     }
@@ -272,7 +273,7 @@ impl Registrar {
 fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, String> {
     let window = params.number(Key::RegistrationWindow) as usize;
     let slack = params.number(Key::EndSlack) / 100.0;
-    let end = if params.text(Key::Ends) == "corner" {
+    let end = if params.choice::<choices::Ends>() == choices::Ends::Corner {
         PathEnd::Corner
     } else {
         PathEnd::Border { slack }

@@ -1,0 +1,374 @@
+//! The choices of parameters that take one of a few words, as types: `params.choice::<TransitionMethod>()`.
+
+use super::params::{Choice, Key};
+
+/// A type whose values are the choices of one parameter.
+pub trait Selected: Copy + PartialEq + 'static {
+    /// The parameter that it is the value of.
+    const KEY: Key;
+    /// Every choice, in the order in which they are shown.
+    const ALL: &'static [Self];
+    /// The first of them.
+    const FIRST: Self;
+
+    /// Returns the choice's word in a link.
+    fn word(self) -> &'static str;
+
+    /// Returns the choice with a word in a link.
+    fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|choice| choice.word() == word)
+    }
+}
+
+macro_rules! choices {
+    ($($(#[$doc:meta])* $name:ident of $key:ident {
+        $first:ident $first_word:literal $first_label:literal, $($variant:ident $word:literal $label:literal,)*
+    })*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $name {
+            #[doc = concat!("\"", $first_label, "\" on screen.")] $first,
+            $(#[doc = concat!("\"", $label, "\" on screen.")] $variant,)*
+        }
+
+        impl $name {
+            /// The words in links and on screen.
+            pub(super) const CHOICES: &'static [Choice] = &[
+                Choice { key: $first_word, label: $first_label }, $(Choice { key: $word, label: $label }),*
+            ];
+
+            /// Returns the choice's word in a link.
+            #[must_use]
+            pub const fn word(self) -> &'static str {
+                match self {
+                    Self::$first => $first_word,
+                    $(Self::$variant => $word,)*
+                }
+            }
+
+            /// Returns the choice's words on screen.
+            #[must_use]
+            pub const fn label(self) -> &'static str {
+                match self {
+                    Self::$first => $first_label,
+                    $(Self::$variant => $label,)*
+                }
+            }
+        }
+
+        impl Selected for $name {
+            const KEY: Key = Key::$key;
+            const ALL: &'static [Self] = &[Self::$first, $(Self::$variant),*];
+            const FIRST: Self = Self::$first;
+
+            fn word(self) -> &'static str {
+                self.word()
+            }
+        }
+    )*};
+}
+
+choices! {
+    /// A lab: one kind of experiment.
+    LabId of Lab {
+        View "view" "View",
+        Make "make" "Make",
+        Blend "blend" "Blend",
+        Transition "transition" "Transition",
+        Speed "speed" "Speed",
+        Loop "loop" "Loop",
+        Layers "layers" "Layers",
+        Register "register" "Register",
+        Path "path" "Path",
+        Graph "graph" "Graph",
+        Match "match" "Match",
+    }
+
+    /// How the weight moves from A to B inside a blend window.
+    WeightLaw of WeightLaw {
+        Smooth "smooth" "smooth",
+        Linear "linear" "linear",
+        Smoother "smoother" "smoother",
+    }
+
+    /// How A goes over into B in the Transition lab.
+    TransitionMethod of Method {
+        Inertialize "inertialize" "inertialize",
+        Cubic "cubic" "cubic",
+        Quintic "quintic" "quintic",
+        Dead "dead" "dead blend",
+        Smooth "smooth" "dissolve, smooth",
+        Linear "linear" "dissolve, linear",
+        Cut "cut" "cut",
+    }
+
+    /// How the difference between the ends of a cycle is spread over it.
+    LoopMethod of LoopMethod {
+        Exact "exact" "exact",
+        Both "both" "both ends",
+        Crossed "crossed" "both ends, crossed",
+        Start "start" "start only",
+        End "end" "end only",
+        Linear "linear" "linear",
+        Cubic "cubic" "cubic",
+    }
+
+    /// What the best match of two clips compares.
+    MatchBy of MatchBy {
+        Pose "pose" "pose",
+        Window "window" "window",
+    }
+
+    /// A classic mistake, made on purpose.
+    Mistake of Mistake {
+        None "none" "no mistake",
+        Hemisphere "hemisphere" "no hemisphere check",
+        Euler "euler" "Euler angles mixed",
+        Degrees "degrees" "degrees for radians",
+        Atan "atan" "atan for atan2",
+        TransformDegrees "transform_degrees" "transform in degrees",
+        Facing "facing" "wrong facing axis",
+        Alignment "alignment" "no alignment",
+        Velocity "velocity" "velocity divided twice",
+        WorldRoot "world_root" "root mixed in the world",
+    }
+
+    /// How a layer joins the motion below it.
+    LayerMode of LayerMode {
+        Partial "partial" "partial",
+        Additive "additive" "additive",
+    }
+
+    /// The part of the body that a layer moves.
+    Mask of Mask {
+        Upper "upper" "upper body",
+        Arms "arms" "both arms",
+        LeftArm "left_arm" "left arm",
+        RightArm "right_arm" "right arm",
+        Head "head" "head",
+        Spine "spine" "spine",
+        Legs "legs" "hips and legs",
+        Whole "whole" "whole body",
+    }
+
+    /// How a layer's time follows the motion below it.
+    LayerFit of LayerFit {
+        Step "step" "in step",
+        Loop "loop" "loop",
+        Hold "hold" "hold",
+    }
+
+    /// The pose of an additive layer that adds nothing.
+    LayerReference of LayerReference {
+        Mean "mean" "mean",
+        First "first" "first frame",
+        Rest "rest" "rest pose",
+    }
+
+    /// Whether two clips are registered in time before they are blended.
+    WarpWith of WarpWith {
+        Registered "registered" "registered",
+        Plain "plain" "plain",
+    }
+
+    /// Whether registered clips are blended throughout or joined.
+    WarpMode of WarpMode {
+        Blend "blend" "blend",
+        Join "join" "join",
+    }
+
+    /// Where a time warp may begin and end.
+    Ends of Ends {
+        Free "free" "free",
+        Corner "corner" "corner",
+    }
+
+    /// What of a motion stays the same on an edited path.
+    PathKeep of PathKeep {
+        Speed "speed" "speed",
+        Duration "duration" "duration",
+        Whole "whole" "whole way",
+    }
+
+    /// The knots at the ends of a path.
+    PathSpline of PathSpline {
+        Clamped "clamped" "clamped",
+        Uniform "uniform" "uniform",
+    }
+
+    /// The frame in which the root keeps its offset from a path.
+    PathOffset of PathOffset {
+        Path "path" "with the path",
+        World "world" "as it was",
+    }
+
+    /// What is left of a clip's way over the ground.
+    RootMotion of RootMotion {
+        World "world" "recorded",
+        InPlace "in_place" "in place",
+        Residual "residual" "residual",
+    }
+
+    /// The frame in which a character on a path keeps its heading.
+    PathFacing of PathFacing {
+        Path "path" "with the path",
+        World "world" "as it did",
+    }
+
+    /// How the nodes of a motion graph are found.
+    Construction of Construction {
+        Segments "segments" "segments",
+        Minima "minima" "local minima",
+    }
+
+    /// How likely a transition of a motion graph is at a distance d.
+    EdgeWeight of EdgeWeight {
+        Inverse "inverse" "1 / d",
+        Exponential "exponential" "exp(−d)",
+        Uniform "uniform" "uniform",
+        Proportional "proportional" "d, wrong",
+    }
+
+    /// How likely a walk is to go on in its clip.
+    GoingOn of GoingOn {
+        Share "share" "a share",
+        Constant "constant" "a constant weight",
+    }
+
+    /// How the clips of a walk are joined.
+    WalkMethod of WalkMethod {
+        Dissolve "dissolve" "dissolve",
+        Inertialize "inertialize" "inertialize",
+    }
+
+    /// What is laid on what when B is aligned to A.
+    AlignBy of AlignBy {
+        Window "window" "whole window",
+        First "first" "first posture",
+    }
+
+    /// Which frames of a clip a walk moves to where the last clip ended.
+    Transform of Transform {
+        Whole "whole" "whole clip",
+        First "first" "first frame only",
+        Teleport "teleport" "first frame, then as recorded",
+    }
+
+    /// How the alignment angle of a walk is computed; all but the first are mistakes.
+    Atan of Atan {
+        Atan2 "atan2" "atan2",
+        Atan "atan" "atan, wrong",
+        Degrees "degrees" "degrees, wrong",
+        Facing "facing" "rotation · Y, wrong",
+    }
+
+    /// Recorded input for the Match lab.
+    Scenario of Scenario {
+        Own "own" "my own",
+        Straight "straight" "walk straight",
+        Left "left" "90° to the left",
+        Right "right" "90° to the right",
+        Spin "spin" "180° spin",
+        StartStop "start_stop" "start and stop",
+        Run "run" "walk to run",
+        Eight "eight" "figure eight",
+    }
+
+    /// What keeps a matched character from jumping too often.
+    Hysteresis of Hysteresis {
+        None "none" "none",
+        Bias "bias" "bias",
+        Time "time" "time",
+        Votes "votes" "votes",
+        ClipVotes "clip_votes" "votes for another clip",
+    }
+
+    /// What features of motion matching are divided by.
+    Normalisation of Normalisation {
+        Block "block" "by block",
+        Dimension "dimension" "by dimension",
+    }
+
+    /// How the nearest features are searched.
+    SearchBy of SearchBy {
+        Boxes "boxes" "boxes",
+        Tree "tree" "k-d tree",
+        Scan "scan" "scan",
+    }
+
+    /// How a matched character jumps to another frame.
+    JumpMethod of JumpMethod {
+        Inertialize "inertialize" "inertialize",
+        Dead "dead" "dead blend",
+    }
+
+    /// The action that the Make lab synthesises.
+    MadeAction of Gait {
+        Walk "walk" "walk",
+        Run "run" "run",
+        Idle "idle" "idle",
+        Start "start" "start",
+        Stop "stop" "stop",
+        Spin "spin" "spin",
+        Jump "jump" "jump",
+    }
+
+    /// What of a figure is drawn.
+    Look of Look {
+        Body "body" "body",
+        Limbs "limbs" "limbs",
+        Bones "bones" "bones",
+        Both "both" "both",
+    }
+
+    /// How a body follows its skeleton.
+    Skinning of Skinning {
+        Dual "dual" "dual quaternions",
+        Linear "linear" "linear blend",
+    }
+
+    /// The background of the stage.
+    Backdrop of Stage {
+        Auto "auto" "auto",
+        Dark "dark" "dark",
+        Light "light" "light",
+        Paper "paper" "paper",
+    }
+
+    /// What the camera follows.
+    Follow of Follow {
+        Off "off" "off",
+        Result "result" "result",
+        A "a" "A",
+        B "b" "B",
+        Other "other" "one of the others",
+    }
+
+    /// The kind of camera.
+    Camera of Camera {
+        Orbit "orbit" "orbit",
+        Top "top" "top",
+    }
+
+    /// The quantity that the timeline draws.
+    Curve of Curve {
+        Speed "speed" "speed",
+        Height "height" "height",
+        Angle "angle" "angle",
+        Turn "turn" "turn rate",
+    }
+
+    /// The colours of the page.
+    PageTheme of Theme {
+        Auto "auto" "auto",
+        Dark "dark" "dark",
+        Light "light" "light",
+    }
+
+    /// The language of the page.
+    PageLanguage of Lang {
+        Auto "auto" "auto",
+        En "en" "English",
+        ZhHant "zh-Hant" "繁體中文",
+    }
+}
