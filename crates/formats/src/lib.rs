@@ -290,10 +290,18 @@ fn stem(name: &str) -> &str {
 
 fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), ImportError> {
     if bytes.len() <= options.max_bytes {
-        return Ok(());
+        return check_not_empty(name, bytes);
     }
     let found = format!("a file of {} MB", bytes.len().div_ceil(1 << 20));
     Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20)).with_hint("cut the motion into parts"))
+}
+
+/// Refuses a file of nothing, or of white space alone.
+fn check_not_empty(name: &str, bytes: &[u8]) -> Result<(), ImportError> {
+    if bytes.iter().any(|byte| !text::is_space(*byte)) {
+        return Ok(());
+    }
+    Err(ImportError::whole_file(name, "an empty file", "a motion file"))
 }
 
 #[cfg(test)]
@@ -315,7 +323,13 @@ mod tests {
             "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)"
         );
         assert!(error.hint.is_some());
-        assert!(import("", b"", &options).is_err());
+        for (name, empty) in [("x.bvh", ""), ("x.amc", " \r\n\t"), ("x.glb", ""), ("", "")] {
+            let error = import(name, empty.as_bytes(), &options).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!("{name}:1:1: found an empty file, expected a motion file")
+            );
+        }
     }
 
     #[test]

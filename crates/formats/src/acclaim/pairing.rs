@@ -3,8 +3,8 @@ use super::asf::is_section;
 use super::lexer::{Lexer, is_digits};
 use super::skeleton::AcclaimSkeleton;
 use crate::error::ImportError;
-use crate::stem;
 use crate::text::decode;
+use crate::{check_not_empty, stem};
 
 /// Bytes at the beginning of a file that are looked at.
 const HEAD: usize = 64 << 10;
@@ -37,6 +37,7 @@ pub fn bone_names(amc_bytes: &[u8]) -> Vec<(String, usize)> {
 /// # Errors
 /// [`ImportError`] with the place where that frame should be.
 pub fn check_motion(amc_name: &str, amc_bytes: &[u8]) -> Result<(), ImportError> {
+    check_not_empty(amc_name, amc_bytes)?;
     let text = decode(amc_bytes.get(..HEAD).unwrap_or(amc_bytes));
     first_fault(&text).map_or(Ok(()), |fault| Err(fault.locate(amc_name, &text)))
 }
@@ -135,7 +136,8 @@ mod tests {
             assert_eq!(check_motion("a.amc", text.as_bytes()), Ok(()), "{text}");
         }
         for (text, error) in [
-            ("", "a.amc:1:1: found the end of the file, expected the number of a frame"),
+            ("", "a.amc:1:1: found an empty file, expected a motion file"),
+            (" \n\n", "a.amc:1:1: found an empty file, expected a motion file"),
             (":DEGREES\n", "a.amc:2:1: found the end of the file, expected the number of a frame"),
             ("<html>\n", "a.amc:1:1: found `<html>`, expected the number of a frame"),
             (

@@ -715,6 +715,24 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
 }
 
 #[test]
+fn empty_motion_is_told_as_an_empty_file_and_waits_for_no_skeleton() {
+    for empty in ["", " \r\n"] {
+        for skeleton in [None, Some(ASF)] {
+            let mut session = Session::new();
+            if let Some(skeleton) = skeleton {
+                session.load("01.asf", bytes(skeleton)).unwrap();
+            }
+            let before = files(&session);
+            let error = session.load("01_02.amc", bytes(empty)).unwrap_err().to_string();
+            assert_eq!(error, "01_02.amc:1:1: found an empty file, expected a motion file");
+            let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            assert!(told.contains(&&*error), "{told:?}");
+            assert_eq!(files(&session), before, "nothing waits");
+        }
+    }
+}
+
+#[test]
 fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
     let asf = ASF.replace("root thigh spine", "root thigh spine tail");
     let mut session = Session::new();
