@@ -30,7 +30,11 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         .map(|notice| Notice {
             text: &notice.text,
             mood: mood(notice.level),
-            action: notice.mend.as_ref().map_or("", |_| text::MEND),
+            action: match notice.mends.len() {
+                0 => "",
+                1 => text::MEND,
+                _ => text::MEND_ALL,
+            },
         })
         .collect();
     // Above the numbers: they are what one looks at.
@@ -38,10 +42,10 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
     if let Some((index, event)) = kit::toasts_ui(&notices, free, ui)
         && let Some(notice) = list.get(index)
     {
-        if let (NoticeEvent::Acted, Some(mend)) = (event, &notice.mend) {
-            out.commands.push(Command::Reimport(mend.clip.clone(), mend.options));
-        }
-        out.commands.push(Command::Dismiss(notice.id));
+        out.commands.push(match event {
+            NoticeEvent::Acted => Command::Mend(notice.id),
+            NoticeEvent::Dismissed => Command::Dismiss(notice.id),
+        });
     }
 }
 

@@ -22,6 +22,8 @@ pub(crate) const OPEN_FILES: &str = "open…";
 pub(crate) const DROP_NOW: &str = "Drop to open";
 /// Of a clip that was read in the wrong unit, or with a root that is elsewhere in a row.
 pub(crate) const MEND: &str = "Correct it";
+/// Of several of them.
+pub(crate) const MEND_ALL: &str = "Correct all";
 /// In a frame of another page.
 pub(crate) const HOST_READS: &str = "The page around this frame can read and save what you open here.";
 pub(crate) const COMPARE: &str = "Compare";

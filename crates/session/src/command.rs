@@ -58,6 +58,8 @@ pub enum Command {
     Redo,
     /// Takes a message away.
     Dismiss(u64),
+    /// Reads the clips better that a message offers to mend, as one step, and takes the message away.
+    Mend(u64),
     /// Gives up making the graph and the walk that are under way, or goes on with them.
     StopGraph(bool),
     /// Gives up reading a file, by the number of its task.

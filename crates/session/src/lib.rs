@@ -88,7 +88,7 @@ pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, N
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
-pub use notice::{Level, Mend, Notice, Notices, sentence};
+pub use notice::{Level, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
 pub use recipe::write_ids;

@@ -1,7 +1,6 @@
 //! What Segue has to say, until it is read.
 
 use super::outside::short;
-use segue_formats::ImportOptions;
 
 /// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
 #[must_use]
@@ -34,20 +33,11 @@ pub struct Notice {
     pub text: String,
     /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands for it.
     pub about: String,
-    /// How what it tells of can be mended.
-    pub mend: Option<Mend>,
+    /// Ids of the clips that can be read better: [`Command::Mend`](super::Command::Mend) does it.
+    pub mends: Vec<String>,
     /// The clip that it asks for.
     awaits: Option<String>,
     age_secs: f64,
-}
-
-/// A clip that can be read better: [`Command::Reimport`](super::Command::Reimport) with these options mends it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mend {
-    /// Its id.
-    pub clip: String,
-    /// How to read it.
-    pub options: ImportOptions,
 }
 
 /// The messages that are on screen, oldest first.
@@ -85,12 +75,19 @@ impl Notices {
         self.put(level, text.into(), about, None);
     }
 
-    /// Says something that can be mended.
-    pub fn offer(&mut self, level: Level, text: impl Into<String>, mend: Mend) {
-        self.put(level, text.into(), &mend.clip, None);
+    /// Warns of clips, by their ids, that can be read better.
+    pub fn offer(&mut self, text: impl Into<String>, clips: Vec<String>) {
+        let about = clips.first().cloned().unwrap_or_default();
+        self.put(Level::Warning, text.into(), &about, None);
         if let Some(notice) = self.list.last_mut() {
-            notice.mend = Some(mend);
+            notice.mends = clips;
         }
+    }
+
+    /// Takes away the message that offers to read clips better, and returns their ids.
+    pub fn take_offer(&mut self) -> Vec<String> {
+        let at = self.list.iter().position(|notice| !notice.mends.is_empty());
+        at.map(|at| self.list.remove(at).mends).unwrap_or_default()
     }
 
     /// Says that a clip is missing. It stays until [`Notices::keep_missing`] finds that it is not.
@@ -116,7 +113,7 @@ impl Notices {
             level,
             text,
             about: short(about),
-            mend: None,
+            mends: Vec::new(),
             awaits,
             age_secs: 0.0,
         };
@@ -143,7 +140,10 @@ impl Notices {
     }
 
     fn drop_oldest(&mut self, level: Level) -> bool {
-        let at = self.list.iter().position(|notice| notice.level == level);
+        let of_level = |notice: &Notice| notice.level == level;
+        // What can be mended at a press stays longest of its level.
+        let plain = self.list.iter().position(|notice| of_level(notice) && notice.mends.is_empty());
+        let at = plain.or_else(|| self.list.iter().position(of_level));
         at.map(|at| self.list.remove(at)).is_some()
     }
 
@@ -167,7 +167,7 @@ impl Notices {
             level: Level::Error,
             text,
             about: String::new(),
-            mend: None,
+            mends: Vec::new(),
             awaits: None,
             age_secs: 0.0,
         });
@@ -311,6 +311,18 @@ mod tests {
         let sum = texts(&notices).pop().unwrap().to_owned();
         let long = short(&"y".repeat(500));
         assert_eq!(sum, format!("5 more did not work: 4, walk.bvh, 127.0.0.1:8000, a/b.bvh, {long}."));
+    }
+
+    #[test]
+    fn what_can_be_mended_outlasts_other_warnings() {
+        let mut notices = Notices::default();
+        notices.offer("too tall", vec!["x~12".to_owned()]);
+        for n in 0..10 {
+            notices.say(Level::Warning, format!("{n}"));
+        }
+        assert_eq!(texts(&notices), ["too tall", "6", "7", "8", "9"]);
+        assert_eq!(notices.take_offer(), ["x~12"]);
+        assert_eq!((notices.list().len(), notices.take_offer().len()), (4, 0));
     }
 
     #[test]

@@ -2,14 +2,14 @@
 
 use super::slots::Came;
 use super::{Job, Session};
+use segue_formats::{FileKind, ImportError, ImportOptions, acclaim};
 use crate::command::{CommandError, Request};
 use crate::library::{Entry, Origin, SourceFile, file_id, file_stem};
-use crate::notice::{Level, Mend, sentence};
+use crate::notice::{Level, sentence};
 use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
 use crate::samples::Sample;
-use segue_formats::{FileKind, ImportError, ImportOptions, acclaim};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -368,15 +368,13 @@ impl Session {
             let text = told.join(" ");
             // A T-pose in front is how the takes of whole databases come: good to know, and nothing to do about it.
             let is_odd = loaded.warnings.len() > t_poses;
+            let mends: Vec<String> = loaded.ids.iter().filter(|id| self.mend_of(id).is_some()).cloned().collect();
             match loaded.ids.as_slice() {
                 // Until its other half comes.
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
                 [id] if self.library.get(id).is_none() => self.say(Level::Info, in_the_library(&names)),
-                [id] if let Some(mend) = self.mend_of(id) => {
-                    self.notices.offer(Level::Warning, text, mend);
-                    self.revision += 1;
-                }
+                _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         }
@@ -386,8 +384,46 @@ impl Session {
         Ok(loaded)
     }
 
+    /// Warns of clips that can be read better; with those of an earlier warning, as one.
+    fn offer_mends(&mut self, text: String, clips: Vec<String>) {
+        let mut all = self.notices.take_offer();
+        all.retain(|id| !clips.contains(id));
+        let is_alone = all.is_empty();
+        all.extend(clips);
+        let text = if is_alone {
+            text
+        } else {
+            let names = all.iter().filter_map(|id| Some(self.library.get(id)?.name.as_str()));
+            let mut named: Vec<String> = names.take(MOST_FAILURES).map(outside::short).collect();
+            if all.len() > named.len() {
+                named.push("…".to_owned());
+            }
+            format!(
+                "{} clips are of a size or at a place that cannot be right: {}.",
+                all.len(),
+                named.join(", ")
+            )
+        };
+        self.notices.offer(text, all);
+        self.revision += 1;
+    }
+
+    /// Reads the clips better that a message offers to mend, as one step for undo. What cannot be read stays as it is, and is told.
+    pub(super) fn mend(&mut self, notice: u64) {
+        let found = self.notices.list().iter().find(|found| found.id == notice);
+        let clips = found.map(|found| found.mends.clone()).unwrap_or_default();
+        let library = self.library.clone();
+        for (id, options) in clips.iter().filter_map(|id| Some((id, self.mend_of(id)?))).collect::<Vec<_>>() {
+            if let Err(error) = self.reread(id, &options) {
+                self.say(Level::Error, error.to_string());
+            }
+        }
+        self.history.before_change(&self.params, &library, None);
+        self.notices.dismiss(notice);
+    }
+
     /// How a clip could be read better, where that is safe.
-    fn mend_of(&self, id: &str) -> Option<Mend> {
+    fn mend_of(&self, id: &str) -> Option<ImportOptions> {
         let entry = self.library.get(id)?;
         let (Origin::File(file), Some(about)) = (&entry.origin, &entry.about) else {
             return None;
@@ -397,8 +433,7 @@ impl Session {
             even_wild_rows: about.wild_rows || file.options.even_wild_rows,
             ..file.options
         };
-        let clip = id.to_owned();
-        (options != file.options).then_some(Mend { clip, options })
+        (options != file.options).then_some(options)
     }
 
     /// Says why a file was not read.
@@ -636,6 +671,14 @@ impl Session {
     }
 
     pub(super) fn reimport(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
+        let library = self.library.clone();
+        self.reread(id, options)?;
+        self.history.before_change(&self.params, &library, None);
+        Ok(())
+    }
+
+    /// Reads a clip's file again with other options. An error changes nothing.
+    fn reread(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
         let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
         let Origin::File(file) = &entry.origin else {
             return Err(CommandError::NotPossible("only a clip that came from a file can be read again"));
@@ -657,7 +700,6 @@ impl Session {
             self.library = library;
             return Err(error.into());
         }
-        self.history.before_change(&self.params, &library, None);
         Ok(())
     }
 }

@@ -460,6 +460,7 @@ impl Session {
                 }
             }
             Command::Dismiss(id) => self.notices.dismiss(id),
+            Command::Mend(id) => self.mend(id),
             Command::StopReading(id) => self.stop_reading(id),
         }
         self.refresh();
