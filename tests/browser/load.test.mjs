@@ -97,6 +97,62 @@ onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
   assert.deepEqual(await segue("clips"), before);
 });
 
+/** A zip of so many files of no bytes. */
+function emptyFiles(count) {
+  const [parts, directory] = [[], []];
+  let at = 0;
+  for (let index = 0; index < count; index++) {
+    const name = Buffer.from(`n${String(index).padStart(5, "0")}.bvh`);
+    const local = Buffer.alloc(30);
+    local.write("PK\x03\x04", "latin1");
+    local.writeUInt16LE(20, 4);
+    local.writeUInt16LE(name.length, 26);
+    const central = Buffer.alloc(46);
+    central.write("PK\x01\x02", "latin1");
+    central.writeUInt16LE(20, 6);
+    central.writeUInt16LE(name.length, 28);
+    central.writeUInt32LE(at, 42);
+    parts.push(local, name);
+    directory.push(central, name);
+    at += local.length + name.length;
+  }
+  const list = Buffer.concat(directory);
+  const end = Buffer.alloc(22);
+  end.write("PK\x05\x06", "latin1");
+  end.writeUInt16LE(count, 8);
+  end.writeUInt16LE(count, 10);
+  end.writeUInt32LE(list.length, 12);
+  end.writeUInt32LE(at, 16);
+  return Buffer.concat([...parts, list, end]);
+}
+
+// Fails when an archive may hold any number of files, and when each that is broken is told before they are counted.
+onBackend("webgl2", "60,000 empty files in a zip do not stop the frames, and the limit is told", async ({ open, t }) => {
+  const { page, segue, load } = await open("lab=view&play=off", SMALL);
+  await segue("set", {});
+  const before = await segue("clips");
+  await page.evaluate(() => {
+    window.gaps = [];
+    let last = performance.now();
+    const frame = (now) => {
+      window.gaps.push(now - last);
+      last = now;
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  });
+  const { clips, warnings } = await load("many_names.zip", emptyFiles(60_000));
+  assert.deepEqual(clips, []);
+  assert.ok(warnings.some((warning) => warning.includes("58000 motion files of the archive left out: the first 2000 are read")), warnings.slice(0, 3).join("\n"));
+  assert.match(warnings.join("\n"), /n00000\.bvh:1:1: found an empty file/);
+  const { frames } = await segue("stats");
+  await until("it draws", async () => (await segue("stats")).frames > frames);
+  const longest = await page.evaluate(() => Math.max(...window.gaps));
+  t.diagnostic(`longest gap between frames: ${Math.round(longest)} ms`);
+  assert.ok(longest < 2000, `${longest} ms between two frames`);
+  assert.deepEqual(await segue("clips"), before);
+});
+
 /** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
 const stored = (page) => page.evaluate(async () => {
   const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));

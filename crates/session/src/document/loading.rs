@@ -377,6 +377,10 @@ impl Session {
                 _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
+        } else if !loaded.warnings.is_empty() {
+            // What holds for the archive holds though nothing in it can be read.
+            let told: Vec<String> = loaded.warnings.iter().map(|warning| sentence(warning)).collect();
+            self.say(Level::Warning, told.join(" "));
         }
         // Listeners are told of each.
         loaded.warnings.extend(failures.iter().map(ToString::to_string));

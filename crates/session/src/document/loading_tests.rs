@@ -4,6 +4,7 @@ use super::loading::MOST_FAILURES;
 use super::tests::settle;
 use super::*;
 use segue_formats::ImportOptions;
+use segue_formats::archive::MOST_FILES;
 use crate::Notice;
 use crate::reading::Content;
 use std::io::Write as _;
@@ -644,6 +645,19 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
 }
 
 #[test]
+fn limit_of_an_archive_is_told_though_nothing_in_it_can_be_read() {
+    let names: Vec<String> = (0..MOST_FILES + 50).map(|n| format!("{n:05}.bvh")).collect();
+    let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+    let mut session = Session::new();
+    session.load("many.zip", Arc::from(zip(&files))).unwrap();
+    let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    assert!(
+        told.contains(&"50 motion files of the archive left out: the first 2000 are read."),
+        "{told:#?}"
+    );
+}
+
+#[test]
 fn name_of_a_file_is_cleaned_and_its_id_is_short() {
     let name = format!("a\nb\0\u{202e}hvb.{}.amc", "x".repeat(4000));
     let mut session = Session::new();
@@ -801,6 +815,8 @@ fn mending_several_clips_is_one_step_for_undo() {
     session.apply(Command::Undo).unwrap();
     settle(&mut session);
     assert_eq!(heights(&session), before);
+    session.apply(Command::Undo).unwrap();
+    assert!(session.library().get(&ids[0]).is_none(), "the step before is the loading");
 }
 
 fn ids_named(session: &Session, name: &str) -> String {
