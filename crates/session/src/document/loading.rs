@@ -2,7 +2,6 @@
 
 use super::slots::Came;
 use super::{Job, Session};
-use segue_formats::{FileKind, ImportError, ImportOptions, acclaim};
 use crate::command::{CommandError, Request};
 use crate::library::{Entry, Origin, SourceFile, file_id, file_stem};
 use crate::notice::{Level, sentence};
@@ -10,6 +9,7 @@ use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
 use crate::samples::Sample;
+use segue_formats::{FileKind, ImportError, ImportOptions, acclaim};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -3,10 +3,10 @@
 use super::loading::MOST_FAILURES;
 use super::tests::settle;
 use super::*;
-use segue_formats::ImportOptions;
-use segue_formats::archive::MOST_FILES;
 use crate::Notice;
 use crate::reading::Content;
+use segue_formats::ImportOptions;
+use segue_formats::archive::MOST_FILES;
 use std::io::Write as _;
 
 pub(super) const ASF: &str = "\
