@@ -4,10 +4,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use segue::clip::Clip;
-use segue::formats::gltf::{GlbOptions, read, write_character_glb, write_glb};
-use segue::formats::{ImportOptions, Imported};
-use segue::skin::SkinnedMesh;
+use segue_formats::gltf::{GlbOptions, read, write_character_glb, write_glb};
+use segue_formats::{ImportOptions, Imported};
+use segue_motion::clip::Clip;
+use segue_motion::skin::SkinnedMesh;
 use std::sync::Arc;
 
 fuzz_target!(|bytes: &[u8]| {

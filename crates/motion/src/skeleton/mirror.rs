@@ -84,12 +84,20 @@ impl Mirror {
         for joint in 0..skeleton.len() {
             let Some(other) = mirror.counterparts[joint] else { continue };
             let bones = mirror.bones_below(joint);
-            // Where several bones start that lead nowhere in common, the longest stands for them: all may lie on one line.
+            // All of several bones may lie on one line, and then leave the turn about it open. The longest stands for them; in the middle of the body their
+            // sum does, for a bone of one side would be turned to that of the other, and the mirror image of the mirror image would be another pose.
+            let sum = |bones: &[(Vec3, Vec3)]| {
+                bones
+                    .iter()
+                    .fold((Vec3::ZERO, Vec3::ZERO), |sum, bone| (sum.0 + bone.0, sum.1 + bone.1))
+            };
             let longest = bones.iter().copied().max_by(|a, b| a.0.length().total_cmp(&b.0.length()));
             let bone = match (pairing.bone(joint), pairing.bone(other)) {
                 (Some(bone), Some(others)) => Some((bone, mirror.reflected(others))),
-                _ => longest.filter(|(bone, _)| bone.length() > LEAST_BONE_M),
+                _ if other == joint => Some(sum(&bones)),
+                _ => longest,
             };
+            let bone = bone.filter(|(bone, _)| bone.length() > LEAST_BONE_M);
             let near = usual.and_then(|usual| mirror.usual_correction(joint, other, usual));
             mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
                 // The second of a pair is made from the first, so that both undo each other to the last bit.
