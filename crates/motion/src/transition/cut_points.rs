@@ -50,13 +50,16 @@ const CM_PER_CYCLE: f64 = 20.0;
 /// The feet's phases choose between cycles whose distances differ by no more than this, as a share of the least and in centimetres.
 const ALIKE_SHARE: f64 = 0.05;
 const ALIKE_CM: f64 = 0.02;
+/// A foot that stands all through a cycle in which the body goes on by more than this has to slide, centimetres on the reference body.
+const DRAGGED_CM: f64 = 5.0;
 /// How many minima of the coarse grid are looked at closely.
 const CANDIDATES: usize = 16;
 
 /// Finds where a clip repeats itself: the pair of frames with the smallest distance between the windows that begin there, among all cycles of the
 /// durations asked for. Of distances that are all but equal the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
 ///
-/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands for a moment fits itself best, and is no gait.
+/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands for a moment fits itself best, and is no gait. Nor does
+/// a foot stand all through a cycle that goes on, as in the last step of a run that stops: round after round it would be dragged along.
 /// Coarse to fine: every minimum of a grid of about 1/30 s is looked at frame by frame. A clip that is one whole cycle has no window behind its last
 /// frame: its first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
 ///
@@ -77,6 +80,7 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
     }
     let finder = Finder {
         clip,
+        source,
         contacts,
         touchdowns: touchdowns(contacts),
         weights: limb_weights(clip.skeleton()),
@@ -127,6 +131,7 @@ impl Place {
 
 struct Finder<'a> {
     clip: &'a Clip,
+    source: &'a Source,
     contacts: &'a Contacts,
     /// When a foot comes down, frames in order.
     touchdowns: Vec<usize>,
@@ -177,16 +182,28 @@ impl Finder<'_> {
         self.touchdowns.get(next).is_some_and(|&at| at <= place.end)
     }
 
-    /// The best of these cycles: of those that have a step, if there are any, and are about as close as the closest, the one with the least score.
+    /// Whether a foot stands all through a cycle that goes on.
+    fn drags_in(&self, place: &Place) -> bool {
+        let stays = |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
+        let [from, to] = [place.start, place.end].map(|frame| self.source.frames()[frame].shift);
+        from.distance(to) * self.cm > DRAGGED_CM && Side::BOTH.into_iter().any(stays)
+    }
+
+    /// What speaks against a cycle, the worst first: it has no step, or drags a foot.
+    fn flaws(&self, place: &Place) -> [bool; 2] {
+        [!self.steps_in(place), self.drags_in(place)]
+    }
+
+    /// The best of these cycles: of those with the fewest flaws that are about as close as the closest, the one with the least score.
     fn choose(&self, places: &[Place]) -> Option<Place> {
-        let any_steps = places.iter().any(|place| self.steps_in(place));
-        let admitted = || places.iter().filter(|place| !any_steps || self.steps_in(place));
+        let fewest = places.iter().map(|place| self.flaws(place)).min()?;
+        let admitted = || places.iter().filter(|place| self.flaws(place) == fewest);
         let least = admitted().map(|place| place.rms_cm).min_by(f64::total_cmp)?;
         let alike = admitted().filter(|place| place.rms_cm <= least * (1.0 + ALIKE_SHARE) + ALIKE_CM);
         alike.min_by(|a, b| a.score.total_cmp(&b.score)).copied()
     }
 
-    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its lowest minima, and those of cycles with a step.
+    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its lowest minima, and those of cycles with the fewest flaws.
     fn pairs(
         &self,
         starts: &Range<usize>,
@@ -224,8 +241,8 @@ impl Finder<'_> {
             })
             .collect();
         if minima {
-            let stepping = places.iter().any(|place| self.steps_in(place));
-            places.retain(|place| !stepping || self.steps_in(place));
+            let fewest = places.iter().map(|place| self.flaws(place)).min();
+            places.retain(|place| Some(self.flaws(place)) == fewest);
             places.sort_by(|a, b| a.rms_cm.total_cmp(&b.rms_cm));
             places.truncate(CANDIDATES);
         }
@@ -305,6 +322,39 @@ mod tests {
                 made.seam
             );
         }
+    }
+
+    /// As in the last step of a run that stops, where one foot stands while the body is still going on.
+    #[test]
+    fn cycle_in_which_a_foot_is_dragged_is_not_taken() {
+        let clip = Arc::new(
+            Walk {
+                frames: 400,
+                cadence: 1.0,
+                ..Walk::default()
+            }
+            .clip(),
+        );
+        let roles = Roles::detect(clip.skeleton());
+        let height = f64::from(roles.body_height(clip.skeleton()));
+        let source = Source::new(Arc::clone(&clip), &roles);
+        // The left foot steps all the time, the right one stands in the first half.
+        let left = (0..400).map(|frame| frame % 60 < 36).collect();
+        let right = (0..400).map(|frame| frame < 200 || (frame + 30) % 60 < 36).collect();
+        let contacts = Contacts::from_flags([left, right]);
+        let search = CycleSearch::new(60.0);
+        let finds = |contacts: &Contacts, search: &CycleSearch| find_cycle(&source, contacts, height, search).unwrap().cycle;
+        let cycle = finds(&contacts, &search);
+        assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");
+        // Where every cycle drags it, or the ends are given, it is a cycle all the same.
+        let always = Contacts::from_flags([(0..400).map(|frame| frame % 60 < 36).collect(), vec![true; 400]]);
+        assert_eq!(finds(&always, &search).len() % 60, 0);
+        let given = CycleSearch {
+            start: Some(20),
+            end: Some(80),
+            ..search
+        };
+        assert_eq!(finds(&contacts, &given), 20..80);
     }
 
     #[test]
