@@ -8,7 +8,7 @@ mod trials;
 
 use segue_session::{Command, write_ids};
 use trials::folder::{Motions, encoded};
-use trials::trial::{Came, Trial, try_all};
+use trials::trial::{Came, Drawn, Numbers, Trial, try_all};
 
 /// Labs whose results on close pairs, and on sets of takes, have no artefact of their own.
 const SMOOTH: [&str; 7] = ["blend", "transition", "speed", "loop", "layers", "register", "match"];
@@ -42,6 +42,34 @@ fn skating(trials: &[Trial], lab: &str) -> [f64; 2] {
         assert!(!values.is_empty(), "no result of {lab}");
         values.iter().sum::<f64>() / values.len() as f64
     })
+}
+
+#[test]
+fn skating_is_a_fault_where_it_can_be_seen() {
+    let faults = |skating: f64, source_skating: f64| {
+        let numbers = Numbers {
+            skating: Some(skating),
+            source_skating: Some(source_skating),
+            ..Numbers::default()
+        };
+        let trial = Trial {
+            lab: "blend",
+            method: String::new(),
+            drawn: Drawn::SameRig,
+            takes: Vec::new(),
+            link: String::new(),
+            locked: true,
+            bound: true,
+            secs: 0.0,
+            came: Came::Made(Box::new(numbers)),
+        };
+        trial.faults()
+    };
+    // Feet that stand: a share of next to nothing says nothing.
+    assert!(faults(0.07, 0.06).is_empty() && faults(0.01, 0.0).is_empty());
+    assert_eq!(faults(0.64, 0.05), ["skating"]);
+    assert!(faults(10.4, 10.0).is_empty());
+    assert_eq!(faults(10.6, 10.0), ["skating"]);
 }
 
 #[test]

@@ -14,6 +14,8 @@ use std::time::Instant;
 const CLOSE_CM: f32 = 12.0;
 /// Skating is more than another one's by more than this share: so near do two meters that measure it agree.
 const SAME_SKATING: f64 = 1.05;
+/// A difference below this is no skating, cm/s: clips that stand have next to none, and a millimetre a second is not seen.
+const LEAST_SKATING_CMPS: f64 = 0.1;
 /// Trials that take longer are given up, seconds.
 const MOST_SECS: f64 = 120.0;
 /// An edited path bulges out by this share of its length, and by no more than so many metres.
@@ -163,7 +165,7 @@ impl Trial {
                     let worse = numbers
                         .skating
                         .zip(numbers.source_skating)
-                        .is_some_and(|(own, source)| own > SAME_SKATING * source);
+                        .is_some_and(|(own, source)| own > (SAME_SKATING * source).max(source + LEAST_SKATING_CMPS));
                     note(self.locked && worse, "skating");
                 }
             }
