@@ -1,10 +1,10 @@
 //! Whose motion a lab works with: made, captured, or what the user brought.
 
 use super::document::Session;
+use super::labs::{graph_of, write_ids};
 use super::library::{Entry, Origin};
 use super::link;
 use super::params::{Key, Value};
-use super::recipe::{graph_of, write_ids};
 use super::samples::SUBJECT_16;
 use crate::LabId;
 

@@ -1,9 +1,9 @@
 use super::document::NoResult;
+use super::labs::Slot;
 use super::lesson::Source;
 use super::outside::short;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
-use super::recipe::Slot;
 use super::samples::{Sample, SampleSet};
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;

@@ -1,6 +1,6 @@
+use super::labs::{read_ids, write_ids};
 use super::outside::short;
 use super::params::{Choice, Key, Kind, Value, ValueError};
-use super::recipe::{read_ids, write_ids};
 use std::fmt;
 
 /// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`, `method:inertialize,smooth`, `a:walk,run`.

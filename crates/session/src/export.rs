@@ -1,8 +1,8 @@
 //! A motion as the bytes of a file.
 
+use super::labs::{Outcome, Source};
 use super::motion::{Motion, curve_kind, joint_of};
 use super::params::{Key, Params};
-use super::recipe::{Outcome, Source};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};

@@ -63,6 +63,7 @@ mod command;
 mod compare;
 mod document;
 pub mod export;
+mod labs;
 pub mod lesson;
 mod library;
 pub mod link;
@@ -73,7 +74,6 @@ mod numbers;
 pub mod outside;
 mod params;
 pub mod reading;
-mod recipe;
 mod report;
 mod samples;
 mod saved;
@@ -85,20 +85,20 @@ pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
+pub use labs::write_ids;
+pub use labs::{
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+};
+pub use labs::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
+pub use labs::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
+pub use labs::{HandTag, own_words, write_tags};
+pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
-pub use recipe::write_ids;
-pub use recipe::{
-    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
-};
-pub use recipe::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
-pub use recipe::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
-pub use recipe::{HandTag, own_words, write_tags};
-pub use recipe::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
 pub use saved::{Saved, SavedEntry, Storing};

@@ -3,10 +3,10 @@
 use super::Session;
 use crate::LabId;
 use crate::command::{CommandError, CompanyChange};
+use crate::labs::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::Motion;
 use crate::params::{Key, Params, Value};
-use crate::recipe::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
 use std::sync::Arc;
 
 /// As many as a stage and an eye have room for.

@@ -32,7 +32,7 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     let outcome = session.main_outcome().unwrap();
     let database = Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap());
     assert_eq!(driven(&session).database.frames(), database.frames());
-    let mut options = crate::recipe::options_of(session.params());
+    let mut options = crate::labs::options_of(session.params());
     options.candidates = 1;
     let played = drive(&database, options, &Scenario::Spin.recording()).unwrap();
     // The trajectory times of the sliders are hundredths of a second, and come to the same frames.
@@ -314,7 +314,7 @@ fn what_cannot_be_done_is_a_sentence() {
     // A controller of the core stands where this one stands.
     let core = Controller::new(
         Arc::clone(&driven(&session).database),
-        crate::recipe::options_of(session.params()),
+        crate::labs::options_of(session.params()),
         &segue_motion::math::Planar::IDENTITY,
     );
     assert_eq!(core.unwrap().place(), driven(&session).moments[0].place);

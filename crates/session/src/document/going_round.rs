@@ -4,8 +4,8 @@
 use super::Session;
 use super::panes::{Inputs, Pane};
 use crate::choices;
+use crate::labs::{CycleMade, Outcome};
 use crate::params::{Key, Value};
-use crate::recipe::{CycleMade, Outcome};
 use segue_motion::gait::SpeedOptions;
 use segue_motion::math::{Planar, spring};
 use std::mem::discriminant;

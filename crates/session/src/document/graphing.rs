@@ -2,8 +2,8 @@
 
 use super::Session;
 use crate::LabId;
+use crate::labs::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
 use crate::params::Key;
-use crate::recipe::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
 use glam::DVec2;
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 
 use super::tests::settle;
 use super::*;
+use crate::labs::{Gauge, Measured};
 use crate::motion::Motion;
 use crate::params::Kind;
-use crate::recipe::{Gauge, Measured};
 use glam::Quat;
 use segue_motion::clip::Clip;
 use segue_motion::metrics::{Better, Metric, ResultMetrics};

@@ -23,6 +23,11 @@ pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
+use super::labs::{
+    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Gauge, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot,
+    Viewer, read_also, read_pins, read_weights,
+};
+use super::labs::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin};
 use super::link;
@@ -32,11 +37,6 @@ use super::notice::{Level, Notices};
 use super::outside;
 use super::params::{Key, Params, Value};
 use super::reading::{Reads, read};
-use super::recipe::{
-    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Gauge, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot,
-    Viewer, read_also, read_pins, read_weights,
-};
-use super::recipe::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::samples;
 use super::transport::Span;
 use super::undo::History;

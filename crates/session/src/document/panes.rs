@@ -4,15 +4,15 @@ use super::Session;
 use super::going_round::{Glide, durations};
 use crate::LabId;
 use crate::compare::{Compare, MAX_PANES};
+use crate::labs::{
+    BlendInputs, Gauge, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source,
+    SpeedInputs, ViewInputs,
+};
+use crate::labs::{belongs_to, clips_of, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::{FeetReading, Motion};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
-use crate::recipe::{
-    BlendInputs, Gauge, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source,
-    SpeedInputs, ViewInputs,
-};
-use crate::recipe::{belongs_to, clips_of, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params};
 use segue_motion::math::Planar;
 use std::sync::Arc;
 

@@ -4,10 +4,10 @@
 use super::{Session, built_in_entries};
 use crate::LabId;
 use crate::command::CommandError;
+use crate::labs::{Slot, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
-use crate::recipe::{Slot, recipe_name, recipe_params};
 
 /// How a file has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

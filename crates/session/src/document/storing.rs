@@ -1,12 +1,12 @@
 //! The work into storage, and back from it: before anything is shown, or later.
 
 use super::{Session, built_in_entries};
+use crate::labs::{recipe_name, recipe_params};
 use crate::library::{Entry, Origin, SourceFile};
 use crate::link;
 use crate::notice::Level;
 use crate::params::Key;
 use crate::reading::{Content, LARGE_BYTES};
-use crate::recipe::{recipe_name, recipe_params};
 use crate::saved::{Saved, SavedEntry, SavedFile};
 use crate::undo::History;
 use segue_formats::ImportOptions;

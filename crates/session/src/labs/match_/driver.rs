@@ -4,9 +4,9 @@ use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::Outcome;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
-use crate::recipe::Outcome;
 use segue_motion::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError,
     Normalisation, Recording, TagFilter, made_clip, made_params,

@@ -2,7 +2,7 @@
 
 use super::{PathInputs, free_motion};
 use crate::compare::MAX_PANES;
-use crate::recipe::feet::locking;
+use crate::labs::feet::locking;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::metrics::SlideMeter;
 use segue_motion::transition::FootLocking;

@@ -1,6 +1,6 @@
+use crate::labs::Retargeted;
+use crate::labs::pair::source_of;
 use crate::motion::Motion;
-use crate::recipe::Retargeted;
-use crate::recipe::pair::source_of;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Lists of pairs as links carry them: `12-30,50-71`, `0.3:run`.
 
+use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::format_number;
-use crate::recipe::kept::{read_ids, write_ids};
 
 /// A link with more pairs is an accident.
 const MOST_PAIRS: usize = 64;

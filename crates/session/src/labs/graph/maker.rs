@@ -2,8 +2,8 @@ use super::plan::Plan;
 use super::walk::Trace;
 use super::wanted::{Wanted, sentence};
 use super::{Built, Passed, Walk};
+use crate::labs::feet::{locking, slide, slide_before};
 use crate::motion::Motion;
-use crate::recipe::feet::{locking, slide, slide_before};
 use petgraph::graph::NodeIndex;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::graph::{

@@ -9,14 +9,14 @@ use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
 use std::sync::Arc;
 
 mod blend;
-mod driving;
 mod feet;
 mod gauge;
 mod graph;
 mod kept;
 mod layers;
-mod looping;
+mod loop_;
 mod make;
+mod match_;
 mod pair;
 mod path;
 mod register;
@@ -26,10 +26,6 @@ mod view;
 
 pub use blend::mistake_shows;
 pub(super) use blend::{BlendInputs, Blender};
-#[cfg(test)]
-pub(super) use driving::options_of;
-pub(super) use driving::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
-pub use driving::{DriveMoment, Driven, HandTag, own_words, write_tags};
 pub(super) use gauge::Gauge;
 pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
@@ -39,8 +35,12 @@ pub use kept::write_ids;
 pub(super) use kept::{belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
-pub(super) use looping::{CycleFinder, LoopInputs};
+pub(super) use loop_::{CycleFinder, LoopInputs};
 pub(super) use make::{has as made_motion_has, made_id, make, preset_motion, range_of, synth_action};
+#[cfg(test)]
+pub(super) use match_::options_of;
+pub(super) use match_::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
+pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
 pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath, spline_ends};
 pub(super) use path::{PathInputs, Paths};

@@ -1,10 +1,10 @@
 use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::feet::Lock;
+use crate::labs::pair::{Pair, Pairs};
 use crate::motion::Motion;
 use crate::params::{Key, Params};
-use crate::recipe::feet::Lock;
-use crate::recipe::pair::{Pair, Pairs};
 use segue_motion::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
 };

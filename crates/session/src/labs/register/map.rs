@@ -1,5 +1,5 @@
+use crate::labs::pair::Pair;
 use crate::motion::Motion;
-use crate::recipe::pair::Pair;
 use segue_motion::math::Planar;
 use segue_motion::registration::{DistanceMatrix, align, limb_weights};
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! What a character did, tick by tick: its motion, and why it went where it went.
 
+use crate::labs::Outcome;
 use crate::motion::{FeetReading, Motion};
-use crate::recipe::Outcome;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::matching::{Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering};
 use segue_motion::math::Planar;

@@ -2,9 +2,9 @@
 
 use super::tagging::clip_name;
 use crate::choices;
+use crate::labs::read_ids;
 use crate::outside::short;
 use crate::params::{Key, Params};
-use crate::recipe::read_ids;
 use segue_motion::matching::{
     ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights,
 };

@@ -1,8 +1,8 @@
 //! Tags that are set by hand, beside those that speed and turn rate suggest: `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
+use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, format_number};
-use crate::recipe::kept::{read_ids, write_ids};
 use segue_motion::matching::{Database, Motion, RATE, Tag, TagFilter, TagRange, TagSet};
 use std::sync::Arc;
 

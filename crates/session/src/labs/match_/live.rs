@@ -1,7 +1,7 @@
 //! A character that is driven now.
 
 use super::trace::Tracer;
-use crate::recipe::{Gauge, Outcome};
+use crate::labs::{Gauge, Outcome};
 use segue_motion::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, ResultMetrics};

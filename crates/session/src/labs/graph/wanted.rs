@@ -1,9 +1,9 @@
 use crate::choices;
+use crate::labs::blend::{align_by, root_blend, weight_law};
+use crate::labs::feet::Lock;
+use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, Value};
-use crate::recipe::blend::{align_by, root_blend, weight_law};
-use crate::recipe::feet::Lock;
-use crate::recipe::kept::{read_ids, write_ids};
 use glam::DVec2;
 use segue_motion::graph::{
     Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions,
