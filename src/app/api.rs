@@ -10,14 +10,12 @@ use segue::scene::pose_at;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
-use segue_session::LabId;
-use segue_session::choices;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, Params, ReportFacts, Value, check_graph_clips,
-    frame_at, report,
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, ReportFacts, Value, check_graph_clips,
+    file_stem, frame_at, report,
 };
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -402,7 +400,7 @@ impl Segue {
                     let param = key.param();
                     format!(" {} {}", param.format(value), param.unit)
                 });
-                let stem = result_name(made.params) + &value.unwrap_or_default();
+                let stem = file_stem(made.params) + &value.unwrap_or_default();
                 (&made.outcome.motion, plotted_of_result(made.outcome, params), stem)
             }
         };
@@ -416,7 +414,7 @@ impl Segue {
     /// What a picture or a film of the stage is called as a file: what is seen.
     pub(super) fn stage_name(&self) -> String {
         let seen = self.session.panes().first().and_then(Pane::made_from);
-        result_name(seen.unwrap_or(self.session.params()))
+        file_stem(seen.unwrap_or(self.session.params()))
     }
 
     /// What is under way.
@@ -452,20 +450,6 @@ impl Segue {
     /// Where the stage is on the page, in points; none before it was drawn.
     pub(crate) fn stage_place(&self) -> Option<eframe::egui::Rect> {
         self.picture.place()
-    }
-}
-
-/// What a result is called as a file: what it was made from.
-fn result_name(params: &Params) -> String {
-    match params.lab() {
-        LabId::Blend | LabId::Transition => format!("{} to {}", params.text(Key::A), params.text(Key::B)),
-        LabId::Make => params.choice::<choices::MadeAction>().word().to_owned(),
-        LabId::Speed | LabId::Layers => format!("{} and {}", params.text(Key::A), params.text(Key::B)),
-        LabId::Loop => format!("{} loop", params.text(Key::A)),
-        LabId::Path => format!("{} on a path", params.text(Key::A)),
-        LabId::Graph => "walk".to_owned(),
-        LabId::Match => "drive".to_owned(),
-        LabId::View | LabId::Register => params.text(Key::A).to_owned(),
     }
 }
 

@@ -1,12 +1,11 @@
 //! Whose motion a lab works with: made, captured, or what the user brought.
 
 use super::document::Session;
-use super::labs::{graph_of, write_ids};
+use super::labs::lab::{self, Lab};
 use super::library::{Entry, Origin};
 use super::link;
 use super::params::{Key, Value};
 use super::samples::SUBJECT_16;
-use crate::LabId;
 
 /// A choice of clips for the whole lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +22,7 @@ impl Session {
     /// What is to be set so that the open lab works with these clips; `None` where it has nothing to choose, or there are no such clips.
     #[must_use]
     pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
-        let lab = self.params().lab();
-        let takes_list = matches!(lab, LabId::Graph | LabId::Match);
+        let lab = lab::of(self.params().lab());
         match set {
             ClipSet::Captured => captured(lab),
             ClipSet::Made => captured(lab).map(|values| {
@@ -34,7 +32,7 @@ impl Session {
             ClipSet::Own => {
                 let own = self.library().entries().iter().filter(|entry| is_own_motion(entry));
                 let ids: Vec<String> = own.map(|entry| entry.id.clone()).take(MOST_OWN).collect();
-                (takes_list && !ids.is_empty()).then(|| listed(lab, &ids))
+                lab.with_clips(&ids).filter(|_| !ids.is_empty())
             }
         }
     }
@@ -53,27 +51,13 @@ impl Session {
 /// The Graph lab takes no more.
 const MOST_OWN: usize = 64;
 
-fn captured(lab: LabId) -> Option<Vec<(Key, Value)>> {
-    let query = match lab {
-        LabId::Graph | LabId::Match => {
-            let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
-            return Some(listed(lab, &ids));
-        }
-        LabId::Loop | LabId::Path => "a=cmu16_walk",
-        LabId::Speed => "a=cmu16_walk&b=cmu16_run",
-        LabId::Register => "a=cmu16_walk&b=cmu16_fast_walk",
-        _ => return None,
+/// What is to be set so that a lab works with the bundled captured clips.
+fn captured(lab: &dyn Lab) -> Option<Vec<(Key, Value)>> {
+    let listed = || {
+        let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
+        lab.with_clips(&ids)
     };
-    Some(link::read(query).values)
-}
-
-/// A list of clips in a lab that takes one.
-fn listed(lab: LabId, ids: &[String]) -> Vec<(Key, Value)> {
-    if lab == LabId::Graph {
-        graph_of(ids)
-    } else {
-        vec![(Key::MatchClips, Value::Text(write_ids(ids)))]
-    }
+    lab.captured_link().map(|query| link::read(query).values).or_else(listed)
 }
 
 /// Whether it is a file of the user's that moves: a skeleton or a character alone does not.

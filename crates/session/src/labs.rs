@@ -13,6 +13,7 @@ mod feet;
 mod gauge;
 mod graph;
 mod kept;
+pub(super) mod lab;
 mod layers;
 mod loop_;
 mod make;
@@ -31,8 +32,8 @@ pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
 };
 pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
-pub use kept::write_ids;
 pub(super) use kept::{belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
+pub use kept::{file_stem, write_ids};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use layers::{LayerInputs, Layerer};
 pub(super) use loop_::{CycleFinder, LoopInputs};

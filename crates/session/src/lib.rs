@@ -85,7 +85,6 @@ pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
 pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
-pub use labs::write_ids;
 pub use labs::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
 };
@@ -93,6 +92,7 @@ pub use labs::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Reg
 pub use labs::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use labs::{HandTag, own_words, write_tags};
 pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
+pub use labs::{file_stem, write_ids};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};

@@ -8,7 +8,7 @@ use crate::labs::{
     BlendInputs, Gauge, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source,
     SpeedInputs, ViewInputs,
 };
-use crate::labs::{belongs_to, clips_of, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params};
+use crate::labs::{belongs_to, clips_of, lab, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::{FeetReading, Motion};
 use crate::outside;
@@ -362,11 +362,7 @@ impl Session {
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
-        match (self.params.lab(), slot) {
-            (LabId::Make | LabId::Graph | LabId::Match, _) => false,
-            (_, Slot::A) => true,
-            (lab, Slot::B) => !matches!(lab, LabId::View | LabId::Loop | LabId::Path),
-        }
+        lab::of(self.params.lab()).slots().contains(&slot)
     }
 
     /// The motion of a clip with its feet read as the parameters ask for.

@@ -4,7 +4,7 @@
 use super::{Session, built_in_entries};
 use crate::LabId;
 use crate::command::CommandError;
-use crate::labs::{Slot, recipe_name, recipe_params};
+use crate::labs::{Slot, lab, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
@@ -176,13 +176,7 @@ impl Session {
 
     /// Puts back what the open lab's own list of clips names.
     pub(super) fn bring_back_listed(&mut self) {
-        let listed = match self.params.lab() {
-            LabId::Graph => self.graph_clip_ids(),
-            LabId::Match => self.match_clip_ids(),
-            LabId::Path => self.company_ids(),
-            _ => return,
-        };
-        for id in listed {
+        for id in lab::of(self.params.lab()).listed(&self.params) {
             self.bring_back(&id);
         }
     }

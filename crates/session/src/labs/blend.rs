@@ -1,11 +1,11 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
+use super::lab::Lab;
 use super::pair::Pair;
 use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
-use crate::LabId;
-use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
+use crate::params::{Group, Key, Params};
+use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::{Decay, Planar};
@@ -14,6 +14,55 @@ use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, Transit
 use segue_motion::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
 use std::collections::VecDeque;
 use std::sync::Arc;
+
+/// The Blend lab: A fades into B over a window.
+pub(super) struct BlendLab;
+
+impl Lab for BlendLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Blend]
+    }
+
+    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
+        format!("{a} to {b}")
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} to {}", params.text(Key::A), params.text(Key::B))
+    }
+
+    fn found(&self, outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
+        let found = |transition: &Transition| vec![(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)];
+        outcome.transition.as_ref().map(found).unwrap_or_default()
+    }
+}
+
+/// The Transition lab: A goes over into B by one of several methods. One of them is a dissolve, which has the Blend lab's parameters.
+pub(super) struct TransitionLab;
+
+impl Lab for TransitionLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Blend, Group::Transition]
+    }
+
+    fn result_name(&self, params: &Params, a: &str, b: &str) -> String {
+        BlendLab.result_name(params, a, b)
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        BlendLab.file_stem(params)
+    }
+
+    fn found(&self, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
+        let found = |transition: &Transition| {
+            vec![
+                (Key::MixFrameA, (transition.leave_a_secs * fps[0]).round()),
+                (Key::MixFrameB, (transition.enter_b_secs * fps[1]).round()),
+            ]
+        };
+        outcome.transition.as_ref().map(found).unwrap_or_default()
+    }
+}
 
 /// What a blend depends on. Equal inputs, equal result.
 #[derive(Clone, Debug)]

@@ -1,5 +1,7 @@
 //! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it plays.
 
+use super::lab::Lab;
+use crate::params::{Group, Key, Params, Value};
 mod built;
 mod cast;
 mod grapher;
@@ -17,6 +19,46 @@ pub(crate) use wanted::{clips_of, read_path, read_visits};
 
 use super::{Measured, Outcome, Slot, Source, Transition};
 use std::sync::Arc;
+
+/// The Graph lab: a walk through a motion graph.
+pub(super) struct GraphLab;
+
+impl Lab for GraphLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Graph]
+    }
+
+    fn shared_keys(&self) -> &'static [Key] {
+        &[
+            Key::BlendWindow,
+            Key::WeightLaw,
+            Key::AlignBy,
+            Key::RootBlend,
+            Key::HalfLife,
+            Key::Seed,
+        ]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[]
+    }
+
+    fn listed(&self, params: &Params) -> Vec<String> {
+        clips_of(params.text(Key::Clips)).unwrap_or_default()
+    }
+
+    fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        Some(graph_of(ids))
+    }
+
+    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
+        format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed)))
+    }
+
+    fn file_stem(&self, _params: &Params) -> String {
+        "walk".to_owned()
+    }
+}
 
 /// What a walk's result depends on. Equal inputs, equal result.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! Results that are kept: their id is the recipe, and all that a link needs to make them again.
 
+use super::lab::{self, is_of_lock};
 use super::make::made_id;
-use super::{CycleMade, Outcome};
-use crate::choices;
-use crate::params::{Group, Key, Kind, PARAMS, Param, Params, Value};
+use super::{Outcome, Slot};
+use crate::params::{Key, Kind, PARAMS, Param, Params, Value};
 use crate::{LabId, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 
@@ -13,35 +13,9 @@ const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').ad
 /// A result of a result of a result: deeper ids name nothing.
 const DEEPEST: usize = 6;
 
-/// Whether a lab depends on a parameter. A transition can be a dissolve, and takes its window from there; a loop has a half-life, too.
+/// Returns whether a lab depends on a parameter.
 pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
-    let group = key.param().group;
-    match lab {
-        LabId::View => group == Group::View || is_of_feet(key),
-        LabId::Make => group == Group::Make || is_of_feet(key),
-        LabId::Blend => group == Group::Blend,
-        LabId::Transition => matches!(group, Group::Blend | Group::Transition),
-        LabId::Speed => group == Group::Speed || is_of_feet(key),
-        LabId::Loop => group == Group::Loop || key == Key::HalfLife || is_of_feet(key),
-        LabId::Layers => group == Group::Layers || is_of_feet(key),
-        LabId::Register => group == Group::Register || key == Key::WeightLaw || is_of_feet(key),
-        LabId::Path => group == Group::Path || is_of_feet(key),
-        LabId::Graph => {
-            let of_blend = matches!(key, Key::BlendWindow | Key::WeightLaw | Key::AlignBy | Key::RootBlend);
-            group == Group::Graph || of_blend || matches!(key, Key::HalfLife | Key::Seed) || is_of_feet(key)
-        }
-        LabId::Match => group == Group::Match || matches!(key, Key::BlendTime | Key::ExtrapolationHalfLife),
-    }
-}
-
-/// Whether a parameter says how feet are read and held: every lab with clips has these.
-fn is_of_feet(key: Key) -> bool {
-    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed) || is_of_lock(key)
-}
-
-/// Whether a parameter says how planted feet are held.
-fn is_of_lock(key: Key) -> bool {
-    matches!(key, Key::LockBlend | Key::LockReach | Key::LockClearance)
+    lab::of(lab).depends_on(key)
 }
 
 /// Whether a parameter can change the result: how feet are held changes nothing while they are not.
@@ -52,8 +26,8 @@ pub(super) fn counts(params: &Params, key: Key) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: LabId) -> bool {
     match key {
-        Key::A => !matches!(lab, LabId::Graph | LabId::Match),
-        Key::B => !matches!(lab, LabId::View | LabId::Loop | LabId::Path | LabId::Graph | LabId::Match),
+        Key::A => lab::of(lab).slots().contains(&Slot::A),
+        Key::B => lab::of(lab).slots().contains(&Slot::B),
         // Looked at or worked with, and not made from.
         Key::MaskColors
         | Key::PathGrid
@@ -91,7 +65,7 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
         let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
         params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
     }
-    for (key, value) in found(lab, outcome, fps) {
+    for (key, value) in lab::of(lab).found(outcome, fps) {
         if *params.get(key) == Value::Auto {
             params.set(key, Value::Number(value)).ok()?;
         }
@@ -149,35 +123,13 @@ pub(crate) fn recipe_name(params: &Params) -> String {
         Some(kept) => recipe_name(&kept),
         None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
     });
-    match params.lab() {
-        LabId::Make => made_id(params),
-        LabId::View => {
-            let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
-                .iter()
-                .any(|&key| params.optional(key).is_some());
-            let held = if params.is_on(Key::FootLock) {
-                format!("{a}, feet held")
-            } else {
-                a
-            };
-            match params.choice::<choices::RootMotion>() {
-                choices::RootMotion::InPlace => format!("{held}, in place"),
-                choices::RootMotion::Residual => format!("{held}, beside its path"),
-                _ if is_placed => format!("{held}, moved"),
-                choices::RootMotion::World => held,
-            }
-        }
-        LabId::Loop => format!("{a}, looped"),
-        LabId::Speed => format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed))),
-        LabId::Layers => format!("{a} with {b}"),
-        LabId::Path => format!("{a} on a path"),
-        LabId::Graph => format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed))),
-        LabId::Match => match params.choice::<choices::Scenario>() {
-            choices::Scenario::Own => "a drive".to_owned(),
-            _ => format!("a drive: {}", Key::Scenario.param().spoken(params.get(Key::Scenario))),
-        },
-        LabId::Blend | LabId::Transition | LabId::Register => format!("{a} to {b}"),
-    }
+    lab::of(params.lab()).result_name(params, &a, &b)
+}
+
+/// Returns what a file of what the parameters make is called, without its ending.
+#[must_use]
+pub fn file_stem(params: &Params) -> String {
+    lab::of(params.lab()).file_stem(params)
 }
 
 /// Several ids in one text: separated by commas.
@@ -200,26 +152,6 @@ pub(crate) fn read_ids(text: &str) -> Option<Vec<String>> {
         }
     };
     Some(parts(text)?.into_iter().map(id).collect())
-}
-
-/// What was found where it was left to Segue.
-fn found(lab: LabId, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
-    let mut found = Vec::new();
-    if let Some(transition) = &outcome.transition {
-        found.extend(match lab {
-            LabId::Transition => [
-                (Key::MixFrameA, (transition.leave_a_secs * fps[0]).round()),
-                (Key::MixFrameB, (transition.enter_b_secs * fps[1]).round()),
-            ],
-            _ => [(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)],
-        });
-    }
-    match outcome.cycle.map(|cycle| cycle.made) {
-        Some(CycleMade::Cut { from_secs, to_secs, .. }) => found.extend([(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)]),
-        Some(CycleMade::Gait { asked_mps, .. }) => found.push((Key::Speed, asked_mps)),
-        None => {}
-    }
-    found
 }
 
 /// A value inside of an id. A kept clip's own id stays as it is: its brackets close.

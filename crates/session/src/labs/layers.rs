@@ -1,10 +1,11 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
+use super::lab::Lab;
 use super::pair::{Pair, source_of};
 use super::{Measured, Outcome, Slot, Source};
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
+use crate::params::{Group, Key, Params};
 use segue_motion::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
 use segue_motion::clip::{Clip, Contacts, character_frames};
 use segue_motion::gait::{GaitCycle, strike_phases};
@@ -12,6 +13,23 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics, deviations, foot_slide_cm};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use std::sync::Arc;
+
+/// The Layers lab: a part of one clip over another.
+pub(super) struct LayersLab;
+
+impl Lab for LayersLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Layers]
+    }
+
+    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
+        format!("{a} with {b}")
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} and {}", params.text(Key::A), params.text(Key::B))
+    }
+}
 
 /// How the layer's time goes with that of the clip below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

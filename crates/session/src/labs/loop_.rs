@@ -1,17 +1,54 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
 use super::feet::Lock;
+use super::lab::Lab;
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
 use crate::choices;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
+use crate::params::{Group, Key, Params};
 use segue_motion::blend;
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
 use segue_motion::transition::{CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle};
 use std::sync::Arc;
+
+/// The Loop lab: a cycle cut from a clip, its ends brought together.
+pub(super) struct LoopLab;
+
+impl Lab for LoopLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Loop]
+    }
+
+    fn shared_keys(&self) -> &'static [Key] {
+        &[Key::HalfLife]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::A]
+    }
+
+    fn result_name(&self, _params: &Params, a: &str, _b: &str) -> String {
+        format!("{a}, looped")
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} loop", params.text(Key::A))
+    }
+
+    fn found(&self, outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
+        match outcome.cycle.map(|cycle| cycle.made) {
+            Some(CycleMade::Cut { from_secs, to_secs, .. }) => vec![(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)],
+            _ => Vec::new(),
+        }
+    }
+
+    fn captured_link(&self) -> Option<&'static str> {
+        Some("a=cmu16_walk")
+    }
+}
 
 /// What a loop depends on. Equal inputs, equal result.
 #[derive(Clone, Debug)]

@@ -1,14 +1,35 @@
-use super::Outcome;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::kept::{belongs_to, counts};
-use crate::LabId;
-use crate::choices;
+use super::lab::Lab;
+use super::{Outcome, Slot};
 use crate::motion::{FeetReading, Motion};
 use crate::outside::short;
-use crate::params::{Key, Kind, Params, Value};
+use crate::params::{Group, Key, Kind, Params, Value};
+use crate::{LabId, choices};
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::synth::{self, Action};
 use std::sync::Arc;
+
+/// The Make lab: a motion synthesised from parameters.
+pub(super) struct MakeLab;
+
+impl Lab for MakeLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Make]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[]
+    }
+
+    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
+        made_id(params)
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        params.choice::<choices::MadeAction>().word().to_owned()
+    }
+}
 
 /// The action that the Make lab is set to.
 pub(crate) fn synth_action(params: &Params) -> Action {

@@ -1,5 +1,10 @@
 //! The Match lab: a character that is driven, live or by input that was written down.
 
+use super::Slot;
+use super::kept::{read_ids, write_ids};
+use super::lab::Lab;
+use crate::choices;
+use crate::params::{Group, Key, Params, Value};
 mod crowd;
 mod driver;
 mod live;
@@ -16,3 +21,43 @@ pub(crate) use settings::{options_in, recording_of};
 pub use tagging::{HandTag, own_words, write_tags};
 pub(crate) use tagging::{filter_of, read_tags};
 pub use trace::{DriveMoment, Driven};
+
+/// The Match lab: a character that is steered.
+pub(super) struct MatchLab;
+
+impl Lab for MatchLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Match]
+    }
+
+    fn shared_keys(&self) -> &'static [Key] {
+        &[Key::BlendTime, Key::ExtrapolationHalfLife]
+    }
+
+    fn has_feet(&self) -> bool {
+        false
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[]
+    }
+
+    fn listed(&self, params: &Params) -> Vec<String> {
+        read_ids(params.text(Key::MatchClips)).unwrap_or_default()
+    }
+
+    fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        Some(vec![(Key::MatchClips, Value::Text(write_ids(ids)))])
+    }
+
+    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
+        match params.choice() {
+            choices::Scenario::Own => "a drive".to_owned(),
+            scenario => format!("a drive: {}", scenario.label()),
+        }
+    }
+
+    fn file_stem(&self, _params: &Params) -> String {
+        "drive".to_owned()
+    }
+}

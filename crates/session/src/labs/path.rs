@@ -1,12 +1,14 @@
 //! The Path lab: a motion on another path.
 
 use super::feet::{Lock, slide, slide_before, with_feet};
+use super::kept::read_ids;
+use super::lab::Lab;
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
+use crate::params::{Group, Key, Params};
 use planter::{Planted, Planter};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
@@ -17,6 +19,35 @@ use segue_motion::path::{
 use std::sync::Arc;
 
 mod planter;
+
+/// The Path lab: a clip on an edited path.
+pub(super) struct PathLab;
+
+impl Lab for PathLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Path]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::A]
+    }
+
+    fn listed(&self, params: &Params) -> Vec<String> {
+        read_ids(params.text(Key::Others)).unwrap_or_default()
+    }
+
+    fn result_name(&self, _params: &Params, a: &str, _b: &str) -> String {
+        format!("{a} on a path")
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} on a path", params.text(Key::A))
+    }
+
+    fn captured_link(&self) -> Option<&'static str> {
+        Some("a=cmu16_walk")
+    }
+}
 
 /// A motion and the path that was fitted to its way: what stays while the path is edited.
 #[derive(Debug)]

@@ -1,5 +1,7 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
+use super::lab::Lab;
+use crate::params::{Group, Key, Params};
 mod map;
 mod pairs;
 mod registrar;
@@ -15,7 +17,6 @@ use super::pair::Pair;
 use super::{Measured, Outcome, Slot, Source, Transition};
 use crate::choices;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
 use registrar::Found;
 use segue_motion::blend::{
     self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
@@ -27,6 +28,31 @@ use segue_motion::registration::Registration;
 use segue_motion::skeleton::Side;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// The Register lab: clips registered in time, then blended or joined.
+pub(super) struct RegisterLab;
+
+impl Lab for RegisterLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Register]
+    }
+
+    fn shared_keys(&self) -> &'static [Key] {
+        &[Key::WeightLaw]
+    }
+
+    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
+        format!("{a} to {b}")
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} and {} registered", params.text(Key::A), params.text(Key::B))
+    }
+
+    fn captured_link(&self) -> Option<&'static str> {
+        Some("a=cmu16_walk&b=cmu16_fast_walk")
+    }
+}
 
 /// What a frame of a registered result is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,44 @@
 //! The Speed lab: two gaits at a speed.
 
 use super::feet::Lock;
+use super::lab::Lab;
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome};
-use crate::params::{Key, Kind, Params};
+use crate::params::{Group, Key, Kind, Params};
 use segue_motion::clip::ground_speed;
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use segue_motion::metrics::Metric;
 use segue_motion::skeleton::Roles;
 use std::sync::Arc;
+
+/// The Speed lab: two cycles blended to a speed.
+pub(super) struct SpeedLab;
+
+impl Lab for SpeedLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::Speed]
+    }
+
+    fn result_name(&self, params: &Params, a: &str, b: &str) -> String {
+        format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed)))
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        format!("{} and {}", params.text(Key::A), params.text(Key::B))
+    }
+
+    fn found(&self, outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
+        match outcome.cycle.map(|cycle| cycle.made) {
+            Some(CycleMade::Gait { asked_mps, .. }) => vec![(Key::Speed, asked_mps)],
+            _ => Vec::new(),
+        }
+    }
+
+    fn captured_link(&self) -> Option<&'static str> {
+        Some("a=cmu16_walk&b=cmu16_run")
+    }
+}
 
 /// The cycles of two clips, found once.
 #[derive(Debug)]

@@ -1,18 +1,53 @@
 //! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
 
 use super::feet::{Lock, locking, slide, slide_before};
+use super::lab::Lab;
 use super::pair::source_of;
-use super::{Measured, Outcome};
+use super::{Measured, Outcome, Slot};
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::notice::sentence;
-use crate::params::{Key, Params};
+use crate::params::{Group, Key, Params};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
+
+/// The View lab: one clip, placed on the ground.
+pub(super) struct ViewLab;
+
+impl Lab for ViewLab {
+    fn groups(&self) -> &'static [Group] {
+        &[Group::View]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::A]
+    }
+
+    fn result_name(&self, params: &Params, a: &str, _b: &str) -> String {
+        let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
+            .iter()
+            .any(|&key| params.optional(key).is_some());
+        let held = if params.is_on(Key::FootLock) {
+            format!("{a}, feet held")
+        } else {
+            a.to_owned()
+        };
+        match params.choice() {
+            choices::RootMotion::InPlace => format!("{held}, in place"),
+            choices::RootMotion::Residual => format!("{held}, beside its path"),
+            choices::RootMotion::World if is_placed => format!("{held}, moved"),
+            choices::RootMotion::World => held,
+        }
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        params.text(Key::A).to_owned()
+    }
+}
 
 /// Clips of up to so many frames are done at once: about 8 ms for 31 joints.
 const AT_ONCE: usize = 1_000;
