@@ -74,9 +74,9 @@ impl Compare {
 
     /// A choice and the others that there are, as many as fit. `None` for a parameter that is no choice or cannot be compared.
     #[must_use]
-    pub fn choices(key: Key, chosen: &str) -> Option<Self> {
+    pub fn choices(key: Key, chosen: &Value) -> Option<Self> {
         let Kind::Choice(choices) = key.param().kind else { return None };
-        let (first, others): (Vec<&Choice>, Vec<&Choice>) = choices.iter().partition(|choice| choice.key == chosen);
+        let (first, others): (Vec<&Choice>, Vec<&Choice>) = choices.iter().partition(|choice| *chosen == Value::Choice(choice.key));
         let values = first.into_iter().chain(others).take(MAX_PANES);
         key.param().is_comparable().then(|| Self {
             key,
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(of(Key::GaitSpeed, 1.4, Some((0.4, 2.2))), "gait_speed:1.4,0.7,0.45");
         assert_eq!(of(Key::BlendWindow, 1.0, None), "blend_window:240,121,1");
         assert_eq!(Compare::full_half_third(Key::Method, 1.0, None), None);
-        let methods = Compare::choices(Key::Method, "dead").unwrap();
+        let methods = Compare::choices(Key::Method, &Value::Choice("dead")).unwrap();
         assert!(methods.to_string().starts_with("method:dead,inertialize,"), "{methods}");
         assert_eq!(methods.values.len(), MAX_PANES);
         assert_eq!(methods.with_one_more(None), methods);

@@ -443,7 +443,7 @@ impl Session {
             Command::Compare(key) => {
                 let full = self.params.optional(key).or_else(|| self.automatic_value(key)).unwrap_or_default();
                 let compare = Compare::full_half_third(key, full, self.range_of(key))
-                    .or_else(|| Compare::choices(key, self.params.text(key)))
+                    .or_else(|| Compare::choices(key, self.params.get(key)))
                     .ok_or(CommandError::NotPossible("only a number or a choice of the lab can be compared"))?;
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();

@@ -895,3 +895,12 @@ fn layers_are_live_and_say_how_their_time_goes() {
         off("rest")
     );
 }
+
+#[test]
+fn comparison_of_a_choice_begins_with_the_one_that_is_set() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=transition&method=dead".into())).unwrap();
+    session.apply(Command::Compare(Key::Method)).unwrap();
+    let compare = session.compare().unwrap();
+    assert_eq!(compare.values.first(), Some(&Value::Choice("dead")));
+}
