@@ -581,7 +581,7 @@ impl Segue {
         }
         for job in self.session.jobs() {
             events.push(Event::Progress {
-                name: job.name,
+                name: job.kind.name().to_owned(),
                 progress: Some(job.progress),
             });
         }

@@ -239,7 +239,11 @@ impl Segue {
     /// Stops what is under way: the file of that name that is read or fetched, a lesson's too.
     pub(crate) fn stop(&mut self, name: &str) -> Result<(), String> {
         let name = outside::file_name(name);
-        let reading = self.session.jobs().into_iter().find(|job| job.name == name && job.task.is_some());
+        let reading = self
+            .session
+            .jobs()
+            .into_iter()
+            .find(|job| job.kind.name() == name && job.task.is_some());
         if let Some(task) = reading.and_then(|job| job.task) {
             self.obey(Command::StopReading(task));
         } else if self.downloads.under_way().any(|(fetched, _)| fetched == name)
@@ -419,7 +423,11 @@ impl Segue {
 
     /// What is under way.
     fn jobs(&self) -> Vec<JobInfo> {
-        let computed = self.session.jobs().into_iter().map(|job| (job.name, Some(job.progress)));
+        let computed = self
+            .session
+            .jobs()
+            .into_iter()
+            .map(|job| (job.kind.name().to_owned(), Some(job.progress)));
         let samples = self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
         let lessons = self.downloads.lessons_under_way().map(|name| (name, None));
         computed

@@ -85,7 +85,7 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         let (Some(task), Some(size)) = (job.task, job.size) else { continue };
         let megabytes = size as f64 / 1e6;
         let detail = format!("{:.0} of {megabytes:.0} MB", job.progress * megabytes);
-        if kit::progress_row_ui(&job.name, Some(job.progress as f32), &detail, ui) {
+        if kit::progress_row_ui(job.kind.name(), Some(job.progress as f32), &detail, ui) {
             out.commands.push(Command::StopReading(task));
         }
     }

@@ -11,6 +11,7 @@ use super::text;
 use super::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
 use segue_motion::skeleton::Side;
+use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
 use segue_session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
 use std::sync::Arc;
@@ -170,7 +171,7 @@ pub(super) fn compare_warps(session: &Session, out: &mut Out) {
 /// The map, its legend, and what is known of the pair under the pointer, else of the one that is shown.
 fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    let job = session.jobs().into_iter().find(|job| job.name == "registering");
+    let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
     let waits = job.map(|job| format!("{}… {:.0} %", text::COMPARING, 100.0 * job.progress));
     let Some(map) = session.distance_map() else {
         kit::note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);

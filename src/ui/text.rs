@@ -3,6 +3,7 @@
 use segue_motion::gait::GaitFacts;
 use segue_motion::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
 use segue_motion::path::HardTurn;
+use segue_session::JobKind;
 use segue_session::choices::{Hysteresis, LoopMethod, Mistake, PathKeep};
 use segue_session::export::ExportFormat;
 use segue_session::{
@@ -171,14 +172,14 @@ pub(crate) const STILL_COMPUTED: &str = "The result is still being computed.";
 /// What is being worked on, and how much of it is done.
 pub(crate) fn under_way(job: &Job) -> String {
     let percent = 100.0 * job.progress;
-    match job.name.as_str() {
-        "matching" => format!("Looking for the best match {percent:.0} %"),
-        "registering" => format!("Registering the clips {percent:.0} %"),
-        "graphing" => format!("Building the graph {percent:.0} %"),
-        "holding feet" => format!("Holding the feet {percent:.0} %"),
-        "driving" => format!("Driving {percent:.0} %"),
-        "building the database" => format!("Building the database {percent:.0} %"),
-        file => format!("{file} {percent:.0} %"),
+    match &job.kind {
+        JobKind::Matching => format!("Looking for the best match {percent:.0} %"),
+        JobKind::Registering => format!("Registering the clips {percent:.0} %"),
+        JobKind::BuildingGraph => format!("Building the graph {percent:.0} %"),
+        JobKind::HoldingFeet => format!("Holding the feet {percent:.0} %"),
+        JobKind::Driving => format!("Driving {percent:.0} %"),
+        JobKind::BuildingDatabase => format!("Building the database {percent:.0} %"),
+        JobKind::Reading(file) => format!("{file} {percent:.0} %"),
     }
 }
 pub(crate) const CLOSE: &str = "Close";

@@ -14,6 +14,7 @@ mod gauge;
 mod graph;
 mod kept;
 pub(super) mod lab;
+pub(super) mod lab_set;
 mod layers;
 mod loop_;
 mod make;
@@ -26,29 +27,25 @@ mod speed;
 mod view;
 
 pub use blend::mistake_shows;
-pub(super) use blend::{BlendInputs, Blender};
 pub(super) use gauge::Gauge;
 pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
 };
-pub(super) use graph::{GraphInputs, Grapher, clips_of, read_path, read_visits};
+pub(super) use graph::{clips_of, read_path, read_visits};
 pub(super) use kept::{belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use kept::{file_stem, write_ids};
+pub use lab_set::JobKind;
+pub(super) use lab_set::{Inputs, LabClips, LabSet, MoreClip};
 pub use layers::{LayerFacts, LayerFit};
-pub(super) use layers::{LayerInputs, Layerer};
-pub(super) use loop_::{CycleFinder, LoopInputs};
-pub(super) use make::{has as made_motion_has, made_id, make, preset_motion, range_of, synth_action};
+pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
 pub(super) use match_::options_of;
-pub(super) use match_::{Crowd, Driver, Live, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
+pub(super) use match_::{Crowd, Live, filter_of, options_in, read_tags, recording_of};
 pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
-pub(super) use pair::{Pair, Pairs};
 pub use path::{FittedMotion, OnPath, spline_ends};
-pub(super) use path::{PathInputs, Paths};
 pub use register::{Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs};
-pub(super) use register::{RegisterInputs, Registrars, read_also, read_pins, read_weights};
-pub(super) use speed::{GaitFinder, SpeedInputs, middle_mps};
-pub(super) use view::{ViewInputs, Viewer};
+pub(super) use register::{read_also, read_pins, read_weights};
+pub(super) use speed::middle_mps;
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -91,8 +91,8 @@ pub use labs::{
 pub use labs::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
 pub use labs::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
 pub use labs::{HandTag, own_words, write_tags};
+pub use labs::{JobKind, file_stem, write_ids};
 pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
-pub use labs::{file_stem, write_ids};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};

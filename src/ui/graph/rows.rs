@@ -12,6 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Id, Layout as Flow, RichText, Ui};
 use petgraph::graph::NodeIndex;
+use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
@@ -58,7 +59,7 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
         return;
     }
-    let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") else {
+    let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::BuildingGraph) else {
         return;
     };
     let percent = format!("{:.0} %", 100.0 * job.progress);

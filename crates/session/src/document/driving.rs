@@ -1,11 +1,11 @@
 //! The character of the Match lab at the user's hand: it goes on by itself while time runs, and everything that it was told is written down.
 
 use super::Session;
-use super::panes::{Answer, Inputs, Pane};
+use super::panes::{Answer, Pane};
 use crate::LabId;
 use crate::choices;
 use crate::command::CommandError;
-use crate::labs::{Crowd, Gauge, HandTag, Live, MatchSource, filter_of, options_in, read_ids, read_tags, recording_of};
+use crate::labs::{Crowd, Gauge, HandTag, Live, filter_of, options_in, read_ids, read_tags, recording_of};
 use crate::params::{Key, Params, Value};
 use segue_motion::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use segue_motion::metrics::Metric;
@@ -177,7 +177,7 @@ impl Session {
                     "How long a sixtieth of a second of all characters takes to compute, searches included.",
                 );
                 // One that cannot be told of stays as it was: its next moment can.
-                if let Ok(mut outcome) = live.outcome(&mut self.gauge) {
+                if let Ok(mut outcome) = live.outcome(&mut self.labs.gauge) {
                     outcome.metrics.push(timed);
                     pane.go_on(outcome);
                 }
@@ -221,7 +221,7 @@ impl Session {
                 Ok(Some(database)) => options_in(&database, &params)
                     .and_then(|options| {
                         main = main.take().or(Some((Arc::clone(&database), options)));
-                        driven(live, pane, &database, options, &mut self.gauge)
+                        driven(live, pane, &database, options, &mut self.labs.gauge)
                     })
                     .unwrap_or_else(Answer::Refused),
                 Err(problem) => Answer::Refused(problem),
@@ -248,25 +248,8 @@ impl Session {
 
     /// The database that the parameters ask for; `None` while it is built.
     pub(super) fn match_database(&mut self, params: &Params) -> Result<Option<Arc<Database>>, String> {
-        let ids = read_ids(params.text(Key::MatchClips)).ok_or("The list of clips cannot be read: its brackets do not close.")?;
-        let clips = self.motions_of(&ids)?;
-        let tags = read_tags(params.text(Key::Tags))?;
-        filter_of(params)?;
-        let database = self.driver.database(&MatchSource::new(clips, params))?;
-        Ok(database.map(|database| self.driver.tagged(database, ids, tags)))
-    }
-
-    /// What recorded input depends on; `None` while that is played.
-    pub(super) fn match_inputs(&mut self, params: &Params) -> Result<Option<Inputs>, String> {
-        let Some(recording) = recording_of(params)? else {
-            return Err("Nothing was driven yet.".to_owned());
-        };
-        let Some(database) = self.match_database(params)? else {
-            return Ok(None);
-        };
-        let options = options_in(&database, params)?;
-        let played = self.driver.replay(database, options, recording, filter_of(params)?)?;
-        Ok(played.map(Inputs::Match))
+        let clips = self.lab_clips(params)?;
+        self.labs.match_database(clips, params)
     }
 
     /// The parameters under which what a driven pane shows is made again: the input is written down.

@@ -2,8 +2,9 @@
 //! takes on another speed little by little.
 
 use super::Session;
-use super::panes::{Inputs, Pane};
+use super::panes::Pane;
 use crate::choices;
+use crate::labs::Inputs;
 use crate::labs::{CycleMade, Outcome};
 use crate::params::{Key, Value};
 use segue_motion::gait::SpeedOptions;

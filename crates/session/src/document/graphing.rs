@@ -21,20 +21,20 @@ impl Session {
     /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are made ready.
     #[must_use]
     pub fn graph_cast(&self) -> Option<&Arc<Cast>> {
-        self.grapher.cast().filter(|_| self.is_graph_lab())
+        self.labs.grapher.cast().filter(|_| self.is_graph_lab())
     }
 
     /// The distances that the Graph lab looks at: those of the first pane's window, or the last ones while these are made.
     #[must_use]
     pub fn graph_field(&self) -> Option<&Arc<Field>> {
-        self.grapher.field().filter(|_| self.is_graph_lab())
+        self.labs.grapher.field().filter(|_| self.is_graph_lab())
     }
 
     /// The graph of the first pane: the one that is asked for where it is made, else the one that is walked in.
     #[must_use]
     pub fn graph_built(&self) -> Option<&Arc<Built>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);
-        self.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
+        self.labs.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
     }
 
     /// The walk of the first pane.
@@ -46,18 +46,18 @@ impl Session {
     /// How long it took to make a graph, seconds, as far as [`Session::work_took`] was told.
     #[must_use]
     pub fn graph_build_secs(&self, built: &Built) -> Option<f64> {
-        self.grapher.build_secs(built)
+        self.labs.grapher.build_secs(built)
     }
 
     /// How long the last call of [`Session::work`] took, seconds: there is no clock here.
     pub fn work_took(&mut self, secs: f64) {
-        self.grapher.took(secs);
+        self.labs.grapher.took(secs);
     }
 
     /// Whether making the graph was given up.
     #[must_use]
     pub fn graph_is_stopped(&self) -> bool {
-        self.is_graph_lab() && self.grapher.is_stopped()
+        self.is_graph_lab() && self.labs.grapher.is_stopped()
     }
 
     /// When the walk sets off for which clip: seconds, and the clip's index.

@@ -1,6 +1,7 @@
 //! The Graph lab, by commands.
 
 use super::*;
+use crate::JobKind;
 use crate::{Walk, write_jump, write_path};
 use glam::DVec2;
 use segue_motion::graph::Place;
@@ -123,7 +124,7 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
         session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
         let before = Arc::clone(walk(session));
         let (mut count, mut progress) = (0, -1.0);
-        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") {
+        while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::BuildingGraph) {
             assert!(job.progress >= progress && job.progress <= 1.0, "{} after {progress}", job.progress);
             assert!(Arc::ptr_eq(&before, walk(session)));
             progress = job.progress;
@@ -627,7 +628,7 @@ fn a_threshold_is_dragged_without_looking_at_the_distances_again() {
         session.apply(Command::Set(vec![(key, value)])).unwrap();
         let before = Arc::clone(walk(session));
         let (mut first, mut progress) = (None, 0.0);
-        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "graphing") {
+        while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::BuildingGraph) {
             assert!(job.progress >= progress, "{key:?}: {} after {progress}", job.progress);
             assert!(
                 Arc::ptr_eq(&before, walk(session)) && session.graph_built().is_some(),

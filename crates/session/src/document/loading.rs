@@ -3,6 +3,7 @@
 use super::slots::Came;
 use super::{Job, Session};
 use crate::command::{CommandError, Request};
+use crate::labs::JobKind;
 use crate::library::{Entry, Origin, SourceFile, file_id, file_stem};
 use crate::notice::{Level, sentence};
 use crate::outside;
@@ -296,7 +297,7 @@ impl Session {
         let files = self.reading.iter().filter(|reading| !reading.is_small());
         files.map(|Reading { task, done, .. }| Job {
             task: Some(task.id),
-            name: task.name.clone(),
+            kind: JobKind::Reading(task.name.clone()),
             progress: *done as f64 / task.size.max(1) as f64,
             size: Some(task.size),
         })

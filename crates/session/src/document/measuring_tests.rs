@@ -2,6 +2,7 @@
 
 use super::tests::settle;
 use super::*;
+use crate::labs::lab_set::Sliced as _;
 use crate::labs::{Gauge, Measured};
 use crate::motion::Motion;
 use crate::params::Kind;

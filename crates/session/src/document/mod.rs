@@ -23,10 +23,7 @@ pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
-use super::labs::{
-    Blender, CycleFinder, CycleMade, DistanceMap, Driver, GaitFinder, Gauge, Grapher, Layerer, Outcome, Pairs, Paths, Registrars, Slot,
-    Viewer, read_also, read_pins, read_weights,
-};
+use super::labs::{CycleMade, DistanceMap, LabSet, Outcome, Slot, read_also, read_pins, read_weights};
 use super::labs::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
 use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin};
@@ -83,18 +80,8 @@ pub struct Session {
     panes: Vec<Pane>,
     /// Clips whose feet are read otherwise than usual.
     feet: FeetReader,
-    pairs: Pairs,
-    blender: Blender,
-    gaits: GaitFinder,
-    cycles: CycleFinder,
-    layerer: Layerer,
-    registrars: Registrars,
-    paths: Paths,
+    labs: LabSet,
     company: Vec<Companion>,
-    grapher: Grapher,
-    viewer: Viewer,
-    gauge: Gauge,
-    driver: Driver,
     driving: driving::Driving,
     shelf: Shelf,
     requests: Vec<Request>,
@@ -144,18 +131,8 @@ impl Session {
             notices: Notices::default(),
             panes: Vec::new(),
             feet: FeetReader::default(),
-            pairs: Pairs::default(),
-            blender: Blender::default(),
-            gaits: GaitFinder::default(),
-            cycles: CycleFinder::default(),
-            layerer: Layerer::default(),
-            registrars: Registrars::default(),
-            paths: Paths::default(),
+            labs: LabSet::default(),
             company: Vec::new(),
-            grapher: Grapher::default(),
-            viewer: Viewer::default(),
-            gauge: Gauge::default(),
-            driver: Driver::default(),
             driving: driving::Driving::default(),
             shelf: Shelf::default(),
             requests: Vec::new(),
@@ -449,7 +426,7 @@ impl Session {
                 self.history.settle();
             }
             Command::Try(query) => self.try_out(&query)?,
-            Command::StopGraph(stop) => self.grapher.stop(stop),
+            Command::StopGraph(stop) => self.labs.grapher.stop(stop),
             Command::Undo | Command::Redo => {
                 let (params, library) = (&mut self.params, &mut self.library);
                 let undoes = matches!(command, Command::Undo);
@@ -516,7 +493,7 @@ impl Session {
         let pane = self.panes.first()?;
         let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered.as_ref());
         let shown = shown.map(|registered| &registered.map);
-        shown.or_else(|| self.registrars.last_map())
+        shown.or_else(|| self.labs.registrars.last_map())
     }
 
     /// Pairs of frames of A and B, at A's rate, that must meet; none where they cannot be read.
@@ -586,7 +563,7 @@ impl Session {
         }
         self.fetch(new_sources);
         if changed.iter().any(|key| key.param().group.is_of_lab()) {
-            self.grapher.stop(false);
+            self.labs.grapher.stop(false);
         }
         if changed.contains(&Key::Lesson) {
             self.lesson_was_set(named);

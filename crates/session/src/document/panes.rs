@@ -4,11 +4,8 @@ use super::Session;
 use super::going_round::{Glide, durations};
 use crate::LabId;
 use crate::compare::{Compare, MAX_PANES};
-use crate::labs::{
-    BlendInputs, Gauge, GraphInputs, LayerInputs, LoopInputs, Outcome, Pair, PathInputs, RegisterInputs, ReplayInputs, Slot, Source,
-    SpeedInputs, ViewInputs,
-};
-use crate::labs::{belongs_to, clips_of, lab, made_id, make, preset_motion, read_also, recipe_ingredients, recipe_name, recipe_params};
+use crate::labs::{Gauge, Inputs, JobKind, LabClips, MoreClip, Outcome, Slot, Source};
+use crate::labs::{belongs_to, lab, preset_motion, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::{FeetReading, Motion};
 use crate::outside;
@@ -232,70 +229,21 @@ impl Pane {
 pub struct Job {
     /// The number by which it can be stopped; `None` where it ends soon by itself.
     pub task: Option<u64>,
-    /// What it is: `matching`, `registering`, `graphing`, `holding feet`, or the file that is read.
-    pub name: String,
+    /// What it is.
+    pub kind: JobKind,
     /// How much is done, 0 to 1.
     pub progress: f64,
     /// The size of the file that is read, bytes.
     pub size: Option<u64>,
 }
 
-/// What a result depends on. Equal inputs, equal result: nothing is computed again.
-#[derive(Clone, Debug)]
-pub(super) enum Inputs {
-    View(ViewInputs),
-    Make(String),
-    Blend(BlendInputs),
-    Speed(SpeedInputs),
-    Loop(LoopInputs),
-    Layers(LayerInputs),
-    Register(RegisterInputs),
-    Path(PathInputs),
-    Graph(GraphInputs),
-    Match(ReplayInputs),
-}
-
-impl PartialEq for Inputs {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::View(a), Self::View(b)) => a == b,
-            (Self::Make(a), Self::Make(b)) => a == b,
-            (Self::Blend(a), Self::Blend(b)) => a == b,
-            (Self::Speed(a), Self::Speed(b)) => a == b,
-            (Self::Loop(a), Self::Loop(b)) => a == b,
-            (Self::Layers(a), Self::Layers(b)) => a == b,
-            (Self::Register(a), Self::Register(b)) => a == b,
-            (Self::Path(a), Self::Path(b)) => a == b,
-            (Self::Graph(a), Self::Graph(b)) => a == b,
-            (Self::Match(a), Self::Match(b)) => a == b,
-            _ => false,
-        }
-    }
-}
-
 impl Session {
     /// One slice of the work that is left over when a change would take longer than a frame. `true` while there is more.
     pub fn work(&mut self) -> bool {
-        if self.blender.work() {
-            if !self.blender.is_searching() {
-                self.refresh();
-            }
+        if self.labs.work(self.params.number(Key::Time)) {
             return true;
         }
-        if self.registrars.work() || self.viewer.work() || self.paths.work() || self.driver.work() || self.gauge.work() {
-            return true;
-        }
-        let now_secs = self.params.number(Key::Time);
-        if self.grapher.work(now_secs) {
-            return true;
-        }
-        if self.registrars.is_ready()
-            || self.viewer.is_ready()
-            || self.paths.is_ready()
-            || self.grapher.is_ready()
-            || self.driver.is_ready()
-            || self.gauge.is_ready()
-        {
+        if self.labs.is_ready() {
             let held = self.held();
             self.refresh();
             self.go_on_from(&held);
@@ -320,42 +268,12 @@ impl Session {
     /// What is under way.
     #[must_use]
     pub fn jobs(&self) -> Vec<Job> {
-        let matching = self.blender.progress().map(|progress| Job {
+        let computed = self.labs.progress().into_iter().map(|(kind, progress)| Job {
             task: None,
-            name: "matching".into(),
-            progress: f64::from(progress),
-            size: None,
-        });
-        let registering = self.registrars.progress().map(|progress| Job {
-            task: None,
-            name: "registering".into(),
-            progress: f64::from(progress),
-            size: None,
-        });
-        let holding = self.viewer.progress().or(self.paths.progress()).map(|progress| Job {
-            task: None,
-            name: "holding feet".into(),
-            progress: f64::from(progress),
-            size: None,
-        });
-        let driving = self.driver.progress().map(|(name, progress)| Job {
-            task: None,
-            name: name.into(),
+            kind,
             progress,
             size: None,
         });
-        let graphing = self.grapher.progress().map(|progress| Job {
-            task: None,
-            name: "graphing".into(),
-            progress,
-            size: None,
-        });
-        let computed = matching
-            .into_iter()
-            .chain(registering)
-            .chain(graphing)
-            .chain(holding)
-            .chain(driving);
         self.reading_jobs().chain(computed).collect()
     }
 
@@ -443,7 +361,7 @@ impl Session {
             let _was_gone = self.bring_back(&reference) || self.bring(&reference);
         }
         let mut pane = Pane::default();
-        self.grapher.guide_by(None);
+        self.labs.grapher.guide_by(None);
         self.refresh_pane(&mut pane, &Arc::new(params.clone()), widest_window(params, None));
         match pane.result() {
             Ok(made) => Ok(Arc::clone(&made.outcome.motion)),
@@ -506,24 +424,19 @@ impl Session {
         }
         self.forget_found();
         let mut old = std::mem::take(&mut self.panes).into_iter();
-        self.registrars.ask_anew();
-        self.paths.ask_anew();
-        self.grapher.ask_anew();
-        self.driver.ask_anew();
-        self.viewer.ask_anew();
-        self.gauge.ask_anew();
+        self.labs.ask_anew();
         let match_window = widest_window(&self.params, compare.as_ref());
-        self.grapher.guide_by(None);
+        self.labs.grapher.guide_by(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
             let params = Arc::new(self.params_of(&pane));
             if !self.is_own_drive() {
                 self.refresh_pane(&mut pane, &params, match_window);
-                pane.measure(&mut self.gauge);
+                pane.measure(&mut self.labs.gauge);
             }
             if self.panes.is_empty() {
-                self.grapher.guide_by(Some(&params));
+                self.labs.grapher.guide_by(Some(&params));
             }
             self.panes.push(pane);
         }
@@ -551,55 +464,35 @@ impl Session {
         }
     }
 
-    /// The clips of the graph, with what a person calls them.
-    fn graph_clips(&mut self, params: &Params) -> Result<Vec<(String, Arc<Motion>)>, String> {
-        let ids = clips_of(params.text(Key::Clips))?;
-        let motions = self.motions_read(&ids, params)?;
-        let names = ids
-            .into_iter()
-            .map(|id| self.library.find(&id).map_or(id, |entry| entry.name.clone()));
-        Ok(names.zip(motions).collect())
-    }
-
-    /// A and B, made ready for each other.
-    fn pair_of(&mut self, params: &Params) -> Result<Arc<Pair>, String> {
-        // Both are asked for before one of them stops it: what is to be fetched comes together.
-        let [a, b] = [Key::A, Key::B].map(|key| self.motion_read(params.text(key), params));
-        self.pairs.of(&a?, &b?)
+    /// The clips that the lab of the parameters makes its result from. All are asked for before the first that is missing is told: what is to be
+    /// fetched comes together.
+    pub(super) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, String> {
+        let lab = lab::of(params.lab());
+        let slots: Vec<_> = (lab.slots().iter())
+            .map(|slot| self.motion_read(params.text(slot.key()), params))
+            .collect();
+        let ids = lab.more_clips(params)?;
+        let motions = if lab.has_feet() {
+            self.motions_read(&ids, params)
+        } else {
+            self.motions_of(&ids)
+        };
+        let slots = slots.into_iter().collect::<Result<_, _>>()?;
+        let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
+            name: self.library.find(&id).map_or_else(|| id.clone(), |entry| entry.name.clone()),
+            id,
+            motion,
+        });
+        Ok(LabClips {
+            slots,
+            more: more.collect(),
+        })
     }
 
     /// What a pane's result depends on; `None` while that is still being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
-        let inputs = match params.lab() {
-            LabId::Register => {
-                let pair = self.pair_of(params)?;
-                let (ids, weights): (Vec<_>, Vec<_>) = read_also(params.text(Key::WarpAlso))?.into_iter().unzip();
-                let also: Vec<_> = self.motions_read(&ids, params)?.into_iter().zip(weights).collect();
-                return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
-            }
-            LabId::Graph => {
-                let clips = self.graph_clips(params)?;
-                return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
-            }
-            LabId::Match => return self.match_inputs(params),
-            LabId::View => {
-                let motion = self.motion_read(params.text(Key::A), params)?;
-                return Ok(self.viewer.inputs(&motion, params).map(Inputs::View));
-            }
-            LabId::Make => Ok(Inputs::Make(made_id(params))),
-            LabId::Loop => (self.motion_read(params.text(Key::A), params))
-                .and_then(|motion| self.cycles.inputs(&motion, params))
-                .map(Inputs::Loop),
-            LabId::Path => (self.motion_read(params.text(Key::A), params))
-                .and_then(|motion| self.paths.inputs(&motion, params))
-                .map(Inputs::Path),
-            LabId::Speed => (self.pair_of(params)).and_then(|pair| self.gaits.inputs(&pair, params).map(Inputs::Speed)),
-            LabId::Layers => (self.pair_of(params)).and_then(|pair| self.layerer.inputs(&pair, params).map(Inputs::Layers)),
-            LabId::Blend | LabId::Transition => {
-                (self.pair_of(params)).and_then(|pair| self.blender.inputs(&pair, params, match_window).map(Inputs::Blend))
-            }
-        };
-        inputs.map(Some)
+        let clips = self.lab_clips(params)?;
+        self.labs.inputs(clips, params, match_window)
     }
 
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Arc<Params>, match_window: usize) {
@@ -608,7 +501,7 @@ impl Session {
             Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => Answer::Same {
                 is_draft: inputs.is_draft(),
             },
-            Ok(Some(inputs)) => match inputs.run(params) {
+            Ok(Some(inputs)) => match inputs.run() {
                 Ok(outcome) => Answer::Made {
                     outcome: Arc::new(outcome),
                     is_draft: inputs.is_draft(),
@@ -619,34 +512,6 @@ impl Session {
             Err(problem) => Answer::Refused(problem),
         };
         pane.take(answer, params);
-    }
-}
-
-impl Inputs {
-    fn run(&self, params: &Params) -> Result<Outcome, String> {
-        match self {
-            Self::View(view) => view.run(),
-            Self::Make(_) => make(params),
-            Self::Blend(blend) => blend.run(),
-            Self::Speed(speed) => speed.run(),
-            Self::Loop(cycle) => cycle.run(),
-            Self::Layers(layers) => layers.run(),
-            Self::Register(register) => register.run(),
-            Self::Path(path) => path.run(),
-            Self::Graph(graph) => Ok(graph.run()),
-            Self::Match(replay) => Ok(replay.run()),
-        }
-    }
-
-    /// Whether what they give is shown while more of it is computed: it will be another motion then, or have numbers.
-    fn is_draft(&self) -> bool {
-        match self {
-            Self::View(view) => view.awaits_numbers(),
-            Self::Blend(blend) => blend.awaits_place(),
-            Self::Path(path) => path.awaits_feet(),
-            Self::Graph(graph) => graph.awaits_path(),
-            _ => false,
-        }
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::JobKind;
 use crate::{CompanyChange, OnPath};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, Pins};
@@ -248,7 +249,7 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let open = |session: &mut Session, query: &str| session.apply(Command::OpenLink(query.to_owned())).unwrap();
     open(&mut session, &format!("lab=path&a={LONG}&foot_lock=on"));
     assert!(path(&session).awaits_feet);
-    assert!(session.jobs().iter().any(|job| job.name == "holding feet"));
+    assert!(session.jobs().iter().any(|job| job.kind == JobKind::HoldingFeet));
     let value = moved(&session, 3, DVec2::new(0.8, 0.0));
     set(&mut session, Key::Path, value);
     assert!(path(&session).awaits_feet, "at once, without");

@@ -1,6 +1,7 @@
 //! The Register lab, by commands.
 
 use super::*;
+use crate::JobKind;
 use crate::Registered;
 use segue_motion::clip::{Clip, ground_speed};
 use segue_motion::math::Planar;
@@ -183,7 +184,7 @@ fn long_clips_are_registered_in_slices() {
         session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
         let before = session.main_outcome().cloned().unwrap();
         let (mut count, mut progress) = (0, -1.0);
-        while let Some(job) = session.jobs().into_iter().find(|job| job.name == "registering") {
+        while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering) {
             assert!(job.progress >= progress && session.panes()[0].problem.is_none());
             assert!(Arc::ptr_eq(&before, session.main_outcome().unwrap()));
             progress = job.progress;

@@ -243,7 +243,7 @@ impl Session {
         }
         self.fetch(new_sources);
         self.look_for_clips();
-        self.grapher.stop(false);
+        self.labs.grapher.stop(false);
     }
 }
 

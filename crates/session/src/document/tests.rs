@@ -1,4 +1,5 @@
 use super::*;
+use crate::JobKind;
 use crate::reading::{Content, LARGE_BYTES, read};
 use crate::transport::Span;
 use glam::Quat;
@@ -408,7 +409,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     session.progress_reading(task, LARGE_BYTES / 2);
     let job = &session.jobs()[0];
     assert_eq!(
-        (job.task, job.name.as_str(), job.size),
+        (job.task, job.kind.name(), job.size),
         (Some(task), "long.bvh", Some(LARGE_BYTES + 1))
     );
     assert!((job.progress - 0.5).abs() < 1e-3);
@@ -687,7 +688,7 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
     session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(true))])).unwrap();
     assert!(Arc::ptr_eq(session.main_outcome().unwrap(), &free));
     let mut last = 0.0;
-    while let Some(job) = session.jobs().into_iter().find(|job| job.name == "holding feet") {
+    while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::HoldingFeet) {
         assert!(job.progress >= last);
         last = job.progress;
         session.work();

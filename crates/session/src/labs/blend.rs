@@ -1,5 +1,6 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::Lab;
+use super::lab_set::{JobKind, Sliced};
 use super::pair::Pair;
 use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
@@ -221,6 +222,8 @@ pub(crate) struct Blender {
     /// The last matches that were found, and what was asked: panes share one, or have one each, and most changes leave them as they are.
     found: VecDeque<(Wanted, Place)>,
     progress: f32,
+    /// All distances have just been computed, and no pane has asked for the place yet.
+    is_ready: bool,
 }
 
 /// Rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
@@ -386,23 +389,32 @@ impl Blender {
         Ok(place)
     }
 
-    /// One slice of comparing frames. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
+    /// Whether the distances between the clips' frames are still being computed.
+    fn is_searching(&self) -> bool {
+        self.search.is_some() && self.progress < 1.0
+    }
+}
+
+impl Sliced for Blender {
+    fn ask_anew(&mut self) {
+        self.is_ready = false;
+    }
+
+    fn work(&mut self) -> bool {
         let searching = self.is_searching();
         if searching {
             self.compare_rows(ROWS_PER_SLICE);
+            self.is_ready = !self.is_searching();
         }
         searching
     }
 
-    /// Whether the distances between the clips' frames are still being computed.
-    pub(crate) fn is_searching(&self) -> bool {
-        self.search.is_some() && self.progress < 1.0
+    fn is_ready(&self) -> bool {
+        self.is_ready
     }
 
-    /// How much of the comparison is done, 0 to 1; `None` when there is none under way.
-    pub(crate) fn progress(&self) -> Option<f32> {
-        self.is_searching().then_some(self.progress)
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        self.is_searching().then_some((JobKind::Matching, f64::from(self.progress)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The artefact numbers that stand first in the list of every lab: each result is measured in the same way, beside the clips that it is made of.
 
+use super::lab_set::{JobKind, Sliced};
 use super::{Measured, Outcome};
 use segue_motion::clip::Clip;
 use segue_motion::metrics::{MotionTrace, ResultMetrics, TraceMeter};
@@ -23,12 +24,6 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.wanted.clear();
-        self.is_ready = false;
-    }
-
     /// The numbers of a result. `None` when they take longer than a frame: [`work`](Self::work), then ask again.
     pub(crate) fn numbers(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
         let (mut left, roles) = (AT_ONCE, &outcome.motion.roles);
@@ -75,9 +70,15 @@ impl Gauge {
         self.known.push((Arc::downgrade(clip), Arc::clone(&trace)));
         trace
     }
+}
 
-    /// One slice of what a pane waits for. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
+impl Sliced for Gauge {
+    fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.is_ready = false;
+    }
+
+    fn work(&mut self) -> bool {
         let Some((clip, roles)) = self.wanted.first() else { return false };
         let is_it = |(of, _): &(Arc<Clip>, TraceMeter)| Arc::ptr_eq(of, clip);
         let (clip, mut meter) = (self.under_way.take().filter(is_it)).unwrap_or_else(|| (Arc::clone(clip), TraceMeter::new(clip, roles)));
@@ -91,9 +92,13 @@ impl Gauge {
         true
     }
 
-    /// Whether what a pane waits for is there, so that it should ask again.
-    pub(crate) fn is_ready(&self) -> bool {
+    fn is_ready(&self) -> bool {
         self.is_ready
+    }
+
+    /// Numbers come soon by themselves.
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        None
     }
 }
 

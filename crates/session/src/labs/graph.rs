@@ -47,6 +47,10 @@ impl Lab for GraphLab {
         clips_of(params.text(Key::Clips)).unwrap_or_default()
     }
 
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
+        clips_of(params.text(Key::Clips))
+    }
+
     fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
         Some(graph_of(ids))
     }

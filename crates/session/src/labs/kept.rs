@@ -200,7 +200,7 @@ mod tests {
     }
 
     fn id_of(params: &Params) -> String {
-        let outcome = super::super::make(&Params::default()).expect("a walk");
+        let outcome = super::super::make::MakeInputs::of(&Params::default()).run().expect("a walk");
         recipe_id(params, &outcome, [60.0; 2]).expect("a recipe")
     }
 

@@ -29,6 +29,14 @@ pub(crate) trait Lab: Sync {
         Vec::new()
     }
 
+    /// The ids of the clips that the result is made from besides those in its slots.
+    ///
+    /// # Errors
+    /// Says what of the list cannot be read.
+    fn more_clips(&self, _params: &Params) -> Result<Vec<String>, String> {
+        Ok(Vec::new())
+    }
+
     /// What is to be set so that the lab works with these clips; `None` where it takes no list of clips.
     fn with_clips(&self, _ids: &[String]) -> Option<Vec<(Key, Value)>> {
         None

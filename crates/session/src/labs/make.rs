@@ -104,7 +104,7 @@ fn synth_params(params: &Params) -> synth::Params {
 }
 
 /// The motion that the Make lab is set to.
-pub(crate) fn make(params: &Params) -> Result<Outcome, String> {
+fn make(params: &Params) -> Result<Outcome, String> {
     let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
     let mut motion = Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
     let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
@@ -145,6 +145,33 @@ pub(crate) fn made_id(params: &Params) -> String {
         .map(|(param, value)| format!("{}:{}", param.name, param.format(&value)))
         .collect();
     format!("{}({})", params.choice::<choices::MadeAction>().word(), list.join(","))
+}
+
+/// What a made motion depends on.
+#[derive(Clone, Debug)]
+pub(crate) struct MakeInputs {
+    params: Arc<Params>,
+    id: String,
+}
+
+impl MakeInputs {
+    pub(crate) fn of(params: &Params) -> Self {
+        Self {
+            params: Arc::new(params.clone()),
+            id: made_id(params),
+        }
+    }
+
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        make(&self.params)
+    }
+}
+
+/// The id says all that the motion depends on.
+impl PartialEq for MakeInputs {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
 }
 
 #[cfg(test)]

@@ -90,6 +90,14 @@ impl Retargeted {
 pub(crate) struct Pairs(Option<Arc<Pair>>);
 
 impl Pairs {
+    /// As [`of`](Self::of), for the clips of a lab's slots.
+    pub(crate) fn of_slots(&mut self, slots: &[Arc<Motion>]) -> Result<Arc<Pair>, String> {
+        match slots {
+            [a, b] => self.of(a, b),
+            _ => Err("There are no clips in A and B.".to_owned()),
+        }
+    }
+
     /// B on the skeleton and at the rate of A.
     pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, String> {
         if let Some(pair) = &self.0

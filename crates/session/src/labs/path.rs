@@ -3,6 +3,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::kept::read_ids;
 use super::lab::Lab;
+use super::lab_set::{JobKind, Sliced};
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
 use crate::choices;
@@ -172,26 +173,6 @@ pub(crate) struct Paths {
 }
 
 impl Paths {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.planter.ask_anew();
-    }
-
-    /// One slice of what a pane waits for. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
-        self.planter.work()
-    }
-
-    /// Whether what a pane waits for is there, so that it should ask again.
-    pub(crate) fn is_ready(&self) -> bool {
-        self.planter.is_ready()
-    }
-
-    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
-    pub(crate) fn progress(&self) -> Option<f32> {
-        self.planter.progress()
-    }
-
     /// What the parameters ask for, of this clip.
     pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<PathInputs, String> {
         let options = FitOptions {
@@ -228,6 +209,24 @@ impl Paths {
         }
         self.fitted.push(Arc::clone(&fitted));
         Ok(fitted)
+    }
+}
+
+impl Sliced for Paths {
+    fn ask_anew(&mut self) {
+        self.planter.ask_anew();
+    }
+
+    fn work(&mut self) -> bool {
+        self.planter.work()
+    }
+
+    fn is_ready(&self) -> bool {
+        self.planter.is_ready()
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        Some((JobKind::HoldingFeet, f64::from(self.planter.progress()?)))
     }
 }
 

@@ -49,6 +49,10 @@ impl Lab for RegisterLab {
         format!("{} and {} registered", params.text(Key::A), params.text(Key::B))
     }
 
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
+        Ok(read_also(params.text(Key::WarpAlso))?.into_iter().map(|(id, _)| id).collect())
+    }
+
     fn captured_link(&self) -> Option<&'static str> {
         Some("a=cmu16_walk&b=cmu16_fast_walk")
     }

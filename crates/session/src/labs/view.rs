@@ -2,6 +2,7 @@
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::Lab;
+use super::lab_set::{JobKind, Sliced};
 use super::pair::source_of;
 use super::{Measured, Outcome, Slot};
 use crate::choices;
@@ -208,14 +209,6 @@ impl Stage {
 }
 
 impl Viewer {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.is_ready = false;
-        for under_way in &mut self.under_way {
-            under_way.is_wanted = false;
-        }
-    }
-
     /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
     /// comes at once, and again with its numbers.
     pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
@@ -258,33 +251,6 @@ impl Viewer {
         self.under_way.len() - 1
     }
 
-    /// One slice of what a pane waits for. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
-        self.under_way.retain(|at| at.is_wanted);
-        let before = self.under_way.len();
-        if before == 0 {
-            return false;
-        }
-        self.step(0);
-        self.is_ready |= self.under_way.len() < before;
-        true
-    }
-
-    /// Whether what a pane waits for is there, so that it should ask again.
-    pub(crate) fn is_ready(&self) -> bool {
-        self.is_ready
-    }
-
-    /// How much is done of the feet that are being held, 0 to 1; `None` when there are none. Nobody waits for numbers.
-    pub(crate) fn progress(&self) -> Option<f32> {
-        let at = self.under_way.iter().find(|at| at.lock.is_some())?;
-        Some(match &at.stage {
-            Stage::Before(..) => 0.0,
-            Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
-            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
-        })
-    }
-
     fn step(&mut self, index: usize) {
         let UnderWay {
             motion,
@@ -309,6 +275,41 @@ impl Viewer {
                 self.known.drain(..surplus);
             }
         }
+    }
+}
+
+impl Sliced for Viewer {
+    fn ask_anew(&mut self) {
+        self.is_ready = false;
+        for under_way in &mut self.under_way {
+            under_way.is_wanted = false;
+        }
+    }
+
+    fn work(&mut self) -> bool {
+        self.under_way.retain(|at| at.is_wanted);
+        let before = self.under_way.len();
+        if before == 0 {
+            return false;
+        }
+        self.step(0);
+        self.is_ready |= self.under_way.len() < before;
+        true
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        // Nobody waits for numbers.
+        let at = self.under_way.iter().find(|at| at.lock.is_some())?;
+        let progress = match &at.stage {
+            Stage::Before(..) => 0.0,
+            Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
+            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
+        };
+        Some((JobKind::HoldingFeet, f64::from(progress)))
     }
 }
 

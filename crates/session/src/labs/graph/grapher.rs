@@ -1,3 +1,4 @@
+use super::super::lab_set::{JobKind, Sliced};
 use super::built::Building;
 use super::cast::Fitted;
 use super::maker::Maker;
@@ -89,12 +90,6 @@ enum Search {
 }
 
 impl Grapher {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.wanted.clear();
-        self.is_ready = false;
-    }
-
     /// Walks that are asked for from now on go like the one of these parameters, where their graphs allow it.
     pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
         self.guide = params.cloned();
@@ -171,43 +166,13 @@ impl Grapher {
         self.stopped
     }
 
-    /// One slice of what panes wait for, and of walks that the playhead comes near the end of. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self, now_secs: f64) -> bool {
+    /// Tells where the playhead stands, seconds: walks are made longer before it comes to their end.
+    pub(crate) fn play_at(&mut self, now_secs: f64) {
         self.now_secs = now_secs;
-        (self.worked_for, self.stepped) = (None, false);
-        let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
-        let Some(wanted) = next else { return false };
-        if let Err(problem) = self.step(&wanted) {
-            self.settle(&wanted, Err(problem));
-            self.is_ready = true;
-        }
-        true
-    }
-
-    /// Whether there is something new, so that panes should ask again.
-    pub(crate) fn is_ready(&self) -> bool {
-        self.is_ready
-    }
-
-    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, String>> {
-        self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
-    }
-
-    fn next(&self) -> Option<&Wanted> {
-        let maker = |wanted: &Wanted| self.maker(wanted);
-        let short = |wanted: &&Wanted| match maker(wanted) {
-            Some(Ok(maker)) => maker.is_short(self.now_secs),
-            Some(Err(_)) => false,
-            None => true,
-        };
-        let begins = |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
-        // What is seen for the first time goes before what gets longer.
-        let first = self.wanted.iter().filter(short).find(begins);
-        first.or_else(|| self.wanted.iter().find(short))
     }
 
     /// How much is done of what panes wait for, 0 to 1; `None` when they wait for nothing.
-    pub(crate) fn progress(&self) -> Option<f64> {
+    fn share_done(&self) -> Option<f64> {
         if self.stopped {
             return None;
         }
@@ -244,6 +209,23 @@ impl Grapher {
             _ => 0.0,
         };
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
+    }
+
+    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, String>> {
+        self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
+    }
+
+    fn next(&self) -> Option<&Wanted> {
+        let maker = |wanted: &Wanted| self.maker(wanted);
+        let short = |wanted: &&Wanted| match maker(wanted) {
+            Some(Ok(maker)) => maker.is_short(self.now_secs),
+            Some(Err(_)) => false,
+            None => true,
+        };
+        let begins = |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
+        // What is seen for the first time goes before what gets longer.
+        let first = self.wanted.iter().filter(short).find(begins);
+        first.or_else(|| self.wanted.iter().find(short))
     }
 
     /// Other clips: nothing of what was made holds any more.
@@ -464,5 +446,31 @@ impl Grapher {
             drop(self.makers.remove(unwanted.unwrap_or(0)));
         }
         self.makers.push((wanted.clone(), maker));
+    }
+}
+
+impl Sliced for Grapher {
+    fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.is_ready = false;
+    }
+
+    fn work(&mut self) -> bool {
+        (self.worked_for, self.stepped) = (None, false);
+        let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
+        let Some(wanted) = next else { return false };
+        if let Err(problem) = self.step(&wanted) {
+            self.settle(&wanted, Err(problem));
+            self.is_ready = true;
+        }
+        true
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        Some((JobKind::BuildingGraph, self.share_done()?))
     }
 }

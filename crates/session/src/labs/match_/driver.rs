@@ -1,5 +1,6 @@
 //! Builds databases and plays recorded input, slice by slice.
 
+use super::super::lab_set::{JobKind, Sliced};
 use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
 use crate::choices;
@@ -129,13 +130,6 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.wanted.clear();
-        self.scripts.clear();
-        self.is_ready = false;
-    }
-
     /// A database. `None` while it is built: [`work`](Self::work), then ask again.
     pub(crate) fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, String> {
         if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
@@ -188,37 +182,6 @@ impl Driver {
         Ok(None)
     }
 
-    /// Whether what somebody waits for is there, so that it should be asked for again.
-    pub(crate) fn is_ready(&self) -> bool {
-        self.is_ready
-    }
-
-    /// How much is done of what is worked on, 0 to 1, and its name; `None` when there is nothing.
-    pub(crate) fn progress(&self) -> Option<(&'static str, f64)> {
-        if let Some(source) = self.next_source() {
-            let built = match &self.building {
-                Some((of, builder)) if of == source => {
-                    let progress = builder.progress();
-                    progress.done as f64 / progress.total.max(1) as f64
-                }
-                _ => 0.0,
-            };
-            let all = made_params().len().max(1) as f64;
-            let made = if source.clips.is_empty() {
-                self.made.len() as f64 / all
-            } else {
-                1.0
-            };
-            return Some(("building the database", 0.4 * made + 0.6 * built));
-        }
-        let script = self.next_script()?;
-        let done = match &self.playing {
-            Some((of, playing)) if of == script => playing.next as f64 / playing.controls.len().max(1) as f64,
-            _ => 0.0,
-        };
-        Some(("driving", done))
-    }
-
     fn next_source(&self) -> Option<&Source> {
         let is_known = |source: &&Source| self.databases.iter().any(|(known, _)| known == *source);
         self.wanted.iter().find(|source| !is_known(source))
@@ -227,35 +190,6 @@ impl Driver {
     fn next_script(&self) -> Option<&Script> {
         let is_known = |script: &&Script| self.replays.iter().any(|(known, _)| known == *script);
         self.scripts.iter().find(|script| !is_known(script))
-    }
-
-    /// One slice of what panes wait for. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
-        if self.is_ready {
-            return false;
-        }
-        if let Some(source) = self.next_source().cloned() {
-            let built = self.build(&source);
-            if let Some(built) = built.map_err(|error| sentence(&error)).transpose() {
-                if self.databases.len() >= 2 * MAX_PANES {
-                    drop(self.databases.remove(0));
-                }
-                self.databases.push((source, built.map(Arc::new)));
-                self.is_ready = true;
-            }
-            return true;
-        }
-        let Some(script) = self.next_script().cloned() else {
-            return false;
-        };
-        if let Some(played) = self.play(&script).transpose() {
-            if self.replays.len() >= 2 * MAX_PANES {
-                drop(self.replays.remove(0));
-            }
-            self.replays.push((script, played.map(Arc::new)));
-            self.is_ready = true;
-        }
-        true
     }
 
     fn build(&mut self, source: &Source) -> Result<Option<Database>, MatchError> {
@@ -312,6 +246,71 @@ impl Driver {
         let mut outcome = playing.tracer.outcome(false)?;
         outcome.metrics = playing.tracer.metrics(&outcome.motion);
         Ok(Some(outcome))
+    }
+}
+
+impl Sliced for Driver {
+    fn ask_anew(&mut self) {
+        self.wanted.clear();
+        self.scripts.clear();
+        self.is_ready = false;
+    }
+
+    fn work(&mut self) -> bool {
+        if self.is_ready {
+            return false;
+        }
+        if let Some(source) = self.next_source().cloned() {
+            let built = self.build(&source);
+            if let Some(built) = built.map_err(|error| sentence(&error)).transpose() {
+                if self.databases.len() >= 2 * MAX_PANES {
+                    drop(self.databases.remove(0));
+                }
+                self.databases.push((source, built.map(Arc::new)));
+                self.is_ready = true;
+            }
+            return true;
+        }
+        let Some(script) = self.next_script().cloned() else {
+            return false;
+        };
+        if let Some(played) = self.play(&script).transpose() {
+            if self.replays.len() >= 2 * MAX_PANES {
+                drop(self.replays.remove(0));
+            }
+            self.replays.push((script, played.map(Arc::new)));
+            self.is_ready = true;
+        }
+        true
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        if let Some(source) = self.next_source() {
+            let built = match &self.building {
+                Some((of, builder)) if of == source => {
+                    let progress = builder.progress();
+                    progress.done as f64 / progress.total.max(1) as f64
+                }
+                _ => 0.0,
+            };
+            let all = made_params().len().max(1) as f64;
+            let made = if source.clips.is_empty() {
+                self.made.len() as f64 / all
+            } else {
+                1.0
+            };
+            return Some((JobKind::BuildingDatabase, 0.4 * made + 0.6 * built));
+        }
+        let script = self.next_script()?;
+        let done = match &self.playing {
+            Some((of, playing)) if of == script => playing.next as f64 / playing.controls.len().max(1) as f64,
+            _ => 0.0,
+        };
+        Some((JobKind::Driving, done))
     }
 }
 

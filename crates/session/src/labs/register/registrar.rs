@@ -1,3 +1,4 @@
+use super::super::lab_set::{JobKind, Sliced};
 use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
 use crate::choices;
 use crate::compare::MAX_PANES;
@@ -42,11 +43,6 @@ pub(crate) struct Registrars {
 }
 
 impl Registrars {
-    /// Nobody waits any more: everybody is about to ask again.
-    pub(crate) fn ask_anew(&mut self) {
-        self.all_mut().for_each(Registrar::ask_anew);
-    }
-
     /// Brings everything to the point where the result is a pure function; `also` are the further clips with their weights. `None` when that takes longer than
     /// a frame: [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
@@ -90,29 +86,33 @@ impl Registrars {
         self.b.last_map()
     }
 
-    /// One slice of what panes wait for. `false` when there was nothing to do.
-    pub(crate) fn work(&mut self) -> bool {
-        self.all_mut().any(Registrar::work)
-    }
-
-    /// Whether something that panes wait for is there, so that they should ask again.
-    pub(crate) fn is_ready(&self) -> bool {
-        self.all().any(Registrar::is_ready)
-    }
-
-    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
-    pub(crate) fn progress(&self) -> Option<f32> {
-        let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
-        let ended = self.also.len() + 1 - under_way.len();
-        (!under_way.is_empty()).then(|| (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32)
-    }
-
     fn all(&self) -> impl Iterator<Item = &Registrar> {
         std::iter::once(&self.b).chain(self.also.iter().map(|(_, registrar)| registrar))
     }
 
     fn all_mut(&mut self) -> impl Iterator<Item = &mut Registrar> {
         std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, registrar)| registrar))
+    }
+}
+
+impl Sliced for Registrars {
+    fn ask_anew(&mut self) {
+        self.all_mut().for_each(Registrar::ask_anew);
+    }
+
+    fn work(&mut self) -> bool {
+        self.all_mut().any(Registrar::work)
+    }
+
+    fn is_ready(&self) -> bool {
+        self.all().any(Registrar::is_ready)
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
+        let ended = self.also.len() + 1 - under_way.len();
+        let progress = (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32;
+        (!under_way.is_empty()).then(|| (JobKind::Registering, f64::from(progress)))
     }
 }
 
