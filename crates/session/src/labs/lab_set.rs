@@ -149,18 +149,18 @@ impl LabSet {
     /// Does one slice of work; `now_secs` is where the playhead stands. Returns `false` when there was nothing to do.
     pub(crate) fn work(&mut self, now_secs: f64) -> bool {
         self.grapher.play_at(now_secs);
-        self.sliced_mut().into_iter().any(|sliced| sliced.work())
+        self.sliced_mut().into_iter().any(Sliced::work)
     }
 
     /// Returns whether something that a pane waits for is there.
     pub(crate) fn is_ready(&self) -> bool {
-        self.sliced().into_iter().any(|sliced| sliced.is_ready())
+        self.sliced().into_iter().any(Sliced::is_ready)
     }
 
     /// Returns what is worked on, each kind once, and how much of it is done, 0 to 1.
     pub(crate) fn progress(&self) -> Vec<(JobKind, f64)> {
         let mut found: Vec<(JobKind, f64)> = Vec::new();
-        for (kind, progress) in self.sliced().into_iter().filter_map(|sliced| sliced.progress()) {
+        for (kind, progress) in self.sliced().into_iter().filter_map(Sliced::progress) {
             if found.iter().all(|(known, _)| *known != kind) {
                 found.push((kind, progress));
             }
