@@ -50,7 +50,10 @@ const UNSEEN: [&str; 17] = [
 ];
 
 /// Literals that look like sentences and are none: keywords of files, names of files, and what is made of parts that have their own entries.
-const NO_SENTENCE: [&str; 26] = [
+const NO_SENTENCE: [&str; 29] = [
+    "{} and {}",
+    "{} and {} registered",
+    "{} loop",
     "(prefers-reduced-motion: reduce)",
     "try it",
     "{} units tall, {} {}: {} m; {}",

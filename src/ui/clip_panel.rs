@@ -3,7 +3,7 @@
 use super::kit::{self, Tree, TreeRow};
 use super::language::tr;
 use super::out::Out;
-use super::save_rows::save_rows_ui;
+use super::rows::save_rows_ui;
 use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};

@@ -1,26 +1,14 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
-mod break_it;
 mod clip_panel;
-mod clip_sets;
-mod cycle_panels;
-mod drive;
-mod graph;
-mod ground_line;
 pub(crate) mod kit;
-mod lab_panel;
+mod labs;
 mod language;
-mod layers_rows;
 mod lessons_panel;
 mod library_panel;
 mod out;
 mod overlays;
-mod param_row;
-mod path_hand;
-mod path_panel;
-mod path_stage;
-mod register_panel;
-mod save_rows;
+mod rows;
 mod shortcuts;
 mod stage_panel;
 mod state;
@@ -32,7 +20,7 @@ mod timeline_panel;
 mod top_bar;
 mod transport_row;
 
-pub(crate) use drive::Pad;
+pub(crate) use labs::match_::Pad;
 pub(crate) use language::{Language, Tongue, speak_english};
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
@@ -92,7 +80,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
-    state.has_map_panel = has_room && graph::is_open(session) && !lessons_panel::is_open(session);
+    state.has_map_panel = has_room && labs::graph::is_open(session) && !lessons_panel::is_open(session);
     if !matches!(session.params().lab(), LabId::Graph | LabId::Path) {
         state.drawing = None;
     }
@@ -104,7 +92,7 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
             Layout::Desk | Layout::Tablet => desk_ui(session, layout, state, curves, &mut out, paint, ui),
         }
     }
-    drive::steer(session, state, &mut out, ui.ctx());
+    labs::match_::steer(session, state, &mut out, ui.ctx());
     overlays::overlays_ui(session, state, &mut out, ui);
     out
 }
@@ -163,7 +151,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
             .show(ui, |ui| lessons_panel::lessons_panel_ui(session, state, out, ui));
     }
     // A lesson, and the map of the graph, take the library's room.
-    let drawer = layout == Layout::Tablet || lesson || graph::is_open(session);
+    let drawer = layout == Layout::Tablet || lesson || labs::graph::is_open(session);
     if state.library_open || !drawer {
         Panel::left("library")
             .exact_size(244.0 * scale)
@@ -191,14 +179,14 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
-            scrolled_ui(space::L, ui, |ui| lab_panel::lab_panel_ui(session, state, out, ui));
+            scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
         });
     if state.has_map_panel {
         Panel::right("graph map")
-            .exact_size((graph::map_share(session) * ui.available_width()).round())
+            .exact_size((labs::graph::map_share(session) * ui.available_width()).round())
             .frame(panel_frame(ui, space::M, space::M))
             .resizable(false)
-            .show(ui, |ui| graph::map_panel_ui(session, state, out, ui));
+            .show(ui, |ui| labs::graph::map_panel_ui(session, state, out, ui));
     }
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
         stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
@@ -208,7 +196,7 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
 /// What happens in time; of a walk, the graph that it goes through.
 fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
     match session.graph_walk().filter(|walk| !walk.is_jump) {
-        Some(walk) => graph::walk_panel_ui(session, walk, layout, state, out, ui),
+        Some(walk) => labs::graph::walk_panel_ui(session, walk, layout, state, out, ui),
         None => timeline_panel::timeline_panel_ui(session, layout, curves, state, out, ui),
     }
 }
@@ -270,7 +258,7 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
                         kit::note_ui(text::WELCOME_HINT, palette_of(ui).muted, ui);
                         ui.add_space(space::M);
                     }
-                    lab_panel::lab_panel_ui(session, state, out, ui);
+                    labs::lab_panel_ui(session, state, out, ui);
                 }
             });
         });
@@ -280,11 +268,11 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
 fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
     let scale = theme_of(ui).scale();
     slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
-    if lab_panel::has_named_params(session) {
+    if labs::has_named_params(session) {
         let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
         Panel::bottom("parameters")
             .frame(frame)
-            .show(ui, |ui| lab_panel::named_params_ui(session, out, ui));
+            .show(ui, |ui| labs::named_params_ui(session, out, ui));
     }
     let layout = if ui.available_width() < 480.0 * scale {
         Layout::Phone

@@ -1,10 +1,10 @@
 //! Keys that do what buttons do. The list that people read stands in [`super::text::SHORTCUTS`].
 
+use super::labs::toggle_compare;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
 use super::stage_panel::frame_everything;
 use super::state::UiState;
-use super::top_bar::toggle_compare;
 use eframe::egui::{Context, Event, Id, Key as Keyboard, Modifiers, Popup};
 use segue_session::choices;
 use segue_session::{Command, Key, Kind, Session, Value};

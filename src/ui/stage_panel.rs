@@ -1,12 +1,12 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
-use super::drive::stick_on_stage_ui;
-use super::ground_line::{GroundLine, ground_line};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
+use super::labs::match_::stick_on_stage_ui;
+use super::labs::path::ground_line::{GroundLine, ground_line};
+use super::labs::path::hand::path_of;
+use super::labs::path::stage::{frame_once, handles_ui, said_ui};
 use super::language::tr;
 use super::out::{Action, Out};
-use super::path_hand::path_of;
-use super::path_stage::{frame_once, handles_ui, said_ui};
 use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};

@@ -1,8 +1,8 @@
 //! What the interface remembers that is nobody else's business.
 
-use super::drive::DriveHand;
+use super::labs::match_::DriveHand;
+use super::labs::path::hand::PathHand;
 use super::language::Language;
-use super::path_hand::PathHand;
 use eframe::egui::Rect;
 use glam::DVec2;
 use segue::scene::{Camera, PathMarks};

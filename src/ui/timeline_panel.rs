@@ -1,7 +1,7 @@
 //! The bottom panel: what happens in time.
 
-use super::drive::drive_panel_ui;
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
+use super::labs::match_::drive_panel_ui;
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;

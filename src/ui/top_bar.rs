@@ -1,20 +1,15 @@
 //! The bar at the top: which lab, and what concerns the whole page.
 
-use super::cycle_panels::{compare_loops, compare_speeds};
-use super::drive::compare_hysteresis;
-use super::graph::compare_windows;
 use super::kit::{self, Button, Icon, MenuItem};
+use super::labs::toggle_compare;
 use super::language::{Language, tr};
 use super::lessons_panel::{lessons_button_ui, toggle_lessons};
 use super::out::{Action, Out};
-use super::path_panel::compare_points;
-use super::register_panel::compare_warps;
 use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
-use segue_session::LabId;
-use segue_session::{Command, Compare, Key, Kind, Session, Value};
+use segue_session::{Command, Key, Kind, Session, Value};
 
 /// The whole bar.
 pub(crate) fn top_bar_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -159,46 +154,4 @@ fn language_switch(present: Language) -> (Value, &'static str) {
         Language::Chinese => (Language::English, text::IN_ENGLISH),
     };
     (Value::Choice(other.tag()), words)
-}
-
-/// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or goes back to one pane.
-pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
-    if session.panes().len() > 1 {
-        out.set_once(Key::Compare, Value::Text(String::new()));
-        return;
-    }
-    let key = match session.params().lab() {
-        LabId::Speed => return compare_speeds(session, out),
-        LabId::Loop => return compare_loops(session, out),
-        LabId::Register => return compare_warps(session, out),
-        LabId::Path => return compare_points(session, out),
-        LabId::Graph => return compare_windows(out),
-        LabId::Match => return compare_hysteresis(session, out),
-        LabId::View => return compare_clips(session.params().text(Key::A), session.params().text(Key::B), out),
-        LabId::Make => made_number(session),
-        LabId::Transition => Key::HalfLife,
-        LabId::Layers => Key::LayerWeight,
-        LabId::Blend => Key::BlendWindow,
-    };
-    out.commands.push(Command::Compare(key));
-}
-
-/// What of a made motion is compared: standing and turning on the spot have no speed.
-pub(crate) fn made_number(session: &Session) -> Key {
-    if session.made_motion_has(Key::GaitSpeed) {
-        Key::GaitSpeed
-    } else {
-        Key::BodyHeight
-    }
-}
-
-/// Two clips as they are, side by side: a reference, and what somebody made after it.
-pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
-    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
-    let compare = Compare { key: Key::A, values }.to_string();
-    out.commands.push(Command::Set(vec![
-        (Key::Lab, LabId::View.into()),
-        (Key::Compare, Value::Text(compare)),
-    ]));
-    out.commands.push(Command::Settle);
 }

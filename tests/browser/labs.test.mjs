@@ -111,7 +111,7 @@ function bentApart(one, other) {
 
 // Fails when a walk leaves or enters a clip at another frame than the one that is written down, and natively walked: a last digit has then decided.
 onBothBackends("the built-in walk is the same in every browser as it is natively", async ({ open }) => {
-  const golden = JSON.parse(readFileSync(new URL("../golden/walk.json", import.meta.url), "utf8"));
+  const golden = JSON.parse(readFileSync(new URL("../../crates/session/tests/golden/walk.json", import.meta.url), "utf8"));
   const { segue } = await open(golden.link, DESK);
   await segue("set", {});
   let [looked, told] = [0, 0];

@@ -43,7 +43,7 @@ fn a_lesson_is_read_tried_and_left() {
     picture("lessons-contents", &mut harness);
     go("3. The blend window", &mut harness);
     harness.get_by_label("3 of 14");
-    let params = |harness: &Harness<'_, Page>, key: Key| harness.state().session.params().text(key).to_owned();
+    let params = |harness: &Harness<'_, Page>, key: Key| key.param().format(harness.state().session.params().get(key));
     assert_eq!(params(&harness, Key::Lab), "blend");
     assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
     let is_marked = |label: &str, harness: &Harness<'_, Page>| {

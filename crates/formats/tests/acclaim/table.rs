@@ -337,10 +337,7 @@ fn broken_motions_are_refused_where_they_break() {
             ":DEGREES\n# nothing\n".to_owned(),
             "take.amc:3:1: found the end of the file, expected the number of a frame",
         ),
-        (
-            String::new(),
-            "take.amc:1:1: found the end of the file, expected the number of a frame",
-        ),
+        (String::new(), "take.amc:1:1: found an empty file, expected a motion file"),
     ];
     for (text, expected) in cases {
         assert_eq!(refused(ASF, &text), expected);
@@ -356,7 +353,7 @@ fn broken_skeletons_are_refused_where_they_break() {
         format!(":root\n:bonedata\n{bones}:hierarchy\n{lines}\n")
     };
     let cases = [
-        (String::new(), "toy.asf:1:1: found the end of the file, expected `:root`"),
+        (String::new(), "toy.asf:1:1: found an empty file, expected a motion file"),
         (
             "thigh".to_owned(),
             "toy.asf:1:1: found `thigh`, expected a section of a skeleton, such as `:root`",

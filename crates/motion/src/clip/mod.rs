@@ -68,13 +68,13 @@
 mod carrier;
 mod contacts;
 mod curves;
-#[cfg(any(test, feature = "fixtures"))]
 #[allow(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,
     reason = "made for tests"
 )]
+#[cfg(any(test, feature = "fixtures"))]
 pub mod fixtures;
 mod ground;
 mod jolts;

@@ -79,7 +79,7 @@
 //! *As far as the clips are equal.* Clips that are made, or read from angles, went through that trigonometry, and may differ by a last digit
 //! between two machines. Rounding hides nearly all of that; where two neighbours of a minimum are as good as equal, or a distance lies in the
 //! middle between two roundings, a transition may come to lie a frame beside. The walk of the built-in clips is held against one that was
-//! written down (`tests/golden/walk.json`), natively and in the browser.
+//! written down (`tests/golden/walk.json` of segue-session), natively and in the browser.
 //!
 //! # What it does not do
 //!

@@ -79,13 +79,13 @@ mod cloud;
 mod clouds;
 mod curves;
 mod distance;
-#[cfg(any(test, feature = "fixtures"))]
 #[allow(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,
     reason = "made for tests"
 )]
+#[cfg(any(test, feature = "fixtures"))]
 pub mod fixtures;
 mod path;
 mod path_error;

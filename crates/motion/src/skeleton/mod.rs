@@ -76,13 +76,13 @@
 mod ancestry;
 mod carrier;
 mod corrections;
-#[cfg(any(test, feature = "fixtures"))]
 #[allow(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,
     reason = "made for tests"
 )]
+#[cfg(any(test, feature = "fixtures"))]
 pub mod fixtures;
 mod joint_map;
 mod kinematics;

@@ -1,14 +1,14 @@
 //! The row of a lab that says whose motion it works with.
 
-use super::kit::{self, Button};
-use super::out::Out;
-use super::text;
-use super::theme::space;
+use crate::ui::kit::{self, Button};
+use crate::ui::out::Out;
+use crate::ui::text;
+use crate::ui::theme::space;
 use eframe::egui::{Ui, vec2};
 use segue_session::{ClipSet, Command, Session};
 
 /// One button for each set of clips that there is, the one in use marked.
-pub(super) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         for set in [ClipSet::Made, ClipSet::Captured, ClipSet::Own] {

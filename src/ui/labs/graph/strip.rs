@@ -20,7 +20,7 @@ const MOST_SEAMS: usize = 160;
 const TOLD_SECS: f64 = 5.0;
 
 /// The whole panel of a walk.
-pub(in crate::ui) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let caption = caption(session, walk, state);
     let playhead = Playhead {
         secs: session.now_secs(),

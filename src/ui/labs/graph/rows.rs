@@ -1,12 +1,12 @@
 //! What is set of graph and walk.
 
 use super::{close_jump, map, no_way, shows_jump, table};
-use crate::ui::clip_sets::clip_sets_ui;
 use crate::ui::kit::{self, Button, Histogram, Icon};
-use crate::ui::lab_panel::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
 use crate::ui::out::{Action, Out};
-use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -19,7 +19,7 @@ use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_v
 use std::sync::Arc;
 
 /// All rows of the lab.
-pub(in crate::ui) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
@@ -187,7 +187,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// What the seed does here.
-pub(in crate::ui) fn seed_detail(session: &Session) -> Detail {
+pub(crate) fn seed_detail(session: &Session) -> Detail {
     let is_graph = session.params().lab() == LabId::Graph;
     Detail {
         help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()),
@@ -311,7 +311,7 @@ struct Reached {
 }
 
 /// The walk sets off for a clip where it is now; what was to come later is given up.
-pub(super) fn go_to(clip: usize, session: &Session, out: &mut Out) {
+pub(crate) fn go_to(clip: usize, session: &Session, out: &mut Out) {
     let now = session.now_secs();
     let mut visits = session.graph_visits();
     visits.retain(|(secs, _)| *secs < now);
@@ -340,7 +340,7 @@ fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// "Full, half, third" of the blend window, or back to one pane.
-pub(in crate::ui) fn compare_windows(out: &mut Out) {
+pub(crate) fn compare_windows(out: &mut Out) {
     if let Some(experiment) = text::GRAPH_EXPERIMENTS.first() {
         out.commands.push(Command::Set(link::read(experiment.query).values));
         out.commands.push(Command::Settle);

@@ -1,15 +1,19 @@
 //! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole path.
 
-use super::clip_sets::clip_sets_ui;
-use super::kit::{self, Button, Icon};
-use super::lab_panel::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
-use super::language::tr;
-use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
-use super::path_hand::path_of;
-use super::state::UiState;
-use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
+pub(crate) mod ground_line;
+pub(crate) mod hand;
+pub(crate) mod stage;
+
+use crate::ui::kit::{self, Button, Icon};
+use crate::ui::labs::path::hand::path_of;
+use crate::ui::language::tr;
+use crate::ui::out::Out;
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
 use segue_session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};

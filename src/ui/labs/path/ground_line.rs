@@ -1,6 +1,6 @@
 //! A line drawn by hand on the ground: a path for the Path lab, a way for a walk of the Graph lab.
 
-use super::state::UiState;
+use crate::ui::state::UiState;
 use eframe::egui::{CursorIcon, InputState, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use glam::DVec2;
 use segue::scene::Camera;
@@ -11,9 +11,9 @@ const STEP_M: f64 = 0.02;
 const FARTHEST: f32 = 6.0;
 
 /// A pane as its camera sees it.
-pub(super) struct View<'a> {
-    pub(super) camera: &'a Camera,
-    pub(super) rect: Rect,
+pub(crate) struct View<'a> {
+    pub(crate) camera: &'a Camera,
+    pub(crate) rect: Rect,
 }
 
 impl View<'_> {
@@ -22,14 +22,14 @@ impl View<'_> {
     }
 
     /// Where a point of the ground is on the page.
-    pub(super) fn on_page(&self, point: DVec2) -> Option<Pos2> {
+    pub(crate) fn on_page(&self, point: DVec2) -> Option<Pos2> {
         let world = glam::Vec3::new(point.x as f32, 0.0, point.y as f32);
         let at = self.camera.project(world, self.size())?;
         Some(self.rect.min + vec2(at.x, at.y))
     }
 
     /// The place on the ground under a point of the page.
-    pub(super) fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
+    pub(crate) fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
         let pixel = pos - self.rect.min;
         let hit = self.camera.ray(glam::Vec2::new(pixel.x, pixel.y), self.size()).ground_hit()?;
         let near = hit.distance(self.camera.target) < FARTHEST * self.camera.distance;
@@ -38,7 +38,7 @@ impl View<'_> {
 }
 
 /// What the stage's drag is.
-pub(super) enum GroundLine {
+pub(crate) enum GroundLine {
     /// It is the camera's.
     None,
     /// It belongs to a line that goes on, or waits to be begun.
@@ -48,7 +48,7 @@ pub(super) enum GroundLine {
 }
 
 /// Draws the line that is wanted now, if one is.
-pub(super) fn ground_line(shown: &[(usize, Rect)], response: &Response, state: &mut UiState, ui: &Ui) -> GroundLine {
+pub(crate) fn ground_line(shown: &[(usize, Rect)], response: &Response, state: &mut UiState, ui: &Ui) -> GroundLine {
     let Some(drawn) = &mut state.drawing else {
         return GroundLine::None;
     };

@@ -15,7 +15,7 @@ use segue_session::{HandTag, Key, Session, Value, own_words, write_tags};
 const AROUND: usize = 15;
 
 /// All rows of the section.
-pub(super) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     let tags = session.hand_tags();
     for (key, word) in [(Key::AskTag, "any"), (Key::ForbidTag, "nothing")] {

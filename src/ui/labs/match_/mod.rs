@@ -7,9 +7,9 @@ mod tags;
 mod why;
 
 pub(crate) use hand::{DriveHand, Pad};
-pub(super) use hand::{steer, stick_on_stage_ui};
-pub(super) use rows::{compare_hysteresis, drive_ui};
-pub(super) use strip::drive_panel_ui;
+pub(crate) use hand::{steer, stick_on_stage_ui};
+pub(crate) use rows::{compare_hysteresis, drive_ui};
+pub(crate) use strip::drive_panel_ui;
 
 use segue_session::LabId;
 use segue_session::Session;
@@ -17,7 +17,7 @@ use segue_session::{DriveMoment, Driven};
 use std::sync::Arc;
 
 /// Whether the lab is open.
-pub(super) fn is_open(session: &Session) -> bool {
+pub(crate) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Match
 }
 

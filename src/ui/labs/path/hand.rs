@@ -1,7 +1,7 @@
 //! What a hand does with a path: which control point it holds, and what comes of it.
 
-use super::out::Out;
-use super::text;
+use crate::ui::out::Out;
+use crate::ui::text;
 use glam::DVec2;
 use segue_motion::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
 use segue_session::LabId;
@@ -11,30 +11,30 @@ use segue_session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PathHand {
     /// The chosen control point: what keys and buttons work on.
-    pub(super) chosen: Option<usize>,
+    pub(crate) chosen: Option<usize>,
     /// The control point under the pointer.
-    pub(super) hovered: Option<usize>,
+    pub(crate) hovered: Option<usize>,
     /// The place on the path under the pointer, and its parameter.
-    pub(super) place: Option<(DVec2, f64)>,
+    pub(crate) place: Option<(DVec2, f64)>,
     /// The point that is dragged.
-    pub(super) held: Option<Held>,
+    pub(crate) held: Option<Held>,
     /// Why the last edit was not made.
-    pub(super) said: Option<String>,
+    pub(crate) said: Option<String>,
     /// The camera was put where the whole path is in sight; with these values.
-    pub(super) framed: Option<Vec<(Key, Value)>>,
+    pub(crate) framed: Option<Vec<(Key, Value)>>,
 }
 
 /// A control point in the hand.
 #[derive(Clone, Debug)]
-pub(super) struct Held {
+pub(crate) struct Held {
     /// Which.
-    pub(super) index: usize,
+    pub(crate) index: usize,
     /// The pane that it was taken in.
-    pub(super) pane: usize,
+    pub(crate) pane: usize,
     /// The path when it was taken.
-    pub(super) start: GroundSpline,
+    pub(crate) start: GroundSpline,
     /// From the place that was pressed to the point, metres.
-    pub(super) grip: DVec2,
+    pub(crate) grip: DVec2,
 }
 
 /// A curve whose ends are nearer to each other than this share of its length is a loop.
@@ -46,13 +46,13 @@ const LOOP_POINTS: usize = 6;
 
 impl PathHand {
     /// Edits a path, and says why where that is not possible. The caller ends the step.
-    pub(super) fn edit(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+    pub(crate) fn edit(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
         let edited = from.edited(edit, pins(session));
         self.take(edited, session, out)
     }
 
     /// The same as one step of undo.
-    pub(super) fn edit_once(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+    pub(crate) fn edit_once(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
         let done = self.edit(from, edit, session, out);
         out.commands.push(Command::Settle);
         done
@@ -78,7 +78,7 @@ impl PathHand {
     }
 
     /// Makes a path of what was drawn.
-    pub(super) fn take_drawn(&mut self, drawn: &[DVec2], session: &Session, out: &mut Out) {
+    pub(crate) fn take_drawn(&mut self, drawn: &[DVec2], session: &Session, out: &mut Out) {
         let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let gap = drawn.first().zip(drawn.last()).map_or(0.0, |(first, last)| first.distance(*last));
         let is_loop = gap < LOOP_SHARE * length;
@@ -103,7 +103,7 @@ impl PathHand {
     }
 
     /// One more control point: behind the chosen one, or where there is most room.
-    pub(super) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+    pub(crate) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
         let spline = path.road.spline();
         let ends = spline.with_ends(SplineEnds::Clamped).greville();
         let gaps = || ends.windows(2).enumerate();
@@ -123,7 +123,7 @@ impl PathHand {
     }
 
     /// Takes the chosen control point away.
-    pub(super) fn remove_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+    pub(crate) fn remove_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
         let Some(index) = self.chosen else {
             self.said = Some(text::CHOOSE_POINT.to_owned());
             return;
@@ -144,13 +144,13 @@ fn pins(session: &Session) -> Pins {
 }
 
 /// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
-pub(super) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
+pub(crate) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
     let is_open = session.params().lab() == LabId::Path && pane.problem.is_none();
     pane.outcome.as_ref()?.path.as_deref().filter(|_| is_open)
 }
 
 /// A place on the grid, if there is one.
-pub(super) fn snapped(place: DVec2, session: &Session) -> DVec2 {
+pub(crate) fn snapped(place: DVec2, session: &Session) -> DVec2 {
     let grid = session.params().number(Key::PathGrid);
     if grid > 0.0 { (place / grid).round() * grid } else { place }
 }

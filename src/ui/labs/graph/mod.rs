@@ -5,13 +5,13 @@ mod rows;
 mod strip;
 mod table;
 
-pub(super) use map::{is_open, map_panel_ui, map_share};
-pub(super) use rows::{compare_windows, graph_ui, seed_detail};
-pub(super) use strip::walk_panel_ui;
+pub(crate) use map::{is_open, map_panel_ui, map_share};
+pub(crate) use rows::{compare_windows, graph_ui, seed_detail};
+pub(crate) use strip::walk_panel_ui;
 
-use super::out::Out;
-use super::state::UiState;
-use super::text;
+use crate::ui::out::Out;
+use crate::ui::state::UiState;
+use crate::ui::text;
 use segue_motion::graph::Place;
 use segue_session::{Built, Command, Key, Session, Value, Walk, write_jump};
 

@@ -1,13 +1,13 @@
 //! The Layers lab: which part of the body is B's, how much of it, and when.
 
-use super::kit;
-use super::lab_panel::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
-use super::language::tr;
-use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
-use super::state::UiState;
-use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
+use crate::ui::kit;
+use crate::ui::language::tr;
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_session::choices;
 use segue_session::{Key, Session};

@@ -1,14 +1,14 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
-use super::clip_sets::clip_sets_ui;
-use super::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
-use super::lab_panel::{clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
-use super::language::tr;
-use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
-use super::state::UiState;
-use super::text;
-use super::theme::{Palette, Type, palette_of, space, theme_of};
+use crate::ui::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
+use crate::ui::language::tr;
+use crate::ui::out::Out;
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
 use segue_motion::skeleton::Side;
 use segue_session::JobKind;

@@ -1,12 +1,12 @@
 //! The path on the stage: its control points are taken with mouse, finger or keys.
 
-use super::ground_line::View;
-use super::kit;
-use super::out::Out;
-use super::path_hand::{Held, path_of, snapped};
-use super::state::UiState;
-use super::text;
-use super::theme::space;
+use crate::ui::kit;
+use crate::ui::labs::path::ground_line::View;
+use crate::ui::labs::path::hand::{Held, path_of, snapped};
+use crate::ui::out::Out;
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::space;
 use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
@@ -23,7 +23,7 @@ const KEY_STEP_M: f64 = 0.05;
 const PITCH_DEG: f64 = 34.0;
 
 /// The control points of one pane, and the place on the path that the pointer is at.
-pub(super) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Response, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Response, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let Some(path) = session.panes().get(pane).and_then(|pane| path_of(session, pane)) else {
         return;
     };
@@ -193,7 +193,7 @@ fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session
 }
 
 /// Why the last edit was not made, where the hand is.
-pub(super) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
+pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
     let words = match &state.path.said {
         Some(said) => said.as_str(),
         None if state.drawing.is_some() => text::DRAW_HINT,
@@ -203,14 +203,14 @@ pub(super) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut U
 }
 
 /// When the lab opens, the whole path comes into sight, unless somebody has put the camera elsewhere; when it is left, the camera is as before.
-pub(super) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
+pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let is_open = session.params().lab() == LabId::Path;
     let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
     match (is_open, &state.path.framed) {
         (true, None) if !untouched() => state.path.framed = Some(Vec::new()),
         (true, None) => {
             if session.main_outcome().is_some_and(|outcome| outcome.path.is_some())
-                && let Some(values) = super::stage_panel::framing(session, state, Some(PITCH_DEG))
+                && let Some(values) = crate::ui::stage_panel::framing(session, state, Some(PITCH_DEG))
             {
                 state.path.framed = Some(values.clone());
                 out.commands.push(Command::Set(values));

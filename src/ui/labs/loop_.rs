@@ -1,86 +1,19 @@
-//! The panels of the Speed and the Loop lab: results that go round.
+//! The Loop lab: a cycle and how its ends are brought together.
 
-use super::clip_sets::clip_sets_ui;
-use super::kit::{self, Button, Mark, Part};
-use super::lab_panel::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui, slot_row_ui};
-use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
-use super::state::UiState;
-use super::text;
-use super::theme::{palette_of, space};
+use crate::ui::kit::{self, Button};
+use crate::ui::out::Out;
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
 use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
 
-/// The upper end of the slider before the clips are known, metres per second.
-const SLIDER_MPS: f64 = 6.0;
-/// And how far it goes beyond the faster clip.
-const SLIDER_BEYOND: f64 = 1.6;
-
 /// Ends that are farther apart than this hardly repeat each other, centimetres: as the default threshold of the motion graph.
 const POOR_ENDS_CM: f64 = 8.0;
-
-/// Two gaits at a speed.
-pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
-    kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
-    clip_sets_ui(session, out, ui);
-    pair_ui(session, out, ui);
-    let palette = palette_of(ui);
-    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
-    let mut detail = Detail {
-        max: Some(SLIDER_MPS),
-        ..Detail::default()
-    };
-    let mut warning = None;
-    if let Some(CycleMade::Gait {
-        facts,
-        clips_mps,
-        cuts_secs,
-        ..
-    }) = made
-    {
-        let mark = |part: Part, value| Mark {
-            value,
-            color: part.fill(palette).0,
-        };
-        detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
-        detail.help = Some(text::gaits(clips_mps, cuts_secs));
-        let most = clips_mps[0].max(clips_mps[1]);
-        detail.max = Some((SLIDER_BEYOND * most).max(session.params().number(Key::Speed)));
-        warning = text::beyond_gaits(&facts, clips_mps);
-    }
-    param_row_ui(Key::Speed, &detail, session, out, ui);
-    if let (Some(warning), None) = (warning, session.compare()) {
-        kit::note_ui(&warning, palette.warning, ui);
-    }
-    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
-    // The rows of what is compared have the way back.
-    if !on && kit::button_ui(Button::new(text::THREE_SPEEDS), ui).clicked() {
-        compare_speeds(session, out);
-    }
-    ui.add_space(space::S);
-    param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
-    kit::note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
-    foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
-}
-
-/// The speed of A, that of B, and the one between them side by side, or back to one pane.
-pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
-    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
-    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
-    let query = match made {
-        Some(CycleMade::Gait { clips_mps: [a, b], .. }) if !on => {
-            let words = [a, 0.5 * (a + b), b].map(|speed| Key::Speed.param().check(Value::Number(speed)).ok());
-            let words: Vec<String> = words.iter().flatten().map(|speed| Key::Speed.param().format(speed)).collect();
-            format!("{}:{}", Key::Speed.param().name, words.join(","))
-        }
-        _ => String::new(),
-    };
-    out.set_once(Key::Compare, Value::Text(query));
-}
 
 /// A clip that becomes a cycle.
 pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

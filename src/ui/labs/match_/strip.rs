@@ -208,7 +208,7 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui
 }
 
 /// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of a motion is the number of its clip.
-pub(super) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
+pub(crate) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
     let bar = if database.options().mirrored {
         place.motion / 2

@@ -9,7 +9,7 @@ use eframe::egui::{Grid, RichText, Ui};
 use segue_session::{NumberTable, Session, digits};
 
 /// The table, and two buttons that copy it.
-pub(super) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = NumberTable::of(session);
     let small = |words: &str, color, ui: &Ui| RichText::new(tr(words, ui)).font(theme.font(Type::Small)).color(color);

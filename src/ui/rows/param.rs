@@ -1,10 +1,10 @@
 //! One parameter of the table as a row of a panel.
 
-use super::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
-use super::language::tr;
-use super::out::Out;
-use super::text;
-use super::theme::palette_of;
+use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
+use crate::ui::language::tr;
+use crate::ui::out::Out;
+use crate::ui::text;
+use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
 use segue_motion::skeleton::Role;
 use segue_session::{Command, Compare, Key, Kind, Session, Value, decimals_of};

@@ -4,7 +4,7 @@ use super::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
-use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
@@ -13,12 +13,12 @@ use segue_motion::matching::{Block, Candidate, Database};
 use segue_session::{Key, Session};
 
 /// The colours of the blocks, in their order.
-pub(super) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
+pub(crate) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
     [palette.a, palette.warning, palette.others[0], palette.others[1], palette.others[2]]
 }
 
 /// A frame in words: its clip and its time.
-pub(super) fn place_name(database: &Database, candidate: &Candidate) -> String {
+pub(crate) fn place_name(database: &Database, candidate: &Candidate) -> String {
     let place = candidate.place;
     let Some(motion) = database.motion(place.motion) else {
         return String::new();
@@ -27,7 +27,7 @@ pub(super) fn place_name(database: &Database, candidate: &Candidate) -> String {
 }
 
 /// The rows.
-pub(super) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     state.drive.hovered = None;
     let palette = palette_of(ui);
     ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));

@@ -1,10 +1,10 @@
 //! Saving a motion as a file: which kind, and how.
 
-use super::kit::{self, Button, Icon};
-use super::out::{Action, Out};
-use super::state::UiState;
-use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
+use crate::ui::kit::{self, Button, Icon};
+use crate::ui::out::{Action, Out};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
 use eframe::egui::{Rect, Ui};
 use segue_formats::bvh::RotationOrder;

@@ -14,12 +14,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Of the room beside the parameters, how much is the map's.
-pub(in crate::ui) fn map_share(session: &Session) -> f32 {
+pub(crate) fn map_share(session: &Session) -> f32 {
     if session.panes().len() > 1 { 0.38 } else { 0.52 }
 }
 
 /// The map beside the stage, and the numbers of several panes below it.
-pub(in crate::ui) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let several = session.panes().len() > 1;
     let (room, below) = (ui.available_height(), 60.0 * theme_of(ui).scale());
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -32,7 +32,7 @@ pub(in crate::ui) fn map_panel_ui(session: &Session, state: &mut UiState, out: &
 }
 
 /// What is drawn of a graph, by the indices of the whole graph's transitions.
-pub(super) struct Drawn {
+pub(crate) struct Drawn {
     built: Arc<Built>,
     choices: Option<Arc<Choices>>,
     pub(super) ends: Vec<[Place; 2]>,
@@ -136,7 +136,7 @@ impl Drawn {
 }
 
 /// The map, what is under the pointer in words, and what the colours mean.
-pub(super) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let Some(cast) = session.graph_cast() else {
         kit::note_ui(text::EMPTY_PANE, palette.muted, ui);
@@ -333,6 +333,6 @@ impl Tiles {
 }
 
 /// Whether the lab is the Graph lab.
-pub(in crate::ui) fn is_open(session: &Session) -> bool {
+pub(crate) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Graph
 }

@@ -2,12 +2,12 @@
 
 use super::tags::tags_ui;
 use super::why::why_ui;
-use crate::ui::clip_sets::clip_sets_ui;
 use crate::ui::kit::{self, Button, Icon};
-use crate::ui::lab_panel::{keep_ui, lab_label, save_result_ui};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
-use crate::ui::param_row::{Detail, param_row_ui};
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{keep_ui, lab_label, save_result_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -17,7 +17,7 @@ use segue_session::choices;
 use segue_session::{Command, Key, Session, Value, sentence, write_ids};
 
 /// All rows of the lab.
-pub(in crate::ui) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
@@ -164,7 +164,7 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 }
 
 /// Ways to hold on side by side, or back to one pane.
-pub(in crate::ui) fn compare_hysteresis(session: &Session, out: &mut Out) {
+pub(crate) fn compare_hysteresis(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
     let query = if on { "" } else { text::HYSTERESES_QUERY };
     out.set_once(Key::Compare, Value::Text(query.to_owned()));

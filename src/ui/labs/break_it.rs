@@ -1,11 +1,11 @@
 //! The classic mistakes of the Transition lab: one at a time, and what each of them looks like.
 
-use super::kit::{self, Button};
-use super::language::tr;
-use super::out::Out;
-use super::param_row::{Detail, param_row_ui};
-use super::text;
-use super::theme::{Type, palette_of, theme_of};
+use crate::ui::kit::{self, Button};
+use crate::ui::language::tr;
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_session::choices::{Mistake, TransitionMethod};
 use segue_session::{Compare, Key, Session, Value, mistake_shows};

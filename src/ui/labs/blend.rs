@@ -1,0 +1,42 @@
+//! The Blend lab: the window, its place and its weight.
+
+use crate::ui::kit;
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::theme::space;
+use eframe::egui::Ui;
+use segue_session::{Key, Session, Slot};
+pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    let fps = pair_ui(session, out, ui);
+    let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.duration_secs());
+    let window = session.params().number(Key::BlendWindow);
+    let shortest = [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
+    let longest_window = if shortest.is_finite() {
+        Some((shortest * fps).floor())
+    } else {
+        None
+    };
+    param_row_ui(
+        Key::BlendWindow,
+        &Detail {
+            fps: Some(fps),
+            max: longest_window.map(|max| max.max(window)),
+            ..Detail::default()
+        },
+        session,
+        out,
+        ui,
+    );
+    compare_ui(Key::BlendWindow, session, out, ui);
+    place_rows_ui([Key::LeaveA, Key::EnterB], session, out, ui);
+    param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);
+    ui.add_space(space::XS);
+    param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
+    param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}

@@ -1,0 +1,33 @@
+//! The Make lab: a motion from parameters.
+
+use crate::ui::kit;
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::theme::space;
+use eframe::egui::Ui;
+use segue_session::{Group, Key, PARAMS, Session};
+pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
+        // What the chosen motion does not have is not offered.
+        if session.made_motion_has(param.key) {
+            param_row_ui(param.key, &Detail::default(), session, out, ui);
+        }
+        if param.key == made_number(session) {
+            compare_ui(param.key, session, out, ui);
+        }
+    }
+    foot_rows_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// What of a made motion is compared: standing and turning on the spot have no speed.
+pub(crate) fn made_number(session: &Session) -> Key {
+    if session.made_motion_has(Key::GaitSpeed) {
+        Key::GaitSpeed
+    } else {
+        Key::BodyHeight
+    }
+}

@@ -1,0 +1,79 @@
+//! The Speed lab: two cycles at a speed.
+
+use crate::ui::kit::{self, Button, Mark, Part};
+use crate::ui::out::Out;
+use crate::ui::rows::clip_sets_ui;
+use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
+use eframe::egui::Ui;
+use segue_session::{CycleMade, Key, Session, Value};
+
+/// The upper end of the slider before the clips are known, metres per second.
+const SLIDER_MPS: f64 = 6.0;
+/// And how far it goes beyond the faster clip.
+const SLIDER_BEYOND: f64 = 1.6;
+
+/// Two gaits at a speed.
+pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
+    clip_sets_ui(session, out, ui);
+    pair_ui(session, out, ui);
+    let palette = palette_of(ui);
+    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
+    let mut detail = Detail {
+        max: Some(SLIDER_MPS),
+        ..Detail::default()
+    };
+    let mut warning = None;
+    if let Some(CycleMade::Gait {
+        facts,
+        clips_mps,
+        cuts_secs,
+        ..
+    }) = made
+    {
+        let mark = |part: Part, value| Mark {
+            value,
+            color: part.fill(palette).0,
+        };
+        detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
+        detail.help = Some(text::gaits(clips_mps, cuts_secs));
+        let most = clips_mps[0].max(clips_mps[1]);
+        detail.max = Some((SLIDER_BEYOND * most).max(session.params().number(Key::Speed)));
+        warning = text::beyond_gaits(&facts, clips_mps);
+    }
+    param_row_ui(Key::Speed, &detail, session, out, ui);
+    if let (Some(warning), None) = (warning, session.compare()) {
+        kit::note_ui(&warning, palette.warning, ui);
+    }
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
+    // The rows of what is compared have the way back.
+    if !on && kit::button_ui(Button::new(text::THREE_SPEEDS), ui).clicked() {
+        compare_speeds(session, out);
+    }
+    ui.add_space(space::S);
+    param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
+    kit::note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
+    foot_rows_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// The speed of A, that of B, and the one between them side by side, or back to one pane.
+pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
+    let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
+    let query = match made {
+        Some(CycleMade::Gait { clips_mps: [a, b], .. }) if !on => {
+            let words = [a, 0.5 * (a + b), b].map(|speed| Key::Speed.param().check(Value::Number(speed)).ok());
+            let words: Vec<String> = words.iter().flatten().map(|speed| Key::Speed.param().format(speed)).collect();
+            format!("{}:{}", Key::Speed.param().name, words.join(","))
+        }
+        _ => String::new(),
+    };
+    out.set_once(Key::Compare, Value::Text(query));
+}

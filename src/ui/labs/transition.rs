@@ -1,0 +1,72 @@
+//! The Transition lab: the methods and what each of them has to set.
+
+use super::break_it::break_it_ui;
+use crate::ui::kit::{self, Button};
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui, save_result_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::space;
+use eframe::egui::Ui;
+use segue_motion::math::spring;
+use segue_session::choices::{self, TransitionMethod};
+use segue_session::{Key, Session, Value};
+/// What the methods of the lab have to set, and what they share.
+pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    let fps = pair_ui(session, out, ui);
+    let params = session.params();
+    param_row_ui(Key::Method, &Detail::default(), session, out, ui);
+    // With several methods side by side, what each of them has to set is there.
+    let methods: Vec<TransitionMethod> = session.choices();
+    let any = |of: &[TransitionMethod]| methods.iter().any(|method| of.contains(method));
+    if any(&[TransitionMethod::Inertialize]) {
+        param_row_ui(Key::HalfLife, &Detail::default(), session, out, ui);
+        half_life_ruler_ui(params.number(Key::HalfLife), fps, ui);
+        compare_ui(Key::HalfLife, session, out, ui);
+    }
+    if any(&[TransitionMethod::Cubic, TransitionMethod::Quintic, TransitionMethod::Dead]) {
+        param_row_ui(Key::BlendTime, &Detail::default(), session, out, ui);
+    }
+    if any(&[TransitionMethod::Dead]) {
+        param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
+    }
+    if any(&[TransitionMethod::Smooth, TransitionMethod::Linear]) {
+        let detail = Detail {
+            fps: Some(fps),
+            ..Detail::default()
+        };
+        param_row_ui(Key::BlendWindow, &detail, session, out, ui);
+    }
+    let shoot_out = session.compare().is_some_and(|compare| compare.key == Key::Method);
+    if kit::button_ui(Button::new(text::SHOOT_OUT).selected(shoot_out), ui).clicked() {
+        let query = if shoot_out { "" } else { text::SHOOT_OUT_QUERY };
+        out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    }
+    break_it_ui(session, out, ui);
+    ui.add_space(space::S);
+    place_rows_ui([Key::MixFrameA, Key::MixFrameB], session, out, ui);
+    param_row_ui(Key::MatchBy, &Detail::default(), session, out, ui);
+    if params.choice::<choices::MatchBy>() == choices::MatchBy::Pose {
+        for key in [Key::MatchPosition, Key::MatchRotation, Key::MatchVelocity] {
+            param_row_ui(key, &Detail::default(), session, out, ui);
+        }
+    }
+    ui.add_space(space::XS);
+    param_row_ui(Key::Align, &Detail::default(), session, out, ui);
+    param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
+    param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
+    foot_rows_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// How long a half-life really lasts, and the dissolve that feels alike.
+fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
+    for (label, share) in [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)] {
+        let secs = spring::secs_until(half_life_secs, share);
+        kit::value_row_ui(label, &format!("{secs:.2}"), "s", ui);
+    }
+    let alike = spring::alike_window_secs(half_life_secs) * fps;
+    kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), "frames", ui);
+}

@@ -1,0 +1,49 @@
+//! The View lab: a clip, what is known of it, and where it stands.
+
+use crate::ui::clip_panel::clip_panel_ui;
+use crate::ui::kit::{self, Button};
+use crate::ui::labs::toggle_compare;
+use crate::ui::out::Out;
+use crate::ui::rows::{Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use eframe::egui::Ui;
+use segue_session::{Key, Session, Slot, Value};
+pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    compared_clips_ui(session, out, ui);
+    foot_rows_ui(session, out, ui);
+    for key in [Key::RootMotion, Key::PlaceX, Key::PlaceZ, Key::PlaceHeading] {
+        param_row_ui(key, &Detail::default(), session, out, ui);
+    }
+    let is_made = session.view_is_changed();
+    if is_made {
+        keep_ui(0, session, out, ui);
+    }
+    if let Some(entry) = session.slot(Slot::A) {
+        let saved = if is_made { "result:0" } else { entry.id.as_str() };
+        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, saved, session, state, out, ui));
+    }
+}
+
+/// The clip, or those that stand side by side.
+fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let compare = session.compare().filter(|compare| compare.key == Key::A);
+    let label = if let Some(compare) = compare {
+        for (pane, value) in compare.values.iter().enumerate() {
+            let label = format!("{} {}", text::CLIP, pane + 1);
+            if let Some(id) = clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui) {
+                let mut compare = compare.clone();
+                compare.values[pane] = Value::Text(id);
+                out.set_once(Key::Compare, Value::Text(compare.to_string()));
+            }
+        }
+        text::COMPARE_OFF
+    } else {
+        slot_row_ui(Slot::A, session, out, ui);
+        text::COMPARE_CLIPS
+    };
+    if kit::button_ui(Button::new(label).hint(text::COMPARE_CLIPS_HELP), ui).clicked() {
+        toggle_compare(session, out);
+    }
+}

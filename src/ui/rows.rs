@@ -1,0 +1,187 @@
+//! The rows that panels of several labs share.
+
+mod clip_sets;
+mod param;
+mod save;
+
+pub(crate) use clip_sets::clip_sets_ui;
+pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
+pub(crate) use save::save_rows_ui;
+
+use super::kit::{self, Button, Icon};
+use super::language::tr;
+use super::out::Out;
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{self, Ui};
+use segue_motion::transition::has_legs;
+use segue_session::{Command, Compare, Key, LabId, NoResult, Session, Slot, Value, split_reference};
+/// The foot lock, how feet are read where they are held, and why they are not.
+pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
+    if session.params().is_on(Key::FootLock)
+        && let Some(outcome) = session.main_outcome()
+        && !has_legs(outcome.motion.clip.skeleton(), &outcome.motion.roles)
+    {
+        let words = egui::RichText::new(tr(text::NO_LEGS, ui)).font(theme_of(ui).font(Type::Small));
+        ui.label(words.color(palette_of(ui).warning));
+    }
+    kit::folded_ui(text::FEET, ui, |ui| {
+        if session.params().is_on(Key::FootLock) {
+            for key in [Key::LockBlend, Key::LockReach, Key::LockClearance] {
+                param_row_ui(key, &Detail::default(), session, out, ui);
+            }
+        }
+        for key in [Key::Ground, Key::ContactHeight, Key::ContactSpeed] {
+            param_row_ui(key, &Detail::default(), session, out, ui);
+        }
+    });
+}
+
+/// Keeps the result, or saves it; which one, where several stand side by side.
+pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let panes = session.panes();
+    state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
+    let names: Vec<String> = panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
+    if panes.len() > 1 {
+        let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
+        if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
+            state.saved_pane = pane;
+        }
+    }
+    keep_ui(state.saved_pane, session, out, ui);
+    ui.add_space(space::S);
+    let has_result = panes.get(state.saved_pane).is_some_and(|pane| pane.result().is_ok());
+    ui.add_enabled_ui(has_result, |ui| {
+        save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
+    });
+}
+
+/// Keeps the result of a pane. Where there is none, it says why.
+pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let missing = session.panes().get(pane).and_then(|pane| pane.result().err());
+    let button = Button::new(text::KEEP).icon(Icon::Plus).outlined();
+    let kept = ui.add_enabled_ui(missing.is_none(), |ui| kit::button_ui(button, ui).clicked());
+    if kept.inner {
+        out.commands.push(Command::Keep(pane));
+    }
+    match missing {
+        // The sentence stands on the stage.
+        Some(NoResult::Refused(_)) => kit::note_ui(text::NOTHING_TO_KEEP, palette_of(ui).muted, ui),
+        Some(NoResult::Awaited) => kit::note_ui(text::STILL_COMPUTED, palette_of(ui).muted, ui),
+        None => {}
+    }
+}
+
+/// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.
+pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
+    slot_row_ui(Slot::A, session, out, ui);
+    slot_row_ui(Slot::B, session, out, ui);
+    let outcome = session.main_outcome();
+    if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
+        let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui)).font(theme_of(ui).font(Type::Small));
+        let line = ui.label(words.color(palette_of(ui).muted));
+        if !retargeted.unmatched.is_empty() {
+            line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
+        }
+    }
+    let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.fps());
+    if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))
+        && (a - b).abs() > 1e-4 * a
+    {
+        let words = egui::RichText::new(tr(&text::resampled(b, a), ui)).font(theme_of(ui).font(Type::Small));
+        ui.label(words.color(palette_of(ui).muted));
+    }
+    ui.add_space(space::S);
+    outcome.map_or(60.0, |outcome| outcome.motion.clip.fps())
+}
+
+/// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one thing for both: it is said once, below the second
+/// row, or below the one that is left to Segue.
+pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
+    let automatic = keys.map(|key| session.params().optional(key).is_none());
+    let said_below = usize::from(automatic != [true, false]);
+    let transition = session.main_outcome().and_then(|outcome| outcome.transition);
+    let search = transition.and_then(|transition| transition.search);
+    for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {
+        let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
+        let latest_secs = motion.map(|motion| {
+            let end = motion.clip.duration_secs();
+            search.map_or(end, |search| search.latest_secs[index].min(end))
+        });
+        let in_frames = |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip.fps()).round());
+        let max = latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
+        let help = match (said_below == index, automatic[index]) {
+            (true, _) => found_sentence(session, automatic),
+            (false, true) => String::new(),
+            (false, false) => text::BY_HAND.to_owned(),
+        };
+        let detail = Detail {
+            max,
+            used: max.filter(|&max| session.params().optional(key).is_some_and(|given| given > max)),
+            help: Some(help),
+            ..Detail::default()
+        };
+        param_row_ui(key, &detail, session, out, ui);
+    }
+}
+
+/// How the place was found, with its distance where that is known.
+fn found_sentence(session: &Session, automatic: [bool; 2]) -> String {
+    if session.jobs().iter().any(|job| job.task.is_none()) {
+        return format!("{}…", text::MATCHING);
+    }
+    match session.main_outcome().and_then(|outcome| outcome.transition) {
+        Some(transition) => text::place_found(&transition, automatic),
+        None => format!("{}.", text::FOUND),
+    }
+}
+
+/// Which clip is in a slot, to be chosen anew.
+pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let chosen = session.params().text(slot.key());
+    if let Some(id) = clip_choice_ui(slot.label(), chosen, session, ui) {
+        out.commands.push(Command::Assign(slot, id));
+    }
+}
+
+/// A clip of the library to choose; the id of the one that was.
+pub(crate) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &mut Ui) -> Option<String> {
+    let entries = session.library().entries();
+    let found = session.library().find(chosen);
+    let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
+    let missing = (found.is_none() && !chosen.is_empty()).then(|| text::missing(split_reference(chosen).0));
+    // The one that is not here cannot be chosen, only seen.
+    let options: Vec<(usize, &str)> = (entries.iter().map(|entry| entry.name.as_str()).enumerate())
+        .chain(missing.as_deref().map(|words| (usize::MAX, words)))
+        .collect();
+    let picked = ui
+        .push_id(label, |ui| kit::choice_row_ui(label, found.unwrap_or(usize::MAX), &options, ui))
+        .inner;
+    Some(entries.get(picked?)?.id.clone())
+}
+
+/// The experiment of the course. The rows of what is compared have the way back.
+pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+    let on = session.compare().is_some_and(|compare| compare.key == key);
+    if !on && kit::button_ui(Button::new(text::FULL_HALF_THIRD).hint(text::COMPARE_HELP), ui).clicked() {
+        out.commands.push(Command::Compare(key));
+    }
+}
+
+/// The name of the lab that is open.
+pub(crate) fn lab_label(session: &Session) -> String {
+    Key::Lab.param().spoken(session.params().get(Key::Lab))
+}
+
+/// Two clips as they are, side by side: a reference, and what somebody made after it.
+pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
+    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
+    let compare = Compare { key: Key::A, values }.to_string();
+    out.commands.push(Command::Set(vec![
+        (Key::Lab, LabId::View.into()),
+        (Key::Compare, Value::Text(compare)),
+    ]));
+    out.commands.push(Command::Settle);
+}
