@@ -1,0 +1,47 @@
+//! Blends a walk into a run where the two look most alike, and measures the seam.
+//!
+//! `cargo run --no-default-features --example blend -- blend.bvh` also writes the dissolve.
+
+#![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
+
+use segue_formats::bvh;
+use segue_motion::blend::{DissolveOptions, Source, dissolve};
+use segue_motion::metrics::{MotionTrace, ResultMetrics};
+use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
+use segue_motion::skeleton::Roles;
+use segue_motion::synth::{Action, Params, synthesize};
+use std::error::Error;
+use std::sync::Arc;
+
+/// Frames in which both clips play.
+const WINDOW: usize = 30;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
+    let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
+    let roles = Roles::detect(walk.skeleton());
+
+    // Which window of the walk is most like a window of the run, after the best alignment on the ground?
+    let weights = limb_weights(walk.skeleton());
+    let height = f64::from(roles.body_height(walk.skeleton()));
+    let best = best_transition(&walk, &run, &weights, height, &SearchOptions::new(WINDOW))?;
+    println!("leave the walk at frame {}, enter the run at frame {}", best.leave, best.enter);
+
+    // The velocity jump of a cut, and of the dissolve, beyond what the clips themselves do.
+    let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
+    let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
+    for window in [0, WINDOW] {
+        let options = DissolveOptions {
+            window,
+            ..DissolveOptions::default()
+        };
+        let result = dissolve(&a, best.leave, &b, best.enter, &options)?.clip;
+        let metrics = ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
+        let jump = metrics.velocity_jump_dps.ok_or("the clips are too short to measure")?;
+        println!("window of {window:2} frames: velocity jump {jump:.0} °/s");
+        if let (Some(path), WINDOW) = (std::env::args_os().nth(1), window) {
+            std::fs::write(path, bvh::write(&result, &bvh::WriteOptions::default()))?;
+        }
+    }
+    Ok(())
+}

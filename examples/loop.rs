@@ -1,0 +1,49 @@
+//! Finds a cycle in a walk that turns, closes it, and plays it ten times.
+//!
+//! `cargo run --no-default-features --example loop -- loop.bvh` also writes the ten cycles.
+
+#![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
+
+use segue_formats::bvh;
+use segue_motion::blend::Source;
+use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::skeleton::Roles;
+use segue_motion::synth::{Action, Params, synthesize};
+use segue_motion::transition::{CycleSearch, LoopOptions, close_loop, find_cycle};
+use std::error::Error;
+use std::sync::Arc;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let params = Params {
+        turn_rate_dps: 30.0,
+        ..Params::new(Action::Walk)
+    };
+    let walk = Arc::new(synthesize(&params)?.clip);
+    let roles = Roles::detect(walk.skeleton());
+    let contacts = Contacts::detect(&walk, &roles, &ContactOptions::default());
+    let height = f64::from(roles.body_height(walk.skeleton()));
+    let source = Source::new(Arc::clone(&walk), &roles);
+
+    // Two frames whose surroundings look alike are the ends of the cycle.
+    let found = find_cycle(&source, &contacts, height, &CycleSearch::new(walk.fps()))?;
+    let secs = found.cycle.len() as f64 / walk.fps();
+    println!("cycle: frames {} to {}, {secs:.2} s", found.cycle.start, found.cycle.end);
+
+    // What is left between both ends is spread over the cycle.
+    let cycle = close_loop(&source, found.cycle, &LoopOptions::default())?;
+    println!(
+        "largest turn between the ends: {:.2} ° before, {:.5} ° after",
+        cycle.before.turn_deg, cycle.seam.turn_deg
+    );
+
+    let ten = cycle.repeat(10)?;
+    let turned = cycle.cycle.yaw.to_degrees();
+    println!(
+        "each cycle turns the character by {turned:.1} °; ten of them take {:.1} s",
+        ten.duration_secs()
+    );
+    if let Some(path) = std::env::args_os().nth(1) {
+        std::fs::write(path, bvh::write(&ten, &bvh::WriteOptions::default()))?;
+    }
+    Ok(())
+}
