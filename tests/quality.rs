@@ -3,7 +3,7 @@
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
-#[path = "../examples/quality/trials/mod.rs"]
+#[path = "../tools/quality/trials/mod.rs"]
 mod trials;
 
 use segue_session::{Command, write_ids};

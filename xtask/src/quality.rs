@@ -9,21 +9,21 @@ use crate::shell::{Result, cargo, fail, root, run};
 const PATHS: [&str; 2] = ["--data", "--json"];
 
 pub fn try_labs(args: &[&str]) -> Result<()> {
-    let mut example = example("segue", "quality", "quality");
-    example.arg("--");
+    let mut tool = tool("quality", "quality");
+    tool.arg("--");
     let mut words = args.iter();
     while let Some(word) = words.next() {
         match words.next() {
-            // The example runs in the repository's root, the path was named from here.
-            Some(path) if PATHS.contains(word) => example.arg(word).arg(std::path::absolute(path)?),
-            Some(value) => example.arg(word).arg(value),
+            // The program runs in the repository's root, the path was named from here.
+            Some(path) if PATHS.contains(word) => tool.arg(word).arg(std::path::absolute(path)?),
+            Some(value) => tool.arg(word).arg(value),
             None => return fail(format!("{word} is followed by a value")),
         };
     }
     if !args.contains(&"--data") && !args.contains(&"--synth") {
-        example.arg("--data").arg(usual_folder()?);
+        tool.arg("--data").arg(usual_folder()?);
     }
-    run(&mut example)
+    run(&mut tool)
 }
 
 pub fn run_drives(args: &[&str]) -> Result<()> {
@@ -38,26 +38,22 @@ fn run_made(name: &str, args: &[&str]) -> Result<()> {
     if !args.is_empty() {
         return fail("this command takes no arguments: it drives with the synthesiser's motions");
     }
-    run(&mut example("segue-motion", name, "release"))
+    run(&mut tool(name, "release"))
 }
 
-fn example(package: &str, name: &str, profile: &str) -> Command {
-    let mut command = cargo(&[
+/// Returns the command that runs a program of `tools/`, built with a profile.
+fn tool(name: &str, profile: &str) -> Command {
+    cargo(&[
         "run",
         "--quiet",
         "--locked",
         "--profile",
         profile,
         "--package",
-        package,
-        "--example",
+        "segue-tools",
+        "--bin",
         name,
-    ]);
-    // The app's libraries alone: the measurements need no UI.
-    if package == "segue" {
-        command.arg("--no-default-features");
-    }
-    command
+    ])
 }
 
 /// Where the tests look for captured motion, too.

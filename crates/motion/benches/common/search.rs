@@ -1,4 +1,4 @@
-//! Four searches over the same frames with the same queries: what `benches/matching.rs` and `examples/match_speed` measure.
+//! Four searches over the same frames with the same queries: what `benches/matching.rs` and `tools/match_speed.rs` measure.
 
 use glam::DVec2;
 use segue_motion::matching::search::{Question, TreeIndex, scan};

@@ -2,7 +2,7 @@
 //! queries from a recorded drive and from noise; by four methods. `cargo xtask match-speed` runs it and prints a table in Markdown;
 //! `node tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
 
-#[path = "../../benches/common/search.rs"]
+#[path = "../crates/motion/benches/common/search.rs"]
 mod search;
 
 /// Slow methods are asked so many queries only where there are many frames.

@@ -1,7 +1,7 @@
 //! Makes the bundled takes of the CMU database's subject 16: reads ASF and AMC from the folder that is named, keeps every second frame, and writes BVH
 //! packed with gzip into `assets/samples`.
 //!
-//! `cargo run --release --no-default-features --example bundle_takes -- FOLDER`
+//! `cargo run --release --package segue-tools --bin bundle_takes -- FOLDER`
 
 #![expect(clippy::print_stdout, reason = "the table is for the README beside the files")]
 
@@ -39,7 +39,7 @@ const DECIMALS: usize = 2;
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).ok_or("name the folder of 16.asf and 16_*.amc")?;
     let folder = Path::new(&folder);
-    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples");
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/samples");
     let options = ImportOptions::default();
     let skeleton = read_skeleton("16.asf", &fs::read(folder.join("16.asf"))?, &options)?;
     for (name, first) in TAKES {

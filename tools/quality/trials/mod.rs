@@ -3,7 +3,7 @@
 #![allow(
     dead_code,
     unreachable_pub,
-    reason = "a module of an example and of a test, each of which uses a part of it"
+    reason = "a module of a program and of a test, each of which uses a part of it"
 )]
 
 pub mod folder;
