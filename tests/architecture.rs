@@ -155,7 +155,8 @@ fn a_violation_is_seen() {
 
     let parent = (
         PathBuf::from("crates/motion/src/skeleton/mod.rs"),
-        "#[cfg(any(test, feature = \"fixtures\"))]\npub mod fixtures;\nmod tree;\n".to_owned(),
+        "#[cfg(any(test, feature = \"fixtures\"))]\n#[expect(\n    clippy::unwrap_used,\n    reason = \"for tests\"\n)]\npub mod fixtures;\nmod tree;\n"
+            .to_owned(),
     );
     let tests = test_modules(&[parent]);
     assert!(is_test_file(Path::new("crates/motion/src/skeleton/fixtures/rigs.rs"), &tests));
@@ -215,7 +216,9 @@ fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
     for (path, text) in sources {
         let mut for_tests = false;
         let mut file = None;
+        let mut in_attribute = false;
         for line in text.lines().map(str::trim) {
+            let is_attribute = continues_attribute(line, &mut in_attribute);
             if is_for_tests(line) {
                 for_tests = true;
             } else if let (true, Some(name)) = (
@@ -223,7 +226,7 @@ fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
                 line.strip_prefix("#[path = \"").and_then(|rest| rest.strip_suffix(".rs\"]")),
             ) {
                 file = Some(name);
-            } else if !line.starts_with("#[") {
+            } else if !is_attribute {
                 let name = line
                     .strip_suffix(';')
                     .and_then(|item| item.rsplit_once("mod "))
@@ -254,14 +257,23 @@ fn is_for_tests(line: &str) -> bool {
         .any(|start| line.starts_with(start))
 }
 
+/// Whether a line begins or continues an attribute. `is_open` says whether the attribute goes on in the next line.
+fn continues_attribute(line: &str, is_open: &mut bool) -> bool {
+    let belongs = *is_open || line.starts_with("#[");
+    *is_open = belongs && !line.trim_end().ends_with(']');
+    belongs
+}
+
 /// The text without comments and without items for tests; its lines stay where they are.
 fn code(text: &str) -> String {
     let mut code = String::new();
     // The line that ends the item for tests, once that is open.
     let mut end: Option<String> = None;
     let mut for_tests = false;
+    let mut in_attribute = false;
     for line in text.lines() {
         let item = line.trim_start();
+        let is_attribute = continues_attribute(item, &mut in_attribute);
         if let Some(last) = &end {
             if line == last {
                 end = None;
@@ -269,7 +281,7 @@ fn code(text: &str) -> String {
         } else if is_for_tests(item) {
             for_tests = true;
         } else if for_tests {
-            if !item.starts_with("#[") {
+            if !is_attribute {
                 for_tests = false;
                 let opens = line.ends_with('{');
                 end = opens.then(|| format!("{}}}", &line[..line.len() - item.len()]));
