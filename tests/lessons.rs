@@ -204,8 +204,8 @@ fn links_to_captured_motion_give_results_with_sane_numbers() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The README's links to captured motion, by what they begin with.
-const README_LINKS: &[(&str, &[Bounds])] = &[
+/// The links to captured motion in `docs/labs.md`, by what they begin with.
+const LAB_LINKS: &[(&str, &[Bounds])] = &[
     (
         "lab=speed",
         &[
@@ -221,16 +221,16 @@ const README_LINKS: &[(&str, &[Bounds])] = &[
 ];
 
 #[test]
-fn the_readmes_links_to_captured_motion_give_results_with_sane_numbers() {
-    let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("the README");
-    let links: Vec<&str> = (readme.split("<code>?").skip(1))
+fn links_of_the_labs_document_give_results_with_sane_numbers() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/labs.md")).expect("the document");
+    let links: Vec<&str> = (text.split("<code>?").skip(1))
         .filter_map(|rest| rest.split_once("</code>"))
         .map(|(link, _)| link)
         .filter(|link| link.contains("cmu16_"))
         .collect();
-    assert_eq!(links.len(), README_LINKS.len(), "{links:?}");
+    assert_eq!(links.len(), LAB_LINKS.len(), "{links:?}");
     let mut wrong = Vec::new();
-    for (begins, bounds) in README_LINKS {
+    for (begins, bounds) in LAB_LINKS {
         let link = links
             .iter()
             .find(|link| link.starts_with(begins))

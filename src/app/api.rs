@@ -1,4 +1,4 @@
-//! The page's own API, as far as it is plain data: what it is asked, and what it answers. The README documents it.
+//! The page's own API, as far as it is plain data: what it is asked, and what it answers. `docs/api.md` documents it.
 
 use super::Segue;
 use super::frames::FrameTimes;

@@ -1,4 +1,4 @@
-// The page's public object, `await window.segueReady`, around what the app exports. The README documents it.
+// The page's public object, `await window.segueReady`, around what the app exports. `docs/api.md` documents it.
 
 const EVENTS = ["change", "error", "progress"];
 

@@ -52,7 +52,7 @@ cargo xtask match-speed
     Asks databases of 5,000, 50,000 and 500,000 frames for the best frame by four methods, and prints the median and the 99th percentile.
 
 cargo xtask docs
-    Writes the README's table of parameters anew, from the program's.
+    Writes the table of docs/parameters.md from the program's parameters.
 
 cargo xtask seal
     What Trunk calls at the end of a build: gives the page's scripts a name of their own and tells the service worker what there is.
@@ -87,7 +87,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The table is written by the test that holds it to the program: it knows the library, which these commands do not.
+/// Writes the table of parameters by the test that compares it with the program's: xtask does not depend on the library.
 fn docs() -> Result<()> {
     let mut test = shell::cargo(&[
         "test",
@@ -95,7 +95,7 @@ fn docs() -> Result<()> {
         "--locked",
         "--package=segue",
         "--no-default-features",
-        "--test=readme",
+        "--test=documents",
     ]);
     test.env("SEGUE_WRITE_DOCS", "1");
     shell::run(&mut test)

@@ -1,4 +1,4 @@
-//! The one table of parameters. Sliders, the link, the page's API, compare, undo and the README table are made from it.
+//! The one table of parameters. Sliders, the link, the page's API, compare, undo and `docs/parameters.md` are made from it.
 
 use super::choices::{
     AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn, Hysteresis, JumpMethod, LabId, LayerFit,
@@ -33,7 +33,7 @@ pub enum Group {
 }
 
 impl Group {
-    /// The name in the API and in the README.
+    /// The name in the API and in `docs/parameters.md`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

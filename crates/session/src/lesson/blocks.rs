@@ -1,6 +1,6 @@
 //! A lesson's lines into headings, paragraphs, items of lists, and code. One pass, whose effort is in proportion to the text.
 //!
-//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as the README says what a lesson may hold.
+//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as `docs/lessons.md` says what a lesson may hold.
 
 use super::html::Html;
 
