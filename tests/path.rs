@@ -10,6 +10,7 @@ use segue_formats::{ImportOptions, import};
 use segue_motion::blend::Source;
 use segue_motion::clip::{Clip, ContactOptions, Contacts};
 use segue_motion::math::{Planar, quat};
+use segue_motion::metrics::MotionTrace;
 use segue_motion::path::{
     Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset, Orientation, PathEdit, PathEditError, PathEditor,
     Pins, Road, SplineEnds, Timing, carry, hard_turns,
@@ -388,6 +389,37 @@ fn feet_stand_again() {
         }
     }
     assert!(checked >= 6);
+}
+
+#[test]
+fn standing_feet_do_not_turn_with_a_bent_path() {
+    for params in [
+        Params {
+            height_m: 1.9,
+            seed: 632,
+            ..Params::new(Action::Jump)
+        },
+        Params::new(Action::Walk),
+    ] {
+        let (source, roles) = made(&params);
+        let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
+        let path = FittedPath::new(Arc::clone(&source), &options(6)).unwrap();
+        let spline = path.road().spline();
+        let way = spline.points()[5] - spline.points()[0];
+        let edited = [(2, 0.25), (4, -0.25)].into_iter().fold(spline.clone(), |spline, (index, share)| {
+            let to = spline.points()[index] + way.perp() * share;
+            spline.edited(&PathEdit::Move { index, to }, FREE).unwrap()
+        });
+        let options = MotionOptions {
+            foot_lock: Some(FootLockOptions::default()),
+            ..MotionOptions::default()
+        };
+        let editor = PathEditor::new(path, &roles, contacts);
+        let bent = editor.motion(&Road::new(edited).unwrap(), &options).unwrap();
+        let skating = |clip: &Clip| MotionTrace::new(clip, &roles).skating_cm_per_sec().unwrap();
+        let (original, locked) = (skating(source.clip()), skating(&bent.clip));
+        assert!(locked < original.max(0.5), "{:?}: {original} → {locked} cm/s", params.action);
+    }
 }
 
 #[test]

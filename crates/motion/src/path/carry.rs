@@ -60,6 +60,8 @@ pub struct Carried {
     pub places: Vec<Waypoint>,
     /// For every frame of it where the character stands and what it faces.
     pub characters: Vec<Planar>,
+    /// For every frame of it by how much it turned the whole body, radians.
+    pub turns: Vec<f64>,
 }
 
 /// Steadily moving characters keep their speed; one that is slower than this is about to stand, and time runs more and more as it did, metres per second.
@@ -120,6 +122,7 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
         frames,
         places,
         characters,
+        turns: moves.iter().map(|planar| planar.yaw).collect(),
     })
 }
 

@@ -3,7 +3,8 @@ use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
 use crate::metrics::foot_slide_cm;
 use crate::skeleton::Roles;
-use crate::transition::{FootLockOptions, foot_lock};
+use crate::transition::{FootLockOptions, FootLocking};
+use std::sync::Arc;
 
 /// How the motion of an edited path is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -26,6 +27,8 @@ pub struct EditedMotion {
     pub places: Vec<Waypoint>,
     /// For every frame of it where the character stands and what it faces, before its feet are planted.
     pub characters: Vec<Planar>,
+    /// For every frame of it by how much the path turned the whole body, radians.
+    pub turns: Vec<f64>,
     /// When which foot is on the ground.
     pub contacts: Contacts,
     /// How far a planted foot slides in the worst stance, centimetres; `None` without feet or stances.
@@ -88,7 +91,8 @@ impl PathEditor {
             locked: None,
         };
         let clip = if let Some(lock) = &options.foot_lock {
-            let locked = foot_lock(&carried.clip, &self.roles, &contacts, lock)?;
+            let locking = FootLocking::new(Arc::new(carried.clip), &self.roles, &contacts, lock)?;
+            let locked = locking.with_body_yaws(&carried.turns).finish()?;
             slide_cm.locked = slid(&locked);
             locked
         } else {
@@ -100,6 +104,7 @@ impl PathEditor {
             frames: carried.frames,
             places: carried.places,
             characters: carried.characters,
+            turns: carried.turns,
             contacts,
             slide_cm,
             hard_turns,

@@ -126,6 +126,16 @@ impl FootLocking {
         Ok(Self { clip, state })
     }
 
+    /// Says by how much the whole body was turned in every frame, as on a path that was bent, radians; frames without a number were not. A foot that stands does not
+    /// turn with it over the ground: in its stances it is turned back, by up to 30°, about the vertical. Its own turning stays.
+    ///
+    /// To be said before the first [`advance`](Self::advance).
+    #[must_use]
+    pub fn with_body_yaws(mut self, yaws_radians: &[f64]) -> Self {
+        self.state.body_yaws = yaws_radians.to_vec();
+        self
+    }
+
     /// Goes on by so many frames (at least one). `false` when nothing is left to do. A frame of 31 joints takes 2 µs, in each of two passes.
     pub fn advance(&mut self, frames: usize) -> bool {
         self.state.advance(&self.clip, frames)
@@ -158,6 +168,7 @@ struct State {
     legs: Vec<Leg>,
     feet: Vec<anchor::Foot>,
     posed: Vec<Vec<Posed>>,
+    body_yaws: Vec<f64>,
     /// Made when all frames are posed.
     plan: Option<Plan>,
 }
@@ -166,6 +177,8 @@ struct State {
 #[derive(Debug)]
 struct Plan {
     shifts: Vec<Vec<Vec3>>,
+    /// Turns of the feet, rotation vectors.
+    turns: Vec<Vec<Vec3>>,
     heights: Vec<f32>,
     axes: Vec<Vec3>,
     rotations: Vec<Quat>,
@@ -203,8 +216,11 @@ impl State {
             options: *options,
             scale: roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32,
             stances: sides.iter().map(|side| contacts.intervals(*side)).collect(),
-            feet: sides.iter().map(|side| anchor::Foot::new(clip, roles, *side)).collect(),
+            feet: (sides.iter().zip(&legs))
+                .map(|(side, leg)| anchor::Foot::new(clip, roles, *side, leg.joints[2]))
+                .collect(),
             posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
+            body_yaws: Vec::new(),
             legs,
             plan: None,
         })
@@ -234,10 +250,11 @@ impl State {
             plan.rotations.extend_from_slice(clip.rotations(frame));
             let (local, height) = (&mut plan.rotations[first..], plan.heights[frame]);
             for (index, leg) in self.legs.iter().enumerate() {
-                let shift = plan.shifts[index][frame];
-                if shift != Vec3::ZERO || height != 0.0 {
+                let (shift, turn) = (plan.shifts[index][frame], plan.turns[index][frame]);
+                if shift != Vec3::ZERO || turn != Vec3::ZERO || height != 0.0 {
                     let [upper, lower] = self.posed[index][frame].turned(shift - Vec3::Y * height, plan.axes[index]);
-                    leg.write(&self.posed[index][frame], upper, lower, local);
+                    let turns = [upper, lower, Quat::from_scaled_axis(turn)];
+                    leg.write(&self.posed[index][frame], turns, local);
                 }
             }
         }
@@ -257,16 +274,22 @@ impl State {
     }
 
     fn plan(&self, clip: &Clip) -> Plan {
-        let shifts: Vec<Vec<Vec3>> = (self.stances.iter().zip(&self.feet))
-            .map(|(stances, foot)| foot.shifts(stances, clip.fps(), self.scale, &self.options))
-            .collect();
-        let is_idle = shifts.iter().flatten().all(|shift| *shift == Vec3::ZERO);
+        let corrections = self.stances.iter().zip(&self.feet).map(|(stances, foot)| {
+            let stances = foot.parted(stances, clip.fps(), self.scale);
+            let turns = foot.turns(&stances, &self.body_yaws, clip.fps(), &self.options);
+            let shifts = |foot: &anchor::Foot| foot.shifts(&stances, clip.fps(), self.scale, &self.options);
+            let stays = turns.iter().all(|turn| *turn == Vec3::ZERO);
+            (if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns)
+        });
+        let (shifts, turns): (Vec<Vec<Vec3>>, Vec<Vec<Vec3>>) = corrections.unzip();
+        let is_idle = shifts.iter().chain(&turns).flatten().all(|value| *value == Vec3::ZERO);
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),
             axes: self.posed.iter().map(|posed| usual_axis(posed)).collect(),
             rotations: Vec::with_capacity(if is_idle { 0 } else { clip.frames() * clip.skeleton().len() }),
             turned: 0,
             shifts,
+            turns,
             is_idle,
         }
     }
@@ -337,7 +360,7 @@ impl Leg {
     pub(crate) fn move_ankle(&self, world: &WorldPose, shift: Vec3, usual_axis: Vec3, local: &mut [Quat]) {
         let posed = self.pose(world);
         let [upper, lower] = posed.turned(shift, usual_axis);
-        self.write(&posed, upper, lower, local);
+        self.write(&posed, [upper, lower, Quat::IDENTITY], local);
     }
 
     /// By how much the hips are too high for this leg when its ankle is moved by `shift`, metres.
@@ -355,13 +378,13 @@ impl Leg {
         }
     }
 
-    /// Local rotations after thigh and shin were turned in the world, and the foot was not.
-    fn write(&self, posed: &Posed, upper: Quat, lower: Quat, local: &mut [Quat]) {
+    /// Local rotations after thigh, shin and foot were turned in the world, each by its own.
+    fn write(&self, posed: &Posed, [upper, lower, own]: [Quat; 3], local: &mut [Quat]) {
         let [thigh, shin, foot] = self.joints;
         let (rotations, parents) = (posed.rotations, posed.parents);
         local[thigh] = quat::renormalize(parents[0].conjugate() * upper * rotations[0]);
         local[shin] = quat::renormalize((upper * parents[1]).conjugate() * lower * rotations[1]);
-        local[foot] = quat::renormalize((lower * parents[2]).conjugate() * rotations[2]);
+        local[foot] = quat::renormalize((lower * parents[2]).conjugate() * own * rotations[2]);
     }
 }
 

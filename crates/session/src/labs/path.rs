@@ -1,6 +1,6 @@
 //! The Path lab: a motion on another path.
 
-use super::feet::{Lock, slide, slide_before, with_feet};
+use super::feet::{Lock, locking, slide, slide_before};
 use super::kept::read_ids;
 use super::lab::Lab;
 use super::lab_set::{JobKind, Sliced};
@@ -11,12 +11,14 @@ use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Group, Key, Params};
 use planter::{Planted, Planter};
+use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::path::{
     CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Offset, Orientation, PathEditor,
     Road, SplineEnds, Timing, Waypoint,
 };
+use segue_motion::transition::FootLocking;
 use std::sync::Arc;
 
 mod planter;
@@ -280,6 +282,17 @@ impl PathInputs {
         matches!(self.feet, Feet::Awaited)
     }
 
+    /// Begins to hold the planted feet of the motion on the path, which turned the whole body by so many radians in every frame. `None` where they are not to be
+    /// held, or there are no legs.
+    fn locking(&self, free: &Arc<Clip>, contacts: &Contacts, turns: &[f64]) -> Result<Option<FootLocking>, String> {
+        let Some(lock) = self.lock else {
+            return Ok(None);
+        };
+        let motion = &self.fitted.motion;
+        let locking = locking(Arc::clone(free), &motion.roles, contacts, motion.ground_m, lock)?;
+        Ok(locking.map(|locking| locking.with_body_yaws(turns)))
+    }
+
     /// The motion on the path.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let (road, made) = free_motion(self)?;
@@ -288,9 +301,11 @@ impl PathInputs {
         let (clip, slide_cm) = match &self.feet {
             Feet::Free | Feet::Awaited => (free, made.slide_cm.carried),
             Feet::AtOnce => {
-                let roles = &fitted.motion.roles;
-                let clip = with_feet(&free, roles, &made.contacts, fitted.motion.ground_m, self.lock)?;
-                let slide_cm = foot_slide_cm(&clip, roles, &made.contacts);
+                let clip = match self.locking(&free, &made.contacts, &made.turns)? {
+                    Some(locking) => Arc::new(locking.finish().map_err(|error| error.to_string())?),
+                    None => free,
+                };
+                let slide_cm = foot_slide_cm(&clip, &fitted.motion.roles, &made.contacts);
                 (clip, slide_cm)
             }
             Feet::Planted(planted) => planted.made.clone()?,

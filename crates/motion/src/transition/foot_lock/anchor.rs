@@ -3,9 +3,9 @@
 use super::FootLockOptions;
 use super::envelope::{largest_around, smoothed};
 use crate::clip::{Clip, stillest_step};
-use crate::math::{Decay, curve, stats};
+use crate::math::{Decay, curve, stats, wrap_angle};
 use crate::skeleton::{Roles, Side, WorldPose};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use std::ops::Range;
 
 /// Stances with less than this between them are one, seconds and metres: the foot is not lifted and set down again in so short a time, or so near.
@@ -23,22 +23,33 @@ const STEPS_MPS: f32 = 0.5;
 /// What takes longer is no swing from one stance to the next, seconds.
 const LONGEST_SWING_SECS: f64 = 1.5;
 
+/// How far a foot is turned against its leg to keep its heading, radians: 30°. From half of it on it turns with the body more and more.
+const MOST_TURN_RADIANS: f32 = 0.52;
+
 /// The way of one foot through the clip.
 #[derive(Debug)]
 pub(super) struct Foot {
+    ankle: usize,
     points: Vec<(usize, Vec3)>,
+    /// World positions of the ankle, frame by frame.
+    ankles: Vec<Vec3>,
     /// World positions of the points, frame by frame.
     way: Vec<Vec3>,
 }
 
 impl Foot {
-    pub(super) fn new(clip: &Clip, roles: &Roles, side: Side) -> Self {
+    pub(super) fn new(clip: &Clip, roles: &Roles, side: Side, ankle: usize) -> Self {
         let points = roles.foot_points(clip.skeleton(), side);
-        let way = Vec::with_capacity(points.len() * clip.frames());
-        Self { points, way }
+        Self {
+            ankle,
+            ankles: Vec::with_capacity(clip.frames()),
+            way: Vec::with_capacity(points.len() * clip.frames()),
+            points,
+        }
     }
 
     pub(super) fn push(&mut self, world: &WorldPose) {
+        self.ankles.push(world.positions[self.ankle]);
         self.way.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
     }
 
@@ -47,31 +58,53 @@ impl Foot {
         self.way.get(frame * count..(frame + 1) * count).unwrap_or(&[])
     }
 
-    /// What is added to the foot's place in every frame, metres.
+    /// By how much the foot is turned about the vertical in every frame, as rotation vectors, so that it keeps its heading in these stances although the body was
+    /// turned by so many radians. The mean of a stance stays.
+    pub(super) fn turns(&self, stances: &[Range<usize>], body_yaws: &[f64], fps: f64, options: &FootLockOptions) -> Vec<Vec3> {
+        let mut turns = vec![Vec3::ZERO; self.ankles.len()];
+        for stance in stances {
+            let Some(&first) = body_yaws.get(stance.start) else { continue };
+            let mut yaw = first;
+            let yaws: Vec<f64> = (body_yaws.iter().skip(stance.start).take(stance.len()))
+                .map(|&next| {
+                    yaw += wrap_angle(next - yaw);
+                    yaw
+                })
+                .collect();
+            let mean = yaws.iter().sum::<f64>() / yaws.len() as f64;
+            for (turn, yaw) in turns[stance.clone()].iter_mut().zip(yaws) {
+                let back = (mean - yaw) as f32;
+                turn.y = curve::soft_limit(back.abs(), 0.5 * MOST_TURN_RADIANS, MOST_TURN_RADIANS).copysign(back);
+            }
+        }
+        fade_around(stances, options.blend_secs, fps, &mut turns);
+        turns
+    }
+
+    /// This foot, turned about its ankle in every frame.
+    pub(super) fn turned(&self, turns: &[Vec3]) -> Self {
+        let ways = self.way.chunks(self.points.len().max(1)).zip(self.ankles.iter().zip(turns));
+        let turned = ways.flat_map(|(points, (&ankle, &turn))| {
+            let rotation = Quat::from_scaled_axis(turn);
+            points.iter().map(move |&point| ankle + rotation * (point - ankle))
+        });
+        Self {
+            ankle: self.ankle,
+            points: self.points.clone(),
+            ankles: self.ankles.clone(),
+            way: turned.collect(),
+        }
+    }
+
+    /// What is added to the foot's place in every frame, metres; the stances are [`parted`](Self::parted).
     pub(super) fn shifts(&self, stances: &[Range<usize>], fps: f64, scale: f32, options: &FootLockOptions) -> Vec<Vec3> {
-        let frames = self.way.len() / self.points.len().max(1);
-        let mut shifts = vec![Vec3::ZERO; frames];
-        let stances = self.parted(stances, fps, scale);
-        for stance in &stances {
+        let mut shifts = vec![Vec3::ZERO; self.ankles.len()];
+        for stance in stances {
             self.hold(stance, fps, scale, options, &mut shifts);
         }
-        for (index, stance) in stances.iter().enumerate() {
-            let next = stances.get(index + 1).map(|next| next.start);
-            let before = index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
-            let last = stance.end - 1;
-            // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
-            let inside = |frame: usize| shifts[frame.clamp(stance.start, last)];
-            let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
-            let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
-            // By the next stance all of it is gone; at an end of the clip it is cut off.
-            let within = |frames: usize| options.blend_secs.min((frames + 1) as f64 / fps);
-            let blend_secs = before.map_or(options.blend_secs, |before| within(stance.start - before));
-            fade(into, blend_secs, fps, shifts[before.unwrap_or(0)..stance.start].iter_mut().rev());
-            let blend_secs = next.map_or(options.blend_secs, |next| within(next - stance.end));
-            fade(out, blend_secs, fps, shifts[stance.end..next.unwrap_or(frames)].iter_mut());
-        }
+        fade_around(stances, options.blend_secs, fps, &mut shifts);
         if let Some(clearance_m) = options.clearance_m {
-            self.clear(&stances, fps, scale, clearance_m, &mut shifts);
+            self.clear(stances, fps, scale, clearance_m, &mut shifts);
         }
         shifts
     }
@@ -123,7 +156,7 @@ impl Foot {
     }
 
     /// Stances with next to nothing between them as one. Where the foot goes far in so short a time it needs longer: both stances give up frames.
-    fn parted(&self, stances: &[Range<usize>], fps: f64, scale: f32) -> Vec<Range<usize>> {
+    pub(super) fn parted(&self, stances: &[Range<usize>], fps: f64, scale: f32) -> Vec<Range<usize>> {
         let shortest = (SHORTEST_SWING_SECS * fps).round() as usize;
         let mut parted: Vec<Range<usize>> = Vec::with_capacity(stances.len());
         for stance in stances {
@@ -201,14 +234,34 @@ impl Foot {
     }
 }
 
-/// Adds what dies away from a shift and its step into the frames behind it.
-fn fade<'a>((shift, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl Iterator<Item = &'a mut Vec3>) {
+/// Lets what is done in the stances die away with its own velocity before and behind them.
+fn fade_around(stances: &[Range<usize>], blend_secs: f64, fps: f64, values: &mut [Vec3]) {
+    for (index, stance) in stances.iter().enumerate() {
+        let next = stances.get(index + 1).map(|next| next.start);
+        let before = index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
+        let last = stance.end - 1;
+        // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
+        let inside = |frame: usize| values[frame.clamp(stance.start, last)];
+        let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
+        let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
+        // By the next stance all of it is gone; at an end of the clip it is cut off.
+        let within = |frames: usize| blend_secs.min((frames + 1) as f64 / fps);
+        let into_secs = before.map_or(blend_secs, |before| within(stance.start - before));
+        fade(into, into_secs, fps, values[before.unwrap_or(0)..stance.start].iter_mut().rev());
+        let out_secs = next.map_or(blend_secs, |next| within(next - stance.end));
+        let end = next.unwrap_or(values.len());
+        fade(out, out_secs, fps, values[stance.end..end].iter_mut());
+    }
+}
+
+/// Adds what dies away from a value and its step into the frames behind it.
+fn fade<'a>((value, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl Iterator<Item = &'a mut Vec3>) {
     let decay = Decay::Cubic { blend_secs };
     for (index, frame) in frames.enumerate() {
         let secs = (index + 1) as f64 / fps;
         if secs >= blend_secs {
             break;
         }
-        *frame += decay.of_vec3(shift, step * fps as f32, secs).0;
+        *frame += decay.of_vec3(value, step * fps as f32, secs).0;
     }
 }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::clip::fixtures::wander_by;
 use crate::clip::{ContactOptions, stillest_step};
+use crate::math::{Planar, wrap_angle};
 use crate::registration::fixtures::Walk;
 use crate::skeleton::{Joint, Skeleton, fixtures};
 use crate::synth::{Action, Params, synthesize};
@@ -124,6 +125,59 @@ fn planted_feet_stand_and_stay_as_flat_as_they_were() {
             }
         }
     }
+}
+
+/// How far the toe joint of a foot goes while it stands, metres.
+fn toe_ways(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
+    let mut farthest = 0.0_f32;
+    for side in Side::BOTH {
+        let toe = roles.get(Role::toe(side)).unwrap();
+        for stance in contacts.intervals(side) {
+            let places: Vec<Vec3> = stance.map(|frame| clip.world_pose(frame).positions[toe]).collect();
+            farthest = places.iter().map(|place| place.distance(places[0])).fold(farthest, f32::max);
+        }
+    }
+    farthest
+}
+
+#[test]
+fn standing_feet_keep_their_heading_when_the_body_is_turned() {
+    let standing = synthesize(&Params::new(Action::Idle)).unwrap().clip;
+    let roles = Roles::detect(standing.skeleton());
+    let (frames, joints) = (standing.frames(), standing.skeleton().len());
+    let contacts = Contacts::from_flags([vec![true; frames], vec![true; frames]]);
+    let turned_by = |most: f64| -> (Arc<Clip>, Vec<f64>) {
+        // Numbers of a turn may leap by whole turns.
+        let yaws: Vec<f64> = (0..frames)
+            .map(|frame| wrap_angle(3.1 + most * (frame as f64 / frames as f64 * 6.0).sin()))
+            .collect();
+        let turns: Vec<Planar> = yaws.iter().map(|&yaw| Planar::new(yaw, 0.0, 0.0)).collect();
+        let mut rotations: Vec<Quat> = (0..frames).flat_map(|frame| standing.rotations(frame)).copied().collect();
+        for (root, turn) in rotations.iter_mut().step_by(joints).zip(&turns) {
+            *root = turn.rotation() * *root;
+        }
+        let roots = turns.iter().zip(standing.root_translations()).map(|(turn, &root)| turn.apply(root));
+        let clip = Clip::new("turned", standing.skeleton().clone(), standing.fps(), rotations, roots.collect());
+        (Arc::new(clip.unwrap()), yaws)
+    };
+    let options = FootLockOptions::default();
+    let locking = |clip: &Arc<Clip>| FootLocking::new(Arc::clone(clip), &roles, &contacts, &options).unwrap();
+
+    let (clip, yaws) = turned_by(0.15);
+    let before = toe_ways(&locking(&clip).finish().unwrap(), &roles, &contacts);
+    let after = toe_ways(&locking(&clip).with_body_yaws(&yaws).finish().unwrap(), &roles, &contacts);
+    assert!(before > 0.01 && after < 2e-3, "{before} {after} m");
+
+    // An ankle is not wrung: beyond 30° the foot goes with the body.
+    let (clip, yaws) = turned_by(1.5);
+    let (with_it, held) = (
+        locking(&clip).finish().unwrap(),
+        locking(&clip).with_body_yaws(&yaws).finish().unwrap(),
+    );
+    let foot = roles.get(Role::foot(Side::Left)).unwrap();
+    let wrung = (0..frames).map(|frame| quat::angle_between(with_it.world_pose(frame).rotations[foot], held.world_pose(frame).rotations[foot]));
+    let most = wrung.fold(0.0, f32::max);
+    assert!(most > 0.45 && most < 0.53, "{most}");
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use super::{PathInputs, free_motion};
 use crate::compare::MAX_PANES;
-use crate::labs::feet::locking;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::metrics::SlideMeter;
 use segue_motion::transition::FootLocking;
@@ -94,11 +93,7 @@ impl Planter {
 fn begin(of: &PathInputs) -> Result<Stage, String> {
     let (_, free) = free_motion(of)?;
     let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
-    let locking = match of.lock {
-        Some(lock) => locking(Arc::clone(&clip), roles, &free.contacts, of.fitted.motion.ground_m, lock)?,
-        None => None,
-    };
-    Ok(match locking {
+    Ok(match of.locking(&clip, &free.contacts, &free.turns)? {
         Some(locking) => Stage::Locking(locking, free.contacts),
         None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
     })
