@@ -423,6 +423,39 @@ fn standing_feet_do_not_turn_with_a_bent_path() {
 }
 
 #[test]
+fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
+    // This path hooks at its end by 3° a frame, since the hips sway.
+    let mut params = Params {
+        speed_mps: 0.65,
+        turn_rate_dps: -8.0,
+        height_m: 1.9,
+        seed: 213,
+        duration_secs: 4.0,
+        ..Params::new(Action::Walk)
+    };
+    (params.style.arm_swing, params.style.bounce) = (0.65, 0.25);
+    let (source, _) = made(&params);
+    let path = FittedPath::new(Arc::clone(&source), &FitOptions::default()).unwrap();
+    let shorter = path.road().spline().edited(&PathEdit::Scale { factor: 0.9 }, FREE).unwrap();
+    let shorter = Road::new(shorter).unwrap();
+    let carried = carry(&path, &shorter, &CarryOptions::default()).unwrap();
+    let behind: Vec<usize> = (0..source.clip().frames())
+        .filter(|&frame| path.places()[frame].along_m > shorter.length_m())
+        .collect();
+    assert!(behind.len() > 10, "{}", behind.len());
+    for pair in behind.windows(2) {
+        let step = |frames: &[Planar]| frames[pair[0]].inverse().after(&frames[pair[1]]);
+        let (was, is) = (step(source.frames()), step(&carried.characters));
+        assert!((was.yaw - is.yaw).abs() < 1e-9, "{pair:?}: {was:?} {is:?}");
+        assert!(was.shift.distance(is.shift) < 1e-9, "{pair:?}: {was:?} {is:?}");
+    }
+    // It does not leap at the end.
+    let step = |frames: &[Planar]| frames[behind[0] - 1].inverse().after(&frames[behind[0]]);
+    let (was, is) = (step(source.frames()), step(&carried.characters));
+    assert!((was.yaw - is.yaw).abs() < 0.05 && was.shift.distance(is.shift) < 0.002, "{was:?} {is:?}");
+}
+
+#[test]
 fn turns_that_are_too_sharp_are_told() {
     let (path, _, gentle) = bow(0.2);
     let out = carry(&path, &gentle, &CarryOptions::default()).unwrap();

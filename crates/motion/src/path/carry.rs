@@ -8,7 +8,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Timing {
     /// Every metre: what was so many metres behind the start still is. Speed, stride and duration stay. A motion that is longer than its new path goes
-    /// straight on behind it, or round again where the path is closed; one that is shorter ends on the way.
+    /// on behind it on the rest of its own path, or round again where the new one is closed; one that is shorter ends on the way.
     #[default]
     Metres,
     /// The speed: the motion takes the whole path, and where the path has become longer time runs slower. Strides grow with the path.
@@ -95,6 +95,7 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
             path.road().at(parameter)
         };
         let place = match options.timing {
+            Timing::Metres if is_behind(edited, &old) => behind(path, edited, &old),
             Timing::Metres => edited.at_length_near(old.along_m, parameter),
             Timing::Speed | Timing::Duration => edited.at(parameter),
         };
@@ -124,6 +125,22 @@ pub fn carry(path: &FittedPath, edited: &Road, options: &CarryOptions) -> Result
         characters,
         turns: moves.iter().map(|planar| planar.yaw).collect(),
     })
+}
+
+/// Whether a place of the old path is farther from the start than the new one is long; a closed one has no end.
+fn is_behind(edited: &Road, old: &Waypoint) -> bool {
+    !edited.spline().is_closed() && old.along_m > edited.length_m()
+}
+
+/// The rest of the old path, joined to the end of the new one. Straight on instead, a body that goes ahead would turn with every bend of the old path: fitted paths follow
+/// the sway of the hips in hooks, above all at their ends.
+fn behind(path: &FittedPath, edited: &Road, old: &Waypoint) -> Waypoint {
+    let length = edited.length_m();
+    let (end, left) = (edited.at_length(length), path.road().at_length(length));
+    Waypoint {
+        frame: end.frame.after(&left.frame.inverse()).after(&old.frame),
+        ..*old
+    }
 }
 
 impl Carried {
