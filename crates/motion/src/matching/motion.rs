@@ -76,7 +76,7 @@ impl Motion {
             return Err(MatchError::NotFinite { name });
         }
         let ground_m = estimate_ground(&clip, roles, &contacts);
-        let mut feet = Side::BOTH.map(|side| own_foot(&clip, cycle.as_ref(), roles, &contacts, side));
+        let mut feet = Side::BOTH.map(|side| own_foot(&clip, &roots, cycle.as_ref(), roles, &contacts, side));
         let standing: Vec<f32> = (feet.iter().flatten().filter(|foot| foot.planted))
             .map(|foot| foot.above_m)
             .collect();
@@ -310,9 +310,22 @@ fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roo
         .collect()
 }
 
-/// What a foot does, frame by frame: its speed is that of the step into the frame, in the first frame of a clip that is no cycle of the step out of it;
+/// So many frames before a foot lands it is told for how long it will stand, since it takes as many to lift one.
+const LOOK_AHEAD: usize = 8;
+
+/// So many frames before a foot is low it is lifted.
+const LIFT_AHEAD: usize = 4;
+
+/// What a foot does, frame by frame: its velocity is that of the step into the frame, in the first frame of a clip that is no cycle of the step out of it;
 /// its height is that in the world.
-fn own_foot(clip: &Clip, cycle: Option<&Planar>, roles: &Roles, contacts: &Contacts, side: Side) -> Vec<OwnFoot> {
+fn own_foot(
+    clip: &Clip,
+    roots: &[Planar],
+    cycle: Option<&Planar>,
+    roles: &Roles,
+    contacts: &Contacts,
+    side: Side,
+) -> Vec<OwnFoot> {
     let points = roles.foot_points(clip.skeleton(), side);
     let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
     let mut world = WorldPose::default();
@@ -332,13 +345,30 @@ fn own_foot(clip: &Clip, cycle: Option<&Planar>, roles: &Roles, contacts: &Conta
         (0, None) => stillest_point(&ways[0], &ways[last.min(1)]),
         _ => stillest_point(&ways[frame - 1], &ways[frame]),
     };
+    let planted: Vec<bool> = (0..ways.len()).map(|frame| contacts.planted(side, frame)).collect();
+    let stance = |frame: usize| {
+        let round = if cycle.is_some() { &planted[..frame] } else { &[] };
+        let coming = planted[frame..].iter().chain(round);
+        let lands = coming.clone().take(LOOK_AHEAD).position(|&planted| planted);
+        lands.map_or(0, |lands| coming.skip(lands).take_while(|&&planted| planted).count())
+    };
+    let lowest = |frame: usize| ways[frame].iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
+    let falls = |frame: usize| {
+        let coming = (frame..=frame + LIFT_AHEAD).map(|ahead| match cycle {
+            Some(_) => lowest(ahead % ways.len()),
+            None => lowest(ahead.min(last)),
+        });
+        lowest(frame) - coming.fold(f32::INFINITY, f32::min)
+    };
     (0..ways.len())
         .map(|frame| (frame, step(frame).unwrap_or_default()))
         .map(|(frame, (stillest, step))| OwnFoot {
-            planted: contacts.planted(side, frame),
+            planted: planted[frame],
+            stance_frames: stance(frame),
             stillest,
-            above_m: ways[frame].iter().map(|point| point.y).fold(f32::INFINITY, f32::min),
-            speed_mps: step.length() * RATE as f32,
+            above_m: lowest(frame),
+            falls_m: falls(frame),
+            velocity_mps: roots[frame].inverse().apply_vector(step) * RATE as f32,
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 use super::super::Database;
 use super::options::FootPlanting;
 use crate::math::curve::smoothstep;
-use crate::math::{quat, spring};
+use crate::math::{Planar, quat, spring};
 use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Pose, Side, Skeleton, WorldPose, world_pose_of};
 use crate::transition::Leg;
@@ -18,8 +18,9 @@ use glam::{Quat, Vec3};
 /// None of this turns a joint of the leg faster, beyond its own motion, than three quarters of what it usually does not exceed: a leg that is nearly
 /// straight would snap when its foot is let go, since there a centimetre is many degrees of the knee. The foot slips a little then.
 ///
-/// A foot comes to stand when the clip says so *and* it has come down: right after a jump it may still be on its way to where the new clip has it. One
-/// that was let go comes to stand again when it is back on its own way.
+/// A foot comes to stand when the clip says so *and* it has come down: right after a jump it may still be on its way to where the new clip has it. Where the body
+/// carries it over the ground, as one that is pulled back to a slower pace does, it stands if it can be held until its clip lifts it; else it is lifted before
+/// it lands. One that was let go comes to stand again when it is back on its own way.
 ///
 /// What moves over the ground is off it: a foot that a transition, a pull towards the wish or the way back from where it stood moves over the ground
 /// faster than its clip does is lifted, as in a step, and not dragged.
@@ -36,8 +37,8 @@ pub(super) struct Feet {
     world: WorldPose,
 }
 
-/// A foot has come down when it is no higher than this above the ground, metres for a body of 1.75 m, and slower than this, metres per second:
-/// a little more than what [`crate::clip::ContactOptions`] asks for, since what is left of a transition sways it.
+/// A foot has come down when it is no higher than this above the ground, metres for a body of 1.75 m, and the body does not carry it over the ground faster than this,
+/// metres per second: a little more than what [`crate::clip::ContactOptions`] asks for, since what is left of a transition sways it.
 const DOWN_M: f32 = 0.06;
 const DOWN_MPS: f32 = 0.6;
 
@@ -68,12 +69,26 @@ const ADDED_SPEED: f32 = 0.75;
 pub(in super::super) struct OwnFoot {
     /// Whether it is on the ground.
     pub(in super::super) planted: bool,
+    /// For how many more frames it stays there, this one among them; shortly before it lands, for how many it will. 0 in the air.
+    pub(in super::super) stance_frames: usize,
     /// How high its lowest point is above where it is as a rule while the foot stands, metres.
     pub(in super::super) above_m: f32,
+    /// How far its lowest point comes down in the next frames, metres.
+    pub(in super::super) falls_m: f32,
     /// Which of its points moves least over the ground: while it is pulled along, another one may seem to stand.
     pub(in super::super) stillest: usize,
-    /// The speed of that point, metres per second.
-    pub(in super::super) speed_mps: f32,
+    /// The velocity of that point, metres per second, in the frame of the character.
+    pub(in super::super) velocity_mps: Vec3,
+}
+
+impl OwnFoot {
+    /// The same in the world, where the character is here.
+    pub(super) fn turned(self, world_from_character: &Planar) -> Self {
+        Self {
+            velocity_mps: world_from_character.apply_vector(self.velocity_mps),
+            ..self
+        }
+    }
 }
 
 /// [`spring::towards`] in single precision.
@@ -185,8 +200,12 @@ impl Feet {
                 continue;
             };
             let most_shift = options.most_shift_m * self.scale;
+            // What the body's way over the ground adds to the foot's own.
+            let over_ground = Vec3::new(1.0, 0.0, 1.0);
+            let slip = step.map_or(0.0, |step| (step - own.velocity_mps * over_ground * dt_secs as f32).length());
+            let holds = slip < DOWN_MPS * self.scale * dt_secs as f32 || slip * own.stance_frames as f32 <= most_shift;
             foot.let_go &= own.planted && foot.shift.length() > BACK_SHARE * most_shift;
-            foot.stands = own.planted && !foot.let_go && (stood || (slow && down));
+            foot.stands = own.planted && !foot.let_go && (stood || (holds && down && step.is_some()));
             stand[foot.side.index()] = foot.stands;
             let before = foot.shift;
             match step.filter(|_| stood) {
@@ -205,8 +224,15 @@ impl Feet {
                 0.0
             } else {
                 let above = own.above_m / self.scale;
-                let clear = clearance(speed).min(clearance(speed - own.speed_mps / self.scale).max(above));
-                (clear * self.scale + self.stand_m - lowest).max(0.0)
+                let own_speed = (own.velocity_mps * over_ground).length() / self.scale;
+                if holds {
+                    // What the clip itself does is left alone.
+                    let clear = clearance(speed).min(clearance(speed - own_speed).max(above));
+                    (clear * self.scale + self.stand_m - lowest).max(0.0)
+                } else {
+                    let clear = clearance(slip / (dt_secs as f32 * self.scale));
+                    (clear * self.scale + self.stand_m - (lowest - own.falls_m)).max(0.0)
+                }
             };
             (foot.lift, foot.lift_rate) = towards_number(foot.lift, foot.lift_rate, target, LIFT_HALF_LIFE_SECS, dt_secs);
             foot.moved = foot.shift + Vec3::Y * (foot.lift + (self.ground_m - lowest).max(0.0));
@@ -376,10 +402,56 @@ mod tests {
         // What the clip itself does is left alone.
         let own = path(OwnFoot {
             above_m: database.motion(0).unwrap().feet(0)[0].above_m,
-            speed_mps: 0.3,
+            velocity_mps: Vec3::X * 0.3,
             ..OwnFoot::default()
         });
         assert!((own[39].y - own[0].y).abs() < 1e-3, "{} {}", own[0], own[39]);
+    }
+
+    /// A body that is pulled back to a slower pace carries its feet over the ground: one that can be held for all of its stance is.
+    #[test]
+    fn a_foot_that_is_carried_along_stands_where_it_can_be_held() {
+        let database = database(&[Action::Idle]);
+        let push = |frame: usize, pose: &mut Pose| pose.root_translation += Vec3::X * 0.015 * frame as f32;
+        let way = |stance: std::ops::Range<usize>| {
+            let own = |frame: usize| OwnFoot {
+                planted: stance.contains(&frame),
+                stance_frames: if stance.contains(&frame) { stance.end - frame } else { 0 },
+                ..OwnFoot::default()
+            };
+            let poses = played(&database, &[], 0..stance.end, own, push);
+            left_foot(&database, &poses[stance.end - 1]).distance(left_foot(&database, &poses[stance.start]))
+        };
+        let (short, long) = (way(20..32), way(20..60));
+        // At 0.9 m/s these stances are 18 and 60 cm long, and a foot is held for 30 cm: of the long one in the second half.
+        assert!(short < 0.04, "{short}");
+        assert!(long > 0.25 && long < 0.35, "{long}");
+    }
+
+    /// One that cannot be held is in the air when it would land, and does not touch the ground while it moves.
+    #[test]
+    fn a_foot_that_is_carried_too_far_is_lifted_before_it_lands() {
+        let database = database(&[Action::Run]);
+        let motion = database.motion(0).unwrap();
+        let push = |frame: usize, pose: &mut Pose| pose.root_translation -= Vec3::Z * (2.0 * TICK_SECS as f32) * frame as f32;
+        let own = |frame: usize| motion.feet(frame)[0].turned(&motion.root(frame));
+        let poses = played(&database, &[], 0..motion.frames(), own, push);
+        let leg = &Feet::new(&database).both[0];
+        let needed: Vec<usize> = (0..database.skeleton().len()).collect();
+        let lowest = |pose: &Pose| {
+            let (moved, mut world) = (pose.translations.iter().copied(), WorldPose::default());
+            world_pose_of(database.skeleton(), pose.root_translation, &pose.rotations, moved, &needed, &mut world);
+            let heights = leg.points.iter().map(|&(joint, point)| world.point(joint, point).y);
+            heights.fold(f32::INFINITY, f32::min) - database.ground_m()
+        };
+        let landings: Vec<usize> = (20..motion.frames())
+            .filter(|&frame| own(frame).planted && !own(frame - 1).planted)
+            .collect();
+        assert!(landings.len() >= 2, "{landings:?}");
+        for landing in landings {
+            let height = lowest(&poses[landing]);
+            assert!(height > 0.05, "{landing}: {height} m");
+        }
     }
 
     /// One stance is not given up for good: where the foot is back on its own way it stands again.

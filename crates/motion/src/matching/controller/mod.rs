@@ -335,7 +335,7 @@ impl Controller {
         pose.translations.clear();
         pose.translations
             .extend(self.database.moving.iter().copied().zip(translations.into_iter().skip(1)));
-        let own = motion.feet(frame);
+        let own = motion.feet(frame).map(|own| own.turned(&self.root));
         let planting = self.options.planting.as_ref();
         let usual = &self.database.pace().joints_radps;
         self.planted = self.feet.apply(self.database.skeleton(), pose, own, planting, usual, TICK_SECS);
