@@ -452,7 +452,10 @@ fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
     // It does not leap at the end.
     let step = |frames: &[Planar]| frames[behind[0] - 1].inverse().after(&frames[behind[0]]);
     let (was, is) = (step(source.frames()), step(&carried.characters));
-    assert!((was.yaw - is.yaw).abs() < 0.05 && was.shift.distance(is.shift) < 0.002, "{was:?} {is:?}");
+    assert!(
+        (was.yaw - is.yaw).abs() < 0.05 && was.shift.distance(is.shift) < 0.002,
+        "{was:?} {is:?}"
+    );
 }
 
 #[test]

@@ -318,14 +318,7 @@ const LIFT_AHEAD: usize = 4;
 
 /// What a foot does, frame by frame: its velocity is that of the step into the frame, in the first frame of a clip that is no cycle of the step out of it;
 /// its height is that in the world.
-fn own_foot(
-    clip: &Clip,
-    roots: &[Planar],
-    cycle: Option<&Planar>,
-    roles: &Roles,
-    contacts: &Contacts,
-    side: Side,
-) -> Vec<OwnFoot> {
+fn own_foot(clip: &Clip, roots: &[Planar], cycle: Option<&Planar>, roles: &Roles, contacts: &Contacts, side: Side) -> Vec<OwnFoot> {
     let points = roles.foot_points(clip.skeleton(), side);
     let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
     let mut world = WorldPose::default();

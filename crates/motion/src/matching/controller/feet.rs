@@ -440,7 +440,14 @@ mod tests {
         let needed: Vec<usize> = (0..database.skeleton().len()).collect();
         let lowest = |pose: &Pose| {
             let (moved, mut world) = (pose.translations.iter().copied(), WorldPose::default());
-            world_pose_of(database.skeleton(), pose.root_translation, &pose.rotations, moved, &needed, &mut world);
+            world_pose_of(
+                database.skeleton(),
+                pose.root_translation,
+                &pose.rotations,
+                moved,
+                &needed,
+                &mut world,
+            );
             let heights = leg.points.iter().map(|&(joint, point)| world.point(joint, point).y);
             heights.fold(f32::INFINITY, f32::min) - database.ground_m()
         };

@@ -175,7 +175,8 @@ fn standing_feet_keep_their_heading_when_the_body_is_turned() {
         locking(&clip).with_body_yaws(&yaws).finish().unwrap(),
     );
     let foot = roles.get(Role::foot(Side::Left)).unwrap();
-    let wrung = (0..frames).map(|frame| quat::angle_between(with_it.world_pose(frame).rotations[foot], held.world_pose(frame).rotations[foot]));
+    let wrung =
+        (0..frames).map(|frame| quat::angle_between(with_it.world_pose(frame).rotations[foot], held.world_pose(frame).rotations[foot]));
     let most = wrung.fold(0.0, f32::max);
     assert!(most > 0.45 && most < 0.53, "{most}");
 }
