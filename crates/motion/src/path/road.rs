@@ -3,8 +3,12 @@ use super::{GroundSpline, PathEditError};
 use crate::math::Planar;
 use glam::DVec2;
 
-/// Each polynomial piece is measured in this many parts.
+/// Each polynomial piece is measured in at least this many parts.
 const PARTS: usize = 8;
+/// A part whose halves together measure within this of the whole is not halved again, metres.
+const QUADRATURE_TOLERANCE_M: f64 = 1e-6;
+/// Halvings of a part at most. Near the tip of a hairpin the error falls to a quarter with each.
+const MAX_HALVINGS: u32 = 24;
 /// Gauss-Legendre with five points on `[-1, 1]`: exact up to degree nine.
 const NODES: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
@@ -22,8 +26,9 @@ const SAME_M: f64 = 1e-8;
 
 /// A path that knows its length: read by parameter or by metres from its start.
 ///
-/// Lengths are integrals of the speed by Gauss-Legendre, eight parts of five nodes to a piece: to 1e-6 of the length, and to 5e-4
-/// where the path turns back in a point.
+/// Lengths are integrals of the speed by adaptive Gauss-Legendre quadrature: at least eight parts of
+/// five nodes to a piece, halved until both halves agree with the whole to a micrometre. Only the
+/// tip of a hairpin, where the speed nearly vanishes, needs more parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Road {
     spline: GroundSpline,
@@ -52,17 +57,18 @@ impl Road {
     /// # Errors
     /// [`PathEditError::NoLength`] when it is shorter than a millimetre.
     pub fn new(spline: GroundSpline) -> Result<Self, PathEditError> {
-        let (mut parameters, mut lengths) = (vec![0.0], vec![0.0]);
         let speed = |u: f64| spline.jet(u).first.length();
-        let mut speeds = vec![speed(0.0)];
+        let (mut parameters, mut lengths, mut speeds) = (vec![0.0], vec![0.0], vec![speed(0.0)]);
         let mut total = 0.0;
         for piece in spline.breaks().windows(2) {
             for part in 0..PARTS {
                 let at = |k: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / PARTS as f64;
-                total += length_between(&spline, at(part), at(part + 1));
-                parameters.push(at(part + 1));
-                lengths.push(total);
-                speeds.push(speed(at(part + 1)));
+                measure(&spline, at(part), at(part + 1), MAX_HALVINGS, &mut |end, length| {
+                    total += length;
+                    parameters.push(end);
+                    lengths.push(total);
+                    speeds.push(speed(end));
+                });
             }
         }
         if total < LEAST_LENGTH_M {
@@ -199,6 +205,19 @@ impl Road {
 /// The part that holds `value`.
 fn part_of(ends: &[f64], value: f64) -> usize {
     ends.partition_point(|&end| end <= value).clamp(1, ends.len() - 1) - 1
+}
+
+/// Measures `from..to` of one piece and hands `add` the end and the length of each part of it, in order.
+fn measure(spline: &GroundSpline, from: f64, to: f64, halvings: u32, add: &mut impl FnMut(f64, f64)) {
+    let middle = 0.5 * (from + to);
+    let whole = length_between(spline, from, to);
+    let halves = length_between(spline, from, middle) + length_between(spline, middle, to);
+    if halvings == 0 || (halves - whole).abs() <= QUADRATURE_TOLERANCE_M {
+        add(to, whole);
+    } else {
+        measure(spline, from, middle, halvings - 1, add);
+        measure(spline, middle, to, halvings - 1, add);
+    }
 }
 
 /// The length between two parameters of one piece.
